@@ -1,0 +1,13 @@
+//! Plane geometry in metres and radians: points, rigid transforms, segments, outlines.
+//!
+//! REP-103 axes: x forward (east in a world), y left (north), angles counter-clockwise.
+
+mod outline;
+mod point;
+mod pose;
+mod segment;
+
+pub use outline::{Bounds, Outline, convex_hull};
+pub use point::Point;
+pub use pose::Pose;
+pub use segment::Segment;

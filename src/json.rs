@@ -1,0 +1,89 @@
+//! Canonical JSON: the one text a value has, used for records and for everything that is hashed.
+//!
+//! Keys sorted bytewise, no white space, numbers in shortest round-trip form, `-0` written as `0`,
+//! strings escaped as `serde_json` does. Injective: two values have the same text only if they are equal,
+//! because JSON delimits every part.
+
+use serde::Serialize;
+use serde_json::Value;
+
+/// The canonical text of `value`, without a final newline.
+pub fn canonical(value: &Value) -> String {
+    let mut text = String::new();
+    write(value, &mut text);
+    text
+}
+
+/// The canonical text of anything serialisable.
+///
+/// # Panics
+/// Where `value` cannot be JSON at all (a map with non-string keys); non-finite floats become `null`,
+/// which resolution has ruled out before.
+pub fn canonical_of<T: Serialize>(value: &T) -> String {
+    canonical(&serde_json::to_value(value).expect("our own types serialise to JSON"))
+}
+
+fn write(value: &Value, out: &mut String) {
+    match value {
+        Value::Object(map) => {
+            let mut entries: Vec<_> = map.iter().collect();
+            entries.sort_by(|a, b| a.0.as_bytes().cmp(b.0.as_bytes()));
+            out.push('{');
+            for (i, (key, item)) in entries.into_iter().enumerate() {
+                if i > 0 {
+                    out.push(',');
+                }
+                out.push_str(&Value::String(key.clone()).to_string());
+                out.push(':');
+                write(item, out);
+            }
+            out.push('}');
+        }
+        Value::Array(items) => {
+            out.push('[');
+            for (i, item) in items.iter().enumerate() {
+                if i > 0 {
+                    out.push(',');
+                }
+                write(item, out);
+            }
+            out.push(']');
+        }
+        Value::Number(number) => match number.as_f64() {
+            Some(x) if number.is_f64() && x == 0.0 => out.push('0'),
+            // A whole float and the integer of the same value are the same meaning: write both alike.
+            Some(x) if number.is_f64() && x.fract() == 0.0 && x.abs() < 1e15 => {
+                #[expect(clippy::cast_possible_truncation, reason = "whole and below 2^53")]
+                let whole = x as i64;
+                out.push_str(&whole.to_string());
+            }
+            // Not serde_json's own text: its form of large exponents is not promised to stay.
+            Some(x) if number.is_f64() && !(1e-5..1e17).contains(&x.abs()) => {
+                out.push_str(&format!("{x:e}"));
+            }
+            Some(x) if number.is_f64() => out.push_str(&x.to_string()),
+            _ => out.push_str(&number.to_string()),
+        },
+        other => out.push_str(&other.to_string()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn keys_are_sorted_and_numbers_have_one_form() {
+        assert_eq!(
+            canonical(&json!({"b": 1.0, "a": [-0.0, 0.1, 1e300, 1e-7, null, "x\n"], "é": true})),
+            r#"{"a":[0,0.1,1e300,1e-7,null,"x\n"],"b":1,"é":true}"#
+        );
+    }
+
+    #[test]
+    fn near_misses_differ() {
+        assert_ne!(canonical(&json!(["ab", "c"])), canonical(&json!(["a", "bc"])));
+        assert_ne!(canonical(&json!({"a": "1"})), canonical(&json!({"a": 1})));
+    }
+}

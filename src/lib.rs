@@ -1,0 +1,23 @@
+//! Reenact re-enacts published robot-exploration experiments, exactly.
+//!
+//! One manifest goes in; one sealed, checksummed bundle comes out. The pipeline has one type per
+//! stage, each consuming the last:
+//!
+//! ```text
+//! ManifestDoc -> Experiment -> Plan -> TrialSpec -> TrialRecord -> Table -> Verdict   (sealed in a Bundle)
+//!  manifest/     manifest/     plan/   studies/      runner/        studies/  claims/
+//! ```
+//!
+//! Modules are layered: a module imports lower layers only, and `tests/architecture.rs` enforces the
+//! table in `docs/architecture.md`. The mind (mapping, navigation, strategies) sees sensor messages
+//! only, never the simulator or the world.
+
+// Layer 0: numbers, bytes and shapes.
+pub mod digest;
+pub mod geometry;
+pub mod grid;
+pub mod json;
+pub mod math;
+pub mod rng;
+pub mod table;
+pub mod units;

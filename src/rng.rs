@@ -1,0 +1,177 @@
+//! Named, counter-based random streams: the only place where a generator is made.
+//!
+//! A stream is ChaCha8 keyed by SHA-256 over (experiment seed, declared coordinates, label), so its numbers
+//! depend on the trial's identity alone: never on order, threads or what other streams drew. A stream can be
+//! positioned at any counter ([`Stream::at`]), so a reading indexed by tick has the same noise whether or not
+//! earlier readings were computed.
+//!
+//! Distributions are our own on `libm`: those of the usual crates are not portable between releases.
+
+use crate::digest::Hasher;
+use crate::math;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng as _, SeedableRng as _};
+
+/// What identifies a family of streams: the experiment's seed and the trial's declared coordinates.
+///
+/// Coordinates are `name=value` pairs in a fixed order (factor values, then the trial number). Trials that
+/// declare shared noise leave the factors they share over out.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Seeds {
+    experiment: u64,
+    coordinates: Vec<(String, String)>,
+}
+
+impl Seeds {
+    /// Seeds of the experiment `experiment` at `coordinates`.
+    pub fn new(experiment: u64, coordinates: Vec<(String, String)>) -> Self {
+        Self { experiment, coordinates }
+    }
+
+    /// The stream named `label` at these coordinates.
+    pub fn stream(&self, label: &str) -> Stream {
+        let mut hasher = Hasher::new();
+        hasher.update(b"reenact-stream-1\0").update(self.experiment.to_le_bytes());
+        let mut field = |text: &str| {
+            // Lengths first, so that ("ab", "c") and ("a", "bc") are different streams.
+            hasher.update((text.len() as u64).to_le_bytes()).update(text);
+        };
+        for (name, value) in &self.coordinates {
+            field(name);
+            field(value);
+        }
+        field(label);
+        Stream { generator: ChaCha8Rng::from_seed(hasher.digest().0) }
+    }
+}
+
+/// One named generator. Not shared, not cloned, not global.
+#[derive(Debug)]
+pub struct Stream {
+    generator: ChaCha8Rng,
+}
+
+impl Stream {
+    /// This stream positioned at the beginning of block `index`: 2^32 words, far more than a reading takes.
+    ///
+    /// The same index always yields the same numbers, whatever was drawn before.
+    pub fn at(&mut self, index: u64) -> &mut Self {
+        // The stream number is the high half of ChaCha's counter space: a position of its own per index.
+        self.generator.set_stream(index);
+        self.generator.set_word_pos(0);
+        self
+    }
+
+    /// The next 64 random bits.
+    pub fn bits(&mut self) -> u64 {
+        self.generator.next_u64()
+    }
+
+    /// Uniform in [0, 1), with 53 random bits.
+    pub fn uniform(&mut self) -> f64 {
+        #[expect(clippy::cast_precision_loss, reason = "53 bits are exact in an f64")]
+        let mantissa = (self.bits() >> 11) as f64;
+        mantissa * (1.0 / 9_007_199_254_740_992.0)
+    }
+
+    /// Uniform in `low..high`.
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.uniform()
+    }
+
+    /// Uniform in `0..bound`, without bias (Lemire 2019, "Fast random integer generation in an interval").
+    ///
+    /// # Panics
+    /// Where `bound` is zero.
+    pub fn below(&mut self, bound: u64) -> u64 {
+        assert!(bound > 0, "an empty range has no number to draw");
+        let mut product = u128::from(self.bits()) * u128::from(bound);
+        #[expect(clippy::cast_possible_truncation, reason = "the low half is what is meant")]
+        if (product as u64) < bound {
+            let threshold = bound.wrapping_neg() % bound;
+            while (product as u64) < threshold {
+                product = u128::from(self.bits()) * u128::from(bound);
+            }
+        }
+        (product >> 64) as u64
+    }
+
+    /// Two independent standard normal numbers (Box and Muller 1958).
+    pub fn normal_pair(&mut self) -> (f64, f64) {
+        // 1 - u is in (0, 1], so the logarithm is finite.
+        let radius = (-2.0 * math::ln(1.0 - self.uniform())).sqrt();
+        let (sin, cos) = math::sin_cos(std::f64::consts::TAU * self.uniform());
+        (radius * cos, radius * sin)
+    }
+
+    /// One standard normal number; the pair's other half is dropped, so that draws stay countable.
+    pub fn normal(&mut self) -> f64 {
+        self.normal_pair().0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn seeds(trial: u32) -> Seeds {
+        Seeds::new(2019, vec![("start".into(), "A".into()), ("trial".into(), trial.to_string())])
+    }
+
+    #[test]
+    fn streams_are_named_repeatable_and_distinct() {
+        let draw = |seeds: &Seeds, label: &str| seeds.stream(label).bits();
+        assert_eq!(draw(&seeds(0), "lidar"), draw(&seeds(0), "lidar"));
+        assert_ne!(draw(&seeds(0), "lidar"), draw(&seeds(0), "drive"));
+        assert_ne!(draw(&seeds(0), "lidar"), draw(&seeds(1), "lidar"));
+        let ab_c = Seeds::new(1, vec![("ab".into(), "c".into())]);
+        let a_bc = Seeds::new(1, vec![("a".into(), "bc".into())]);
+        assert_ne!(draw(&ab_c, ""), draw(&a_bc, ""));
+    }
+
+    #[test]
+    fn a_position_does_not_depend_on_what_was_drawn_before() {
+        let mut lazy = seeds(0).stream("lidar");
+        let mut eager = seeds(0).stream("lidar");
+        for index in 0..7 {
+            eager.at(index).normal();
+        }
+        assert_eq!(lazy.at(7).normal().to_bits(), eager.at(7).normal().to_bits());
+    }
+
+    /// Pinned numbers: a change here changes every trial, so the engine version must be raised with it.
+    #[test]
+    fn the_algorithm_is_pinned() {
+        let mut stream = seeds(0).stream("pin");
+        assert_eq!(
+            [stream.bits(), stream.at(3).bits(), stream.at(3).below(1000)],
+            [87_813_726_223_822_956, 9_171_920_531_770_413_246, 497]
+        );
+    }
+
+    #[test]
+    fn normals_have_the_right_moments() {
+        let mut stream = seeds(0).stream("moments");
+        let n = 100_000;
+        let (mut sum, mut squares) = (0.0, 0.0);
+        for _ in 0..n / 2 {
+            let (a, b) = stream.normal_pair();
+            sum += a + b;
+            squares += a * a + b * b;
+        }
+        let n = f64::from(n);
+        // Five standard errors of the mean and of the variance.
+        assert!((sum / n).abs() < 5.0 / n.sqrt());
+        assert!((squares / n - 1.0).abs() < 5.0 * (2.0 / n).sqrt());
+    }
+
+    #[test]
+    fn bounded_integers_are_uniform() {
+        let mut stream = seeds(0).stream("below");
+        let mut counts = [0_i32; 7];
+        for _ in 0..70_000 {
+            counts[usize::try_from(stream.below(7)).unwrap()] += 1;
+        }
+        assert!(counts.iter().all(|c| (c - 10_000).abs() < 500), "{counts:?}");
+    }
+}
