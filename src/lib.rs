@@ -21,3 +21,7 @@ pub mod math;
 pub mod rng;
 pub mod table;
 pub mod units;
+
+// Layer 1: the described body and the described truth.
+pub mod robot;
+pub mod world;

@@ -1,0 +1,105 @@
+//! The body as described (footprint, drive, sensors), and the messages between body and mind.
+//!
+//! A mind (mapping, navigation, strategies) sees [`Scan`] and [`Odometry`] and answers with [`Twist`];
+//! nothing else crosses.
+
+mod message;
+
+pub use message::{Odometry, Scan, Twist};
+
+use crate::digest::{MeaningDigest, Sha256Digest};
+use crate::geometry::{Outline, Pose};
+use crate::json;
+use serde::Serialize;
+
+/// A wheeled robot as its URDF describes it, reduced to what matters in the plane.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Robot {
+    /// Name in the URDF.
+    pub name: String,
+    /// Outline of the body seen from above, in the base frame (m); convex.
+    pub footprint: Outline,
+    /// Lowest and highest point of the body above ground (m): what of the world it can touch.
+    pub body_z: [f64; 2],
+    /// Mass (kg), the sum over all links.
+    pub mass: f64,
+    /// How it drives.
+    pub drive: Drive,
+    /// The range scanner, if it has one.
+    pub lidar: Option<Lidar>,
+}
+
+impl Robot {
+    /// Digest of what the description means, whatever the file looked like.
+    pub fn meaning(&self) -> MeaningDigest {
+        MeaningDigest(Sha256Digest::of(json::canonical_of(self)))
+    }
+
+    /// Radius (m) of the smallest disc around the base frame's origin that holds the footprint.
+    pub fn circumscribed_radius(&self) -> f64 {
+        match &self.footprint {
+            Outline::Circle { center, radius } => center.norm() + radius,
+            Outline::Polygon(corners) => corners.iter().map(|c| c.norm()).fold(0.0, f64::max),
+        }
+    }
+}
+
+/// Wheels and their limits.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Drive {
+    /// Which plugin's geometry this is.
+    pub kind: DriveKind,
+    /// Distance between left and right wheels (m).
+    pub wheel_separation: f64,
+    /// Wheel diameter (m).
+    pub wheel_diameter: f64,
+    /// Highest linear speed (m/s), where the description limits it.
+    pub max_linear: Option<f64>,
+    /// Highest angular speed (rad/s), where the description limits it.
+    pub max_angular: Option<f64>,
+}
+
+/// The two drives of the studies' robots.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DriveKind {
+    /// Two driven wheels and casters.
+    Differential,
+    /// Wheels of each side turn together and skid in turns.
+    SkidSteer,
+}
+
+/// A planar range scanner. Angles in radians, counter-clockwise from its own x axis.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Lidar {
+    /// Name of the sensor in the description.
+    pub name: String,
+    /// Where it sits, in the base frame (m, rad).
+    pub mount: Pose,
+    /// Height of the scan plane above ground (m).
+    pub height: f64,
+    /// Number of beams, at least 2; the first looks along `min_angle`, the last along `max_angle`.
+    pub beams: u32,
+    /// Direction of the first beam (rad).
+    pub min_angle: f64,
+    /// Direction of the last beam (rad), above `min_angle`, less than a full turn away.
+    pub max_angle: f64,
+    /// Shortest range reported (m).
+    pub min_range: f64,
+    /// Longest range reported (m); nothing within it reads as infinity.
+    pub max_range: f64,
+    /// Scans per second (Hz).
+    pub rate_hz: f64,
+    /// Standard deviation of the Gaussian range noise (m).
+    pub noise_sd: f64,
+}
+
+impl Lidar {
+    /// Angle between neighbouring beams (rad).
+    pub fn increment(&self) -> f64 {
+        (self.max_angle - self.min_angle) / f64::from(self.beams - 1)
+    }
+}

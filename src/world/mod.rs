@@ -1,0 +1,102 @@
+//! The truth as described: solid things in named layers, regions, tags, starts and goals.
+//!
+//! The mind never imports this module. Metres and radians; z up from the floor.
+
+mod solid;
+
+pub use solid::{Body, Placement, Solid};
+
+use crate::digest::{MeaningDigest, Sha256Digest};
+use crate::geometry::{Bounds, Outline, Point, Pose};
+use crate::json;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// A building: everything a robot can see, touch or be told to reach.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct World {
+    /// Name, for people; not part of the meaning.
+    #[serde(skip)]
+    pub name: String,
+    /// Solid things, in the order written. Those of one layer need not stand together.
+    pub solids: Vec<Solid>,
+    /// Rooms and corridors.
+    pub regions: Vec<Region>,
+    /// What a logical camera can detect.
+    pub tags: Vec<Tag>,
+    /// Named start poses.
+    pub starts: BTreeMap<String, Pose>,
+    /// Named goals (m).
+    pub goals: BTreeMap<String, Point>,
+    /// What could not be read, in words, each naming the thing; never a silent hole.
+    #[serde(skip)]
+    pub warnings: Vec<String>,
+}
+
+/// A named part of the floor.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Region {
+    /// Name, unique in the world.
+    pub name: String,
+    /// Room or corridor.
+    pub kind: RegionKind,
+    /// Corners in order (m), at least three.
+    pub polygon: Vec<Point>,
+}
+
+/// The two kinds of region of the deadline study (section 3).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RegionKind {
+    /// A room.
+    Room,
+    /// A corridor.
+    Corridor,
+}
+
+/// A mark that a logical camera detects: an opaque id, a colour and a pose.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Tag {
+    /// Opaque id, unique in the world.
+    pub id: String,
+    /// Colour, by name.
+    pub color: String,
+    /// Where it stands and faces (m, rad).
+    pub pose: Pose,
+}
+
+impl World {
+    /// The names of all layers, sorted.
+    pub fn layers(&self) -> Vec<&str> {
+        let mut names: Vec<&str> = self.solids.iter().map(|s| s.layer.as_str()).collect();
+        names.sort_unstable();
+        names.dedup();
+        names
+    }
+
+    /// Outlines of everything cut by the plane at height `z` (m): what a lidar at that height sees.
+    pub fn slice(&self, z: f64) -> Vec<Outline> {
+        self.solids.iter().filter_map(|solid| solid.body.slice(z)).collect()
+    }
+
+    /// Outlines of everything between the heights `low` and `high` (m): what a body of that height touches.
+    pub fn contact(&self, low: f64, high: f64) -> Vec<Outline> {
+        self.solids.iter().filter_map(|solid| solid.body.shadow(low, high)).collect()
+    }
+
+    /// The smallest box around all solids.
+    pub fn bounds(&self) -> Bounds {
+        self.solids
+            .iter()
+            .filter_map(|solid| solid.body.shadow(f64::NEG_INFINITY, f64::INFINITY))
+            .fold(Bounds::EMPTY, |bounds, outline| bounds.union(outline.bounds()))
+    }
+
+    /// Digest of what the description means: not of names of files, comments or formatting.
+    pub fn meaning(&self) -> MeaningDigest {
+        MeaningDigest(Sha256Digest::of(json::canonical_of(self)))
+    }
+}

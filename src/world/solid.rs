@@ -1,0 +1,237 @@
+//! Solid things in three dimensions, and the two ways the plane sees them: cut by a lidar's scan plane, and
+//! as the shadow of what a robot's body could touch.
+
+use crate::geometry::{Outline, Point, convex_hull};
+use crate::math;
+use serde::Serialize;
+
+/// One solid thing.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Solid {
+    /// Name, for messages and drawings; not part of the meaning.
+    #[serde(skip)]
+    pub name: String,
+    /// The layer it belongs to (`walls`, `furniture`, ...).
+    #[serde(skip)]
+    pub layer: String,
+    /// Its shape and place.
+    pub body: Body,
+}
+
+/// Shape and place of a solid.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Body {
+    /// An upright prism over `outline` from `z[0]` to `z[1]` (m).
+    Prism {
+        /// Its outline (m).
+        outline: Outline,
+        /// Lower and upper end (m).
+        z: [f64; 2],
+    },
+    /// A box of `size` m along its own axes, centred on its placement.
+    Box {
+        /// Full lengths along its x, y and z (m).
+        size: [f64; 3],
+        /// Where its centre is and how it is turned.
+        placement: Placement,
+    },
+    /// A cylinder along its own z axis, centred on its placement.
+    Cylinder {
+        /// Radius (m).
+        radius: f64,
+        /// Length (m).
+        length: f64,
+        /// Where its centre is and how it is turned.
+        placement: Placement,
+    },
+}
+
+/// A rigid placement in space: SDF's `x y z roll pitch yaw`, fixed axes, applied roll first.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Placement {
+    /// Translation (m).
+    pub translation: [f64; 3],
+    /// Rotation matrix, row by row.
+    pub rotation: [[f64; 3]; 3],
+}
+
+impl Placement {
+    /// No translation and no rotation.
+    pub const IDENTITY: Self = Self {
+        translation: [0.0; 3],
+        rotation: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+    };
+
+    /// From SDF's six numbers (m, rad): R = Rz(yaw) Ry(pitch) Rx(roll).
+    pub fn from_xyz_rpy([x, y, z, roll, pitch, yaw]: [f64; 6]) -> Self {
+        let (sr, cr) = math::sin_cos(roll);
+        let (sp, cp) = math::sin_cos(pitch);
+        let (sy, cy) = math::sin_cos(yaw);
+        Self {
+            translation: [x, y, z],
+            rotation: [
+                [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+                [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+                [-sp, cp * sr, cp * cr],
+            ],
+        }
+    }
+
+    /// Takes a point from the placed frame to the outer one.
+    pub fn apply(&self, point: [f64; 3]) -> [f64; 3] {
+        let mut out = self.translation;
+        for (value, row) in out.iter_mut().zip(&self.rotation) {
+            *value += row[0] * point[0] + row[1] * point[1] + row[2] * point[2];
+        }
+        out
+    }
+
+    /// The placement `inner`, given in this one's frame, in the outer frame.
+    #[must_use]
+    pub fn compose(&self, inner: &Self) -> Self {
+        let mut rotation = [[0.0; 3]; 3];
+        for (i, row) in rotation.iter_mut().enumerate() {
+            for (j, value) in row.iter_mut().enumerate() {
+                *value = (0..3).map(|k| self.rotation[i][k] * inner.rotation[k][j]).sum();
+            }
+        }
+        Self { translation: self.apply(inner.translation), rotation }
+    }
+}
+
+/// Corners used for the round ends of a tilted cylinder: the outline is within 0.5 % of its radius.
+const ROUND: u32 = 32;
+
+impl Body {
+    /// Outline of the cut at height `z` (m), if the plane meets the body.
+    pub fn slice(&self, z: f64) -> Option<Outline> {
+        self.shadow(z, z)
+    }
+
+    /// Outline of the part between the heights `low` and `high` (m) seen from above, if there is any.
+    /// Exact for boxes and upright prisms and cylinders; the hull of a 32-gon for tilted cylinders.
+    pub fn shadow(&self, low: f64, high: f64) -> Option<Outline> {
+        match self {
+            Self::Prism { outline, z } => (z[0] <= high && z[1] >= low).then(|| outline.clone()),
+            Self::Cylinder { radius, length, placement } if placement.is_upright() => {
+                let [x, y, z] = placement.translation;
+                (z - length / 2.0 <= high && z + length / 2.0 >= low)
+                    .then(|| Outline::Circle { center: Point::new(x, y), radius: *radius })
+            }
+            Self::Cylinder { radius, length, placement } => {
+                let rim = |end: f64, i: u32| {
+                    let angle = std::f64::consts::TAU * f64::from(i) / f64::from(ROUND);
+                    let (sin, cos) = math::sin_cos(angle);
+                    placement.apply([radius * cos, radius * sin, end * length / 2.0])
+                };
+                let corners: Vec<_> = [-1.0, 1.0]
+                    .iter()
+                    .flat_map(|&end| (0..ROUND).map(move |i| rim(end, i)))
+                    .collect();
+                hull_between(&corners, low, high)
+            }
+            Self::Box { size, placement } => {
+                let mut corners = Vec::with_capacity(8);
+                for sx in [-0.5, 0.5] {
+                    for sy in [-0.5, 0.5] {
+                        for sz in [-0.5, 0.5] {
+                            corners.push(placement.apply([
+                                sx * size[0],
+                                sy * size[1],
+                                sz * size[2],
+                            ]));
+                        }
+                    }
+                }
+                hull_between(&corners, low, high)
+            }
+        }
+    }
+}
+
+impl Placement {
+    fn is_upright(&self) -> bool {
+        self.rotation[2][2].abs() == 1.0
+    }
+}
+
+/// Hull, seen from above, of the convex body spanned by `corners`, cut to `low..=high`.
+///
+/// A section of a convex body is spanned by the corners within it and by where the lines between corners on
+/// either side of a cutting plane pierce it.
+fn hull_between(corners: &[[f64; 3]], low: f64, high: f64) -> Option<Outline> {
+    let mut points: Vec<Point> = corners
+        .iter()
+        .filter(|c| (low..=high).contains(&c[2]))
+        .map(|c| Point::new(c[0], c[1]))
+        .collect();
+    for plane in [low, high] {
+        if !plane.is_finite() {
+            continue;
+        }
+        for (i, a) in corners.iter().enumerate() {
+            for b in &corners[i + 1..] {
+                if (a[2] < plane) != (b[2] < plane) && a[2] != b[2] {
+                    let t = (plane - a[2]) / (b[2] - a[2]);
+                    points.push(Point::new(a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])));
+                }
+            }
+        }
+    }
+    let hull = convex_hull(&points);
+    (hull.len() >= 3).then_some(Outline::Polygon(hull))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::FRAC_PI_2;
+
+    fn size(outline: &Outline) -> (f64, f64) {
+        let bounds = outline.bounds();
+        (bounds.width(), bounds.height())
+    }
+
+    #[test]
+    fn a_rolled_car_shows_its_side() {
+        // The cars of the open world: 4.5 x 4 x 2 m with roll 1.571 stand on their side.
+        let placement = Placement::from_xyz_rpy([0.0, 0.0, 1.0, FRAC_PI_2, 0.0, 0.0]);
+        let car = Body::Box { size: [4.5, 4.0, 2.0], placement };
+        let (width, height) = size(&car.slice(0.16).unwrap());
+        assert!((width - 4.5).abs() < 1e-9 && (height - 2.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_lintel_is_above_the_lidar_but_a_tall_body_could_touch_it() {
+        let placement = Placement::from_xyz_rpy([1.0, 2.0, 2.25, 0.0, 0.0, 0.3]);
+        let lintel = Body::Box { size: [0.9, 0.15, 0.5], placement };
+        assert_eq!(lintel.slice(0.1602), None);
+        assert_eq!(lintel.shadow(0.0, 0.43), None);
+        assert!(lintel.shadow(0.0, 2.1).is_some());
+    }
+
+    #[test]
+    fn a_tilted_box_is_cut_where_the_plane_meets_it() {
+        // A 45 degree wedge: a unit cube pitched by a quarter of pi, cut through its centre, is sqrt(2) long.
+        let placement = Placement::from_xyz_rpy([0.0, 0.0, 0.0, 0.0, FRAC_PI_2 / 2.0, 0.0]);
+        let cube = Body::Box { size: [1.0, 1.0, 1.0], placement };
+        let (width, height) = size(&cube.slice(0.0).unwrap());
+        assert!((width - 2.0_f64.sqrt()).abs() < 1e-9 && (height - 1.0).abs() < 1e-9);
+        let (width, _) = size(&cube.slice(0.5).unwrap());
+        assert!((width - (2.0_f64.sqrt() - 1.0)).abs() < 1e-9);
+    }
+
+    #[test]
+    fn composed_placements_apply_inner_first() {
+        let outer = Placement::from_xyz_rpy([1.0, 0.0, 0.0, 0.0, 0.0, FRAC_PI_2]);
+        let inner = Placement::from_xyz_rpy([2.0, 0.0, 0.0, 0.1, 0.2, 0.3]);
+        let composed = outer.compose(&inner).apply([0.5, -0.25, 2.0]);
+        let stepwise = outer.apply(inner.apply([0.5, -0.25, 2.0]));
+        for (a, b) in composed.iter().zip(stepwise) {
+            assert!((a - b).abs() < 1e-12);
+        }
+    }
+}
