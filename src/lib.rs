@@ -14,6 +14,8 @@
 
 // Layer 0: numbers, bytes and shapes.
 pub mod digest;
+pub mod document;
+pub mod figure;
 pub mod geometry;
 pub mod grid;
 pub mod json;

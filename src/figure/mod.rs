@@ -1,0 +1,3 @@
+//! Pictures as deterministic SVG: no fonts, no clock, no platform arithmetic.
+
+pub mod svg;
