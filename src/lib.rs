@@ -27,3 +27,6 @@ pub mod units;
 // Layer 1: the described body and the described truth.
 pub mod robot;
 pub mod world;
+
+// Layer 3: the studies.
+pub mod studies;

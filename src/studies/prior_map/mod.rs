@@ -1,0 +1,33 @@
+//! The prior-knowledge study: M. Luperto, M. Antonazzi, F. Amigoni, N. A. Borghese, "Robot exploration of
+//! indoor environments using incomplete and inaccurate prior knowledge", Robotics and Autonomous Systems 2020.
+//!
+//! A lidar robot maps an indoor environment; the next frontier maximises u(p) (equations 1 to 4), whose
+//! information gain I(p) may use a prior map (section 3.2).
+
+mod parameters;
+
+pub use parameters::{
+    Coverage, Exploration, Gain, Mapping, Measurement, Mission, Navigation, Parameters, Reselect,
+    Sensing, Strategy,
+};
+
+use crate::geometry::Pose;
+use crate::grid::OccupancyGrid;
+use crate::robot::Robot;
+use crate::world::World;
+use std::sync::Arc;
+
+/// Everything a trial of this study needs.
+#[derive(Debug, Clone)]
+pub struct Setup {
+    /// The true world.
+    pub world: Arc<World>,
+    /// The robot.
+    pub robot: Arc<Robot>,
+    /// Prior knowledge PK_E, aligned to the world's frame; `None` for the strategy without.
+    pub prior: Option<Arc<OccupancyGrid>>,
+    /// Where the robot begins, in the world's frame (m, rad).
+    pub start: Pose,
+    /// Everything else.
+    pub parameters: Parameters,
+}

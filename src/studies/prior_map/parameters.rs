@@ -1,0 +1,184 @@
+//! Parameters of the prior-knowledge study. Those the paper states have its values as default; those it
+//! leaves out have what its authors' released configuration sets (measured facts), and a manifest that
+//! relies on one says so with a `why`.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+macro_rules! parameters {
+    ($(#[$doc:meta])* $name:ident { $($(#[$field_doc:meta])* $field:ident: $type:ty = $default:expr,)* }) => {
+        $(#[$doc])*
+        #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+        #[serde(rename_all = "kebab-case", deny_unknown_fields, default)]
+        pub struct $name {
+            $($(#[$field_doc])* pub $field: $type,)*
+        }
+
+        impl Default for $name {
+            fn default() -> Self {
+                Self { $($field: $default,)* }
+            }
+        }
+    };
+}
+
+parameters!(
+    /// Everything a trial needs besides robot, world, prior and start.
+    Parameters {
+        /// The range scanner as the study used it.
+        sensing: Sensing = Sensing::default(),
+        /// Building the occupancy map M_E.
+        mapping: Mapping = Mapping::default(),
+        /// Planning and driving to a location.
+        navigation: Navigation = Navigation::default(),
+        /// Choosing the next location.
+        exploration: Exploration = Exploration::default(),
+        /// What is measured.
+        measurement: Measurement = Measurement::default(),
+        /// When a trial ends.
+        mission: Mission = Mission::default(),
+    }
+);
+
+parameters!(
+    /// The range scanner as the study used it (section 4.1). What is absent is the robot's own.
+    Sensing {
+        /// Longest range reported (m), above 0.
+        range_m: Option<f64> = None,
+        /// Standard deviation of the Gaussian noise on ranges (m), 0 or more.
+        range_noise_sd_m: Option<f64> = None,
+        /// Standard deviation of the error of the executed linear speed, as a share of the command, 0 to 1.
+        drive_noise_linear: f64 = 0.0,
+        /// Standard deviation of the error of the executed angular speed, as a share of the command, 0 to 1.
+        drive_noise_angular: f64 = 0.0,
+        /// How long one error of the drive lasts (s), above 0.
+        drive_noise_correlation_s: f64 = 0.5,
+        /// Standard deviation of odometry's error of distance, per square root of metre (m), 0 or more.
+        odometry_noise_distance: f64 = 0.0,
+        /// Standard deviation of odometry's error of heading, per square root of radian turned (rad), 0 or more.
+        odometry_noise_heading: f64 = 0.0,
+    }
+);
+
+parameters!(
+    /// Building the map from scans, in GMapping's manner.
+    Mapping {
+        /// Number of particles; 1 is mapping with known poses, as the simulated study really ran.
+        particles: u32 = 1,
+        /// Side of a map cell (m), above 0.
+        resolution_m: f64 = 0.1,
+        /// A scan is taken into the map after this much travel (m), above 0.
+        keyframe_distance_m: f64 = 1.0,
+        /// ... or after turning this much (rad), above 0.
+        keyframe_turn_rad: f64 = 0.5,
+        /// Beams are cut to this range (m); `null` means the sensor's own range.
+        clip_range_m: Option<f64> = None,
+        /// A visited cell is occupied where more than this share of its visits were hits, 0 to 1.
+        hit_ratio: f64 = 0.05,
+    }
+);
+
+parameters!(
+    /// Planning on the inflated map and driving, after Nav2D's behaviour.
+    Navigation {
+        /// Obstacles are inflated over this many cells, at least 1.
+        inflation_radius_cells: u32 = 9,
+        /// Inflated cost (0 to 100) from which a cell counts as lethal when frontiers are sought.
+        frontier_lethal_cost: u32 = 60,
+        /// Inflated cost (0 to 100) from which the planner does not cross a cell.
+        planner_lethal_cost: u32 = 75,
+        /// Extra cost of a step per unit of inflated cost / 100: length x (1 + this x cost / 100).
+        cost_weight: f64 = 10.0,
+        /// Highest linear speed (m/s), above 0.
+        max_linear_m_s: f64 = 1.0,
+        /// Highest angular speed when turning in place (rad/s), above 0.
+        max_angular_rad_s: f64 = 1.0,
+        /// Radius of the disc that must stay clear of obstacles when driving (m), above 0.
+        robot_radius_m: f64 = 0.25,
+        /// A target counts as reached within this distance (m), above 0.
+        goal_tolerance_m: f64 = 0.3,
+    }
+);
+
+parameters!(
+    /// Choosing the next location (section 3).
+    Exploration {
+        /// How the next location is chosen.
+        strategy: Strategy = Strategy::Utility,
+        /// Weight of distance against information gain in equation 1, 0 to 1.
+        alpha: f64 = 0.5,
+        /// How I(p) is computed.
+        gain: Gain = Gain::Paper,
+        /// When the next location is chosen anew.
+        reselect: Reselect = Reselect::OnArrival,
+        /// Under `reselect: continuous`, the time between choices (s), above 0.
+        reselect_period_s: f64 = 3.2,
+        /// ... and when the remaining plan is cheaper than `reselect-near-cost`.
+        reselect_near_period_s: f64 = 1.2,
+        /// Weighted length (m) of the remaining plan below which the shorter period holds.
+        reselect_near_cost: f64 = 3.0,
+        /// Frontiers with fewer cells are left out.
+        minimum_frontier_cells: u32 = 1,
+        /// Whether known obstacles hide what lies behind them when there is no prior (Figure 2b leaves it open).
+        known_obstacles_occlude: bool = true,
+    }
+);
+
+/// How the next location is chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Strategy {
+    /// The largest u(p) of equations 1 to 4.
+    Utility,
+    /// The nearest frontier (Yamauchi 1997), a further baseline.
+    NearestFrontier,
+}
+
+/// How the information gain I(p) is computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Gain {
+    /// As section 3.2 defines it: every unknown cell within range that is free and visible in the prior and
+    /// visible in the map.
+    Paper,
+}
+
+/// When the next location is chosen anew.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Reselect {
+    /// When the location is reached, or cannot be (section 3.1, steps a to d).
+    OnArrival,
+    /// Every few seconds, whether or not it was reached, as the released program did.
+    Continuous,
+}
+
+parameters!(
+    /// What is measured.
+    Measurement {
+        /// What coverage counts.
+        coverage: Coverage = Coverage::Paper,
+    }
+);
+
+/// What coverage counts, against the map that ideal exploration of the same world would make.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Coverage {
+    /// Section 4: the share of the free area of E mapped (as free) in M_E.
+    Paper,
+    /// As the released program logged it: the share of known cells, free or occupied, that are known.
+    Released,
+}
+
+parameters!(
+    /// When a trial ends, besides running out of frontiers.
+    Mission {
+        /// Simulated time after which a trial is ended (s), above 0.
+        time_limit_s: f64 = 1800.0,
+        /// A robot that has not moved `stuck-distance-m` within this time (s) is stuck, above 0.
+        stuck_after_s: f64 = 60.0,
+        /// See `stuck-after-s` (m), above 0.
+        stuck_distance_m: f64 = 0.5,
+    }
+);

@@ -1,0 +1,118 @@
+//! What a trial yields: one canonical JSON line.
+
+use super::Condition;
+use crate::digest::TrialKey;
+use crate::json;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Why a trial ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Outcome {
+    /// Prior map: no frontier is left that the robot could go to.
+    Explored,
+    /// Prior map: the robot could not go on to any frontier, or made no progress.
+    Stuck,
+    /// Prior map: the time limit of the manifest was reached.
+    TimeLimit,
+    /// The program failed inside the trial; the record says how. Never stored.
+    Panicked,
+}
+
+impl Outcome {
+    /// The name in tables and records.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Explored => "explored",
+            Self::Stuck => "stuck",
+            Self::TimeLimit => "time-limit",
+            Self::Panicked => "panicked",
+        }
+    }
+}
+
+/// One point of a trial's curve.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct SeriesPoint {
+    /// Simulated time since the trial began (s).
+    pub time_s: f64,
+    /// Distance travelled (m).
+    pub distance_m: f64,
+    /// Coverage (percent, 0 to 100).
+    pub coverage_percent: f64,
+}
+
+/// What came out of one trial.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct TrialRecord {
+    /// The trial this belongs to.
+    pub key: TrialKey,
+    /// Factor values of its cell, in the manifest's order.
+    pub condition: Vec<(String, String)>,
+    /// Number within the cell, from 0.
+    pub trial: u32,
+    /// Why it ended.
+    pub outcome: Outcome,
+    /// How, in words, where the outcome alone does not say; empty otherwise.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub cause: String,
+    /// Named measures with their unit in the name; `null` where a trial never got there.
+    pub measures: BTreeMap<String, Option<f64>>,
+    /// The trial's curve, at the first crossing of every whole percent and at every 10 s.
+    pub series: Vec<SeriesPoint>,
+    /// Simulated time the trial took (s).
+    pub sim_seconds: f64,
+    /// State hashes, one every 10 s of simulated time, each over the state and its predecessor (16 hex
+    /// digits): the first that differs names the first divergent step.
+    pub chain: Vec<String>,
+}
+
+impl TrialRecord {
+    /// The record of a trial that panicked with `cause`.
+    pub fn panicked(spec: &super::TrialSpec, cause: String) -> Self {
+        Self {
+            key: spec.key,
+            condition: spec.condition.0.clone(),
+            trial: spec.trial,
+            outcome: Outcome::Panicked,
+            cause,
+            measures: BTreeMap::new(),
+            series: Vec::new(),
+            sim_seconds: 0.0,
+            chain: Vec::new(),
+        }
+    }
+
+    /// The cell it belongs to.
+    pub fn condition(&self) -> Condition {
+        Condition(self.condition.clone())
+    }
+
+    /// The canonical line, without its line feed.
+    pub fn to_line(&self) -> String {
+        json::canonical_of(self)
+    }
+
+    /// Reads a line.
+    ///
+    /// # Errors
+    /// Where it is not the JSON of a record, in words.
+    pub fn from_line(line: &str) -> Result<Self, String> {
+        serde_json::from_str(line).map_err(|e| e.to_string())
+    }
+
+    /// The first instant (s of simulated time) after which this record and `other` differ, by their hash
+    /// chains; `None` where the chains agree as far as both go.
+    pub fn first_divergence(&self, other: &Self) -> Option<f64> {
+        let common = self.chain.len().min(other.chain.len());
+        let first =
+            (0..common)
+                .find(|&i| self.chain[i] != other.chain[i])
+                .or((self.chain.len() != other.chain.len()).then_some(common))?;
+        #[expect(clippy::cast_precision_loss, reason = "chains are short")]
+        Some(first as f64 * 10.0)
+    }
+}

@@ -1,0 +1,77 @@
+//! A trial seen in full: what a replay shows. Produced on demand by re-enacting, never stored.
+
+use crate::geometry::{Outline, Point, Pose};
+use crate::grid::{Cell, GridFrame, Occupancy, OccupancyGrid};
+use serde::Serialize;
+
+/// Everything that happened in one trial.
+#[derive(Debug, Clone, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Recording {
+    /// Outlines of the true world at the lidar's height (m).
+    pub world: Vec<Outline>,
+    /// Outline of the robot in its base frame (m).
+    pub footprint: Outline,
+    /// The prior map, if the trial had one, in the world's frame.
+    #[serde(skip)]
+    pub prior: Option<OccupancyGrid>,
+    /// Where the robot's own map lies, in the world's frame.
+    pub map_frame: GridFrame,
+    /// What happened, in order of time.
+    pub frames: Vec<Frame>,
+}
+
+/// One instant. What did not change since the frame before is left out.
+#[derive(Debug, Clone, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Frame {
+    /// Simulated time (s).
+    pub time_s: f64,
+    /// True pose of the robot in the world (m, rad).
+    pub pose: Pose,
+    /// Distance travelled (m).
+    pub distance_m: f64,
+    /// Coverage (percent).
+    pub coverage_percent: f64,
+    /// Where each beam ended (m, world frame), every few beams, when a scan was taken into the map.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub scan: Option<Vec<Point>>,
+    /// Cells of the robot's map that changed, and what they hold now.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub map_changes: Vec<(Cell, Occupancy)>,
+    /// A decision taken now.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub decision: Option<Decision>,
+    /// The planned path (m, world frame), when it changed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub path: Option<Vec<Point>>,
+    /// Something worth a line of text.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub event: Option<String>,
+}
+
+/// A choice among frontiers, with everything it was made on.
+#[derive(Debug, Clone, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Decision {
+    /// All frontiers, in the order they were found.
+    pub frontiers: Vec<FrontierView>,
+    /// Index of the chosen one.
+    pub chosen: Option<usize>,
+}
+
+/// One frontier as the strategy saw it.
+#[derive(Debug, Clone, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct FrontierView {
+    /// Centres of its cells (m, world frame).
+    pub cells: Vec<Point>,
+    /// The candidate location p (m, world frame).
+    pub candidate: Point,
+    /// D(p, pR) (m).
+    pub distance_m: f64,
+    /// I(p) (m²).
+    pub gain_m2: f64,
+    /// u(p), in 0..=1.
+    pub utility: f64,
+}
