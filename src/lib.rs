@@ -28,5 +28,8 @@ pub mod units;
 pub mod robot;
 pub mod world;
 
+// Layer 2: the truth in motion, and the parts of a mind.
+pub mod sim;
+
 // Layer 3: the studies.
 pub mod studies;

@@ -1,0 +1,105 @@
+//! From commanded to executed velocity: limits of the drive and errors of the actuators.
+
+use crate::rng::{Seeds, Stream};
+use crate::robot::{self, Twist};
+use crate::units::{Seconds, Tick};
+
+/// Errors of the executed velocity, each a share of the command that holds for a while.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DriveNoise {
+    /// Standard deviation of the error of linear speed, as a share of the command.
+    pub linear: f64,
+    /// Standard deviation of the error of angular speed, as a share of the command.
+    pub angular: f64,
+    /// How long one error lasts. A time, so that it does not depend on the control rate.
+    pub correlation: Seconds,
+}
+
+impl DriveNoise {
+    /// A drive that does what it is told.
+    pub const NONE: Self = Self { linear: 0.0, angular: 0.0, correlation: Seconds(1.0) };
+}
+
+#[derive(Debug)]
+pub(super) struct Drive {
+    noise: DriveNoise,
+    hold: Tick,
+    max_linear: f64,
+    max_angular: f64,
+    stream: Stream,
+    command: Twist,
+    /// Number of the current error and its two factors.
+    current: (u64, f64, f64),
+}
+
+impl Drive {
+    pub(super) fn new(noise: DriveNoise, limits: &robot::Drive, seeds: &Seeds) -> Self {
+        let mut drive = Self {
+            noise,
+            hold: Tick(Tick::at_or_after(noise.correlation).0.max(1)),
+            max_linear: limits.max_linear.unwrap_or(f64::INFINITY),
+            max_angular: limits.max_angular.unwrap_or(f64::INFINITY),
+            stream: seeds.stream("drive-noise"),
+            command: Twist::STOP,
+            current: (0, 1.0, 1.0),
+        };
+        drive.draw(0);
+        drive
+    }
+
+    pub(super) fn command(&mut self, twist: Twist) {
+        self.command = Twist {
+            linear: twist.linear.clamp(-self.max_linear, self.max_linear),
+            angular: twist.angular.clamp(-self.max_angular, self.max_angular),
+        };
+    }
+
+    /// The velocity executed at `now`.
+    pub(super) fn executed(&mut self, now: Tick) -> Twist {
+        let number = now.0 / self.hold.0;
+        if number != self.current.0 {
+            self.draw(number);
+        }
+        let (_, linear, angular) = self.current;
+        Twist { linear: self.command.linear * linear, angular: self.command.angular * angular }
+    }
+
+    fn draw(&mut self, number: u64) {
+        let (linear, angular) = self.stream.at(number).normal_pair();
+        self.current =
+            (number, 1.0 + self.noise.linear * linear, 1.0 + self.noise.angular * angular);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::DriveKind;
+
+    fn limits() -> robot::Drive {
+        robot::Drive {
+            kind: DriveKind::Differential,
+            wheel_separation: 0.2,
+            wheel_diameter: 0.07,
+            max_linear: Some(0.5),
+            max_angular: None,
+        }
+    }
+
+    #[test]
+    fn limits_hold_and_errors_last_their_time() {
+        let noise = DriveNoise { linear: 0.25, angular: 0.25, correlation: Seconds(0.5) };
+        let seeds = Seeds::new(1, vec![]);
+        let mut drive = Drive::new(noise, &limits(), &seeds);
+        drive.command(Twist { linear: 2.0, angular: 1.0 });
+        let at = |drive: &mut Drive, s: f64| drive.executed(Tick::at_or_after(Seconds(s))).linear;
+        assert_eq!(at(&mut drive, 0.0), at(&mut drive, 0.49));
+        assert_ne!(at(&mut drive, 0.49), at(&mut drive, 0.5));
+        let first = at(&mut drive, 0.0);
+        assert_eq!(first, at(&mut Drive::new(noise, &limits(), &seeds), 0.0) * 0.0 + first);
+
+        let mut exact = Drive::new(DriveNoise::NONE, &limits(), &seeds);
+        exact.command(Twist { linear: 2.0, angular: -3.0 });
+        assert_eq!(exact.executed(Tick(77)), Twist { linear: 0.5, angular: -3.0 });
+    }
+}
