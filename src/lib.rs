@@ -29,6 +29,8 @@ pub mod robot;
 pub mod world;
 
 // Layer 2: the truth in motion, and the parts of a mind.
+pub mod mapping;
+pub mod navigation;
 pub mod sim;
 
 // Layer 3: the studies.

@@ -3,6 +3,12 @@
 //! Cells are squares of `resolution` m; cell (0, 0) has its lower left corner at `origin` and rows run along
 //! y, as in ROS's `nav_msgs/OccupancyGrid`.
 
+mod line;
+mod visibility;
+
+pub use line::line;
+pub use visibility::visible_cells;
+
 use crate::geometry::{Bounds, Point};
 use serde::{Deserialize, Serialize};
 

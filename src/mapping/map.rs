@@ -1,0 +1,266 @@
+//! Hits and visits per cell, and the occupancy they mean.
+
+use crate::geometry::{Bounds, Point, Pose};
+use crate::grid::{Cell, Grid, GridFrame, Occupancy, OccupancyGrid, line};
+use crate::robot::Scan;
+
+/// How a scan is taken into the map.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ScanRule {
+    /// Side of a cell (m).
+    pub resolution: f64,
+    /// Beams are cut to this range (m): beyond it they mark free space and no hit. GMapping's `maxUrange`.
+    pub clip_range: f64,
+    /// A visited cell is occupied where more than this share of its visits were hits. GMapping's `occ_thresh`.
+    pub hit_ratio: f64,
+}
+
+/// A cell that changed, as a place that stays valid when the map grows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Change {
+    /// The cell on the endless lattice whose cell (0, 0) has its corner at the map frame's origin.
+    pub cell: Cell,
+    /// What it held.
+    pub from: Occupancy,
+    /// What it holds now.
+    pub to: Occupancy,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Count {
+    hits: u16,
+    visits: u16,
+}
+
+/// A map that grows as the robot sees more.
+#[derive(Debug, Clone)]
+pub struct OccupancyMap {
+    rule: ScanRule,
+    counts: Grid<Count>,
+    grid: OccupancyGrid,
+    /// Lattice cell of the grid's cell (0, 0).
+    offset: Cell,
+    changes: Vec<Change>,
+}
+
+/// Cells added beyond what is needed when the map grows, so that it grows seldom.
+const MARGIN: i32 = 32;
+
+impl OccupancyMap {
+    /// An empty map around the origin.
+    pub fn new(rule: ScanRule) -> Self {
+        let frame =
+            GridFrame { resolution: rule.resolution, origin: Point::ZERO, width: 0, height: 0 };
+        Self {
+            rule,
+            counts: Grid::filled(frame, Count { hits: 0, visits: 0 }),
+            grid: OccupancyGrid::filled(frame, Occupancy::Unknown),
+            offset: Cell::new(0, 0),
+            changes: Vec::new(),
+        }
+    }
+
+    /// The map so far.
+    pub fn grid(&self) -> &OccupancyGrid {
+        &self.grid
+    }
+
+    /// The lattice cell of the grid's cell (0, 0): lattice = grid cell + offset.
+    pub fn offset(&self) -> Cell {
+        self.offset
+    }
+
+    /// What the map says of the lattice `cell`.
+    pub fn at_lattice(&self, cell: Cell) -> Occupancy {
+        self.grid.at(Cell::new(cell.x - self.offset.x, cell.y - self.offset.y))
+    }
+
+    /// Takes in `scan`, taken with the robot at `pose`, and tells the cells that changed.
+    ///
+    /// Per beam: nothing within the sensor's range marks nothing; otherwise the cells before the end are
+    /// visited, and the end is hit unless the beam was cut (prior-map facts, section 4).
+    pub fn integrate(&mut self, pose: Pose, scan: &Scan) -> &[Change] {
+        self.changes.clear();
+        let sensor = pose.compose(scan.mount);
+        let ends: Vec<(Point, bool)> = (0..scan.ranges.len())
+            .filter_map(|i| {
+                let range = scan.ranges[i];
+                if !range.is_finite() {
+                    return None;
+                }
+                let cut = range.min(self.rule.clip_range);
+                let angle = scan.angle(i);
+                let local =
+                    Point::new(cut * crate::math::cos(angle), cut * crate::math::sin(angle));
+                Some((sensor.transform(local), range < self.rule.clip_range))
+            })
+            .collect();
+        let reach =
+            ends.iter().fold(Bounds::EMPTY.including(sensor.position()), |b, e| b.including(e.0));
+        self.grow_to(reach);
+        let frame = *self.grid.frame();
+        let from = frame.cell_at(sensor.position());
+        for (end, is_hit) in ends {
+            let to = frame.cell_at(end);
+            for cell in line(from, to) {
+                if cell != to {
+                    self.visit(cell, false);
+                } else if is_hit {
+                    self.visit(cell, true);
+                }
+            }
+        }
+        // A cell may have changed back and forth within the scan: tell only what is different in the end.
+        let (grid, offset) = (&self.grid, self.offset);
+        self.changes.retain_mut(|change| {
+            let cell = Cell::new(change.cell.x - offset.x, change.cell.y - offset.y);
+            change.to = grid.at(cell);
+            change.to != change.from
+        });
+        self.changes.sort_by_key(|c| (c.cell.y, c.cell.x));
+        // The first report of a cell tells what it held before the scan; sorting was stable.
+        self.changes.dedup_by_key(|c| c.cell);
+        &self.changes
+    }
+
+    fn visit(&mut self, cell: Cell, is_hit: bool) {
+        let Some(index) = self.grid.frame().index(cell) else { return };
+        let count = &mut self.counts.values_mut()[index];
+        count.visits = count.visits.saturating_add(1);
+        count.hits = count.hits.saturating_add(u16::from(is_hit));
+        let ratio = f64::from(count.hits) / f64::from(count.visits);
+        let now = if ratio > self.rule.hit_ratio { Occupancy::Occupied } else { Occupancy::Free };
+        let was = std::mem::replace(&mut self.grid.values_mut()[index], now);
+        if was != now {
+            let lattice = Cell::new(cell.x + self.offset.x, cell.y + self.offset.y);
+            self.changes.push(Change { cell: lattice, from: was, to: now });
+        }
+    }
+
+    fn grow_to(&mut self, bounds: Bounds) {
+        let old = *self.grid.frame();
+        let resolution = self.rule.resolution;
+        let lattice = GridFrame { resolution, origin: Point::ZERO, width: 0, height: 0 };
+        let (low, high) = (lattice.cell_at(bounds.min), lattice.cell_at(bounds.max));
+        let (old_low, old_high) =
+            (self.offset, Cell::new(self.offset.x + old.width - 1, self.offset.y + old.height - 1));
+        let inside = !old.is_empty()
+            && low.x >= old_low.x
+            && low.y >= old_low.y
+            && high.x <= old_high.x
+            && high.y <= old_high.y;
+        if inside {
+            return;
+        }
+        let (low, high) = if old.is_empty() {
+            (low, high)
+        } else {
+            (
+                Cell::new(low.x.min(old_low.x), low.y.min(old_low.y)),
+                Cell::new(high.x.max(old_high.x), high.y.max(old_high.y)),
+            )
+        };
+        let offset = Cell::new(low.x - MARGIN, low.y - MARGIN);
+        let frame = GridFrame {
+            resolution,
+            origin: Point::new(f64::from(offset.x) * resolution, f64::from(offset.y) * resolution),
+            width: high.x - low.x + 1 + 2 * MARGIN,
+            height: high.y - low.y + 1 + 2 * MARGIN,
+        };
+        let mut counts = Grid::filled(frame, Count { hits: 0, visits: 0 });
+        let mut grid = OccupancyGrid::filled(frame, Occupancy::Unknown);
+        for cell in old.cells() {
+            let there =
+                Cell::new(cell.x + self.offset.x - offset.x, cell.y + self.offset.y - offset.y);
+            if let (Some(count), Some(value)) = (self.counts.get(cell), self.grid.get(cell)) {
+                counts.set(there, count);
+                grid.set(there, value);
+            }
+        }
+        (self.counts, self.grid, self.offset) = (counts, grid, offset);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::units::Tick;
+    use proptest::prelude::*;
+
+    const RULE: ScanRule = ScanRule { resolution: 0.1, clip_range: 5.0, hit_ratio: 0.05 };
+
+    fn scan(ranges: Vec<f64>) -> Scan {
+        #[expect(clippy::cast_precision_loss, reason = "small")]
+        let increment = std::f64::consts::PI / (ranges.len().max(2) - 1) as f64;
+        Scan {
+            stamp: Tick(0),
+            mount: Pose::new(0.1, 0.0, 0.0),
+            min_angle: -std::f64::consts::FRAC_PI_2,
+            increment,
+            min_range: 0.01,
+            max_range: 10.0,
+            ranges,
+        }
+    }
+
+    #[test]
+    fn a_beam_marks_free_up_to_its_end_and_the_end_occupied() {
+        let mut map = OccupancyMap::new(RULE);
+        map.integrate(Pose::new(0.05, 0.05, 0.0), &scan(vec![f64::INFINITY, 2.0, f64::INFINITY]));
+        let at = |x: f64| map.grid().at(map.grid().frame().cell_at(Point::new(x, 0.05)));
+        assert_eq!(
+            (at(0.2), at(2.0), at(2.15), at(2.3)),
+            (Occupancy::Free, Occupancy::Free, Occupancy::Occupied, Occupancy::Unknown)
+        );
+    }
+
+    #[test]
+    fn a_cut_beam_marks_no_hit_and_no_return_marks_nothing() {
+        let mut map = OccupancyMap::new(RULE);
+        map.integrate(Pose::new(0.05, 0.05, 0.0), &scan(vec![f64::INFINITY, 9.0, f64::INFINITY]));
+        assert_eq!(map.grid().count(Occupancy::Occupied), 0);
+        assert_eq!(map.grid().count(Occupancy::Free), 50);
+    }
+
+    #[test]
+    fn one_hit_in_nineteen_visits_is_an_obstacle_and_in_twenty_is_not() {
+        let mut map = OccupancyMap::new(RULE);
+        let near = scan(vec![f64::INFINITY, 2.0, f64::INFINITY]);
+        let far = scan(vec![f64::INFINITY, 3.0, f64::INFINITY]);
+        let pose = Pose::new(0.05, 0.05, 0.0);
+        map.integrate(pose, &near);
+        for _ in 0..18 {
+            map.integrate(pose, &far);
+        }
+        let cell = map.grid().frame().cell_at(Point::new(2.15, 0.05));
+        assert_eq!(map.grid().at(cell), Occupancy::Occupied, "1 of 19");
+        let changes = map.integrate(pose, &far).to_vec();
+        assert_eq!(map.grid().at(cell), Occupancy::Free, "1 of 20");
+        assert_eq!(changes.len(), 1);
+        assert_eq!((changes[0].from, changes[0].to), (Occupancy::Occupied, Occupancy::Free));
+    }
+
+    proptest! {
+        /// Growing never loses a known cell, and what is told as changed is exactly what changed.
+        #[test]
+        fn changes_tell_the_whole_story(
+            poses in prop::collection::vec((-20.0..20.0, -20.0..20.0, -3.0..3.0), 1..6),
+            ranges in prop::collection::vec(0.05..9.0, 5..20),
+        ) {
+            let mut map = OccupancyMap::new(RULE);
+            let mut told = std::collections::BTreeMap::new();
+            for (x, y, heading) in poses {
+                for change in map.integrate(Pose::new(x, y, heading), &scan(ranges.clone())) {
+                    let was = told.insert(change.cell, change.to).unwrap_or(Occupancy::Unknown);
+                    prop_assert_eq!(was, change.from);
+                    prop_assert!(change.to != Occupancy::Unknown);
+                }
+            }
+            let known = map.grid().values().iter().filter(|&&v| v != Occupancy::Unknown).count();
+            prop_assert_eq!(known, told.len());
+            for (cell, value) in told {
+                prop_assert_eq!(map.at_lattice(cell), value);
+            }
+        }
+    }
+}

@@ -1,0 +1,285 @@
+//! The operator: samples arcs ahead and drives the best one (prior-map facts, section 4, "Operator").
+//!
+//! A direction runs from -1 (turn right in place) over 0 (straight on) to 1 (turn left in place); between them
+//! the robot follows an arc of radius cot(|direction| π/2) m, at most half a circle.
+
+use super::LocalMap;
+use crate::geometry::{Point, Pose};
+use crate::math;
+use crate::robot::Twist;
+use crate::units::{Seconds, Tick};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// What the navigator asks of the operator.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Steering {
+    /// Desired direction, -1 to 1, positive to the left.
+    pub direction: f64,
+    /// Desired share of the highest speed, 0 to 1.
+    pub speed: f64,
+}
+
+/// Limits of the operator.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OperatorRule {
+    /// Highest linear speed (m/s).
+    pub max_linear: f64,
+    /// Highest angular speed in place (rad/s).
+    pub max_angular: f64,
+    /// Arcs must keep this far from obstacles (m).
+    pub robot_radius: f64,
+    /// Distance beyond which obstacles do not matter (m).
+    pub comfort_radius: f64,
+}
+
+/// Directions are tried in steps of a hundredth.
+const STEPS: i32 = 100;
+/// The direction changes by at most this many steps per control cycle.
+const AGILITY: i32 = 20;
+/// Arcs are sampled every 5 cm ...
+const SPACING: f64 = 0.05;
+/// ... and more free way than this (m) is not worth more.
+const ENOUGH: f64 = 2.0;
+/// How much less an obstacle matters per sample further away.
+const DECAY: f64 = 0.97;
+/// With less free way than this (m) there is no going.
+const TOO_SHORT: f64 = 0.3;
+/// How steeply closeness to obstacles becomes cost (1/m), as the released cost map's `cost_scaling_factor`.
+const COST_SCALING: f64 = 10.0;
+/// How long the operator looks only for room once it has none.
+const RECOVERY: Seconds = Seconds(3.0);
+
+/// Drives by sampling arcs.
+#[derive(Debug, Clone)]
+pub struct Operator {
+    rule: OperatorRule,
+    /// For each direction, from -1 to 1, the sample points of its arc in the robot's frame.
+    arcs: Vec<Vec<Point>>,
+    decay: Vec<f64>,
+    current: i32,
+    recovering_until: Option<Tick>,
+}
+
+/// How an arc fares.
+#[derive(Debug, Clone, Copy)]
+struct Prospect {
+    free: f64,
+    is_wholly_free: bool,
+    safety: f64,
+}
+
+impl Operator {
+    /// An operator at rest, heading straight on.
+    pub fn new(rule: OperatorRule) -> Self {
+        let arcs: Vec<_> = (-STEPS..=STEPS).map(arc).collect();
+        let longest = arcs.iter().map(Vec::len).max().unwrap_or(0);
+        let decay = std::iter::successors(Some(1.0), |d| Some(d * DECAY)).take(longest).collect();
+        Self { rule, arcs, decay, current: 0, recovering_until: None }
+    }
+
+    /// The velocity for the next control cycle, with the robot at `pose` (odometry frame).
+    pub fn drive(&mut self, steering: Steering, pose: Pose, map: &LocalMap, now: Tick) -> Twist {
+        let recovering = self.recovering_until.is_some_and(|until| now < until);
+        let range = if recovering {
+            -STEPS..=STEPS
+        } else {
+            (self.current - AGILITY).max(-STEPS)..=(self.current + AGILITY).min(STEPS)
+        };
+        let here = map.clearance(pose.position()).unwrap_or(0.0);
+        // Already too close, the robot may go on as long as it comes no closer.
+        let needed = self.rule.robot_radius.min(here - SPACING / 2.0).max(SPACING);
+        let (sin, cos) = math::sin_cos(pose.heading);
+        let mut best: Option<(f64, i32, Prospect)> = None;
+        for direction in range {
+            let prospect = self.prospect(direction, pose, (sin, cos), needed, map);
+            let score = self.score(direction, steering, prospect, recovering);
+            if best.is_none_or(|(highest, ..)| score > highest) {
+                best = Some((score, direction, prospect));
+            }
+        }
+        let Some((_, direction, prospect)) = best else { return Twist::STOP };
+        self.current = direction;
+        let cap = self.speed_cap(prospect);
+        if cap < 0.1 && direction.abs() < STEPS && !recovering {
+            self.recovering_until = Some(now + Tick::at_or_after(RECOVERY));
+        }
+        self.twist(direction, steering.speed, cap)
+    }
+
+    fn prospect(
+        &self,
+        direction: i32,
+        pose: Pose,
+        (sin, cos): (f64, f64),
+        needed: f64,
+        map: &LocalMap,
+    ) -> Prospect {
+        let points = self.arc(direction);
+        let mut danger: f64 = 0.0;
+        for (i, point) in points.iter().enumerate() {
+            let at = Point::new(
+                pose.x + cos * point.x - sin * point.y,
+                pose.y + sin * point.x + cos * point.y,
+            );
+            let clearance = map.clearance(at).unwrap_or(0.0);
+            if clearance < needed {
+                #[expect(clippy::cast_precision_loss, reason = "few samples")]
+                let free = i as f64 * SPACING;
+                return Prospect { free, is_wholly_free: false, safety: 1.0 - danger };
+            }
+            if clearance < self.rule.comfort_radius {
+                let over = (clearance - self.rule.robot_radius).max(0.0);
+                danger = danger.max(math::exp(-COST_SCALING * over) * self.decay[i]);
+            }
+        }
+        // A tight turn can always be gone on with: its way is as good as endless.
+        Prospect { free: ENOUGH, is_wholly_free: true, safety: 1.0 - danger }
+    }
+
+    /// The plain mean of free way, safety, conformance and continuity; of the first two when recovering.
+    fn score(&self, direction: i32, wish: Steering, prospect: Prospect, recovering: bool) -> f64 {
+        let way = (prospect.free / ENOUGH).min(1.0);
+        if recovering {
+            return f64::midpoint(way, prospect.safety);
+        }
+        let signed_square = |x: f64| x * x.abs();
+        let share = f64::from(direction) / f64::from(STEPS);
+        let off = signed_square(share) - signed_square(wish.direction.clamp(-1.0, 1.0));
+        let conformance = math::cos(FRAC_PI_2 * off);
+        let change = f64::from(direction - self.current) / f64::from(2 * STEPS);
+        let continuity = math::cos(FRAC_PI_2 * change);
+        (way + prospect.safety + conformance + continuity) / 4.0
+    }
+
+    fn speed_cap(&self, prospect: Prospect) -> f64 {
+        let cap = prospect.free / 2.0 + 0.05;
+        let cap = if prospect.is_wholly_free {
+            cap.max(0.5)
+        } else if prospect.free < TOO_SHORT {
+            0.0
+        } else {
+            cap
+        };
+        cap.min(self.rule.max_linear)
+    }
+
+    fn twist(&self, direction: i32, speed: f64, cap: f64) -> Twist {
+        let side = f64::from(direction.signum());
+        if direction.abs() == STEPS {
+            return Twist { linear: 0.0, angular: side * speed * self.rule.max_angular };
+        }
+        if direction == 0 {
+            return Twist { linear: (speed * self.rule.max_linear).min(cap), angular: 0.0 };
+        }
+        let radius = radius(direction);
+        let linear = (speed * self.rule.max_linear / (1.0 + 1.0 / radius)).min(cap);
+        Twist { linear, angular: side * (linear / radius) }
+    }
+
+    fn arc(&self, direction: i32) -> &[Point] {
+        #[expect(clippy::cast_sign_loss, reason = "directions are at least -STEPS")]
+        let index = (direction + STEPS) as usize;
+        &self.arcs[index]
+    }
+}
+
+/// Radius (m) of the arc in `direction`, which is neither straight nor in place.
+fn radius(direction: i32) -> f64 {
+    let share = f64::from(direction.abs()) / f64::from(STEPS);
+    1.0 / math::tan(share * FRAC_PI_2)
+}
+
+fn arc(direction: i32) -> Vec<Point> {
+    if direction.abs() == STEPS {
+        return Vec::new();
+    }
+    let side = f64::from(direction.signum());
+    let length = if direction == 0 { ENOUGH } else { ENOUGH.min(PI * radius(direction)) };
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 40")]
+    let samples = (length / SPACING) as u32;
+    (1..=samples)
+        .map(|i| {
+            let way = f64::from(i) * SPACING;
+            if direction == 0 {
+                return Point::new(way, 0.0);
+            }
+            let radius = radius(direction);
+            let (sin, cos) = math::sin_cos(way / radius);
+            Point::new(radius * sin, side * radius * (1.0 - cos))
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::navigation::LocalRule;
+    use crate::robot::Scan;
+
+    const RULE: OperatorRule = OperatorRule {
+        max_linear: 1.0,
+        max_angular: 1.0,
+        robot_radius: 0.25,
+        comfort_radius: 0.35,
+    };
+
+    fn map(ranges: impl Fn(f64) -> f64) -> LocalMap {
+        let mut map = LocalMap::new(LocalRule::default());
+        let increment = 0.005;
+        let scan = Scan {
+            stamp: Tick(0),
+            mount: Pose::default(),
+            min_angle: -PI,
+            increment,
+            min_range: 0.0,
+            max_range: 30.0,
+            ranges: (0..1257).map(|i| ranges(-PI + f64::from(i) * increment)).collect(),
+        };
+        map.update(Pose::default(), &scan);
+        map
+    }
+
+    fn settle(operator: &mut Operator, wish: Steering, map: &LocalMap) -> Twist {
+        (0..20).map(|i| operator.drive(wish, Pose::default(), map, Tick(i * 300))).last().unwrap()
+    }
+
+    #[test]
+    fn in_the_open_it_does_what_it_is_asked() {
+        let open = map(|_| 20.0);
+        let straight = Steering { direction: 0.0, speed: 1.0 };
+        let twist = settle(&mut Operator::new(RULE), straight, &open);
+        assert_eq!(twist, Twist { linear: 1.0, angular: 0.0 });
+        let left = Steering { direction: 1.0, speed: 1.0 };
+        assert_eq!(
+            settle(&mut Operator::new(RULE), left, &open),
+            Twist { linear: 0.0, angular: 1.0 }
+        );
+        let right = Steering { direction: -1.0, speed: 0.5 };
+        assert_eq!(
+            settle(&mut Operator::new(RULE), right, &open),
+            Twist { linear: 0.0, angular: -0.5 }
+        );
+    }
+
+    #[test]
+    fn mirrored_surroundings_give_mirrored_commands() {
+        let wall_left = map(|a| if (0.3..1.2).contains(&a) { 0.8 } else { 3.0 });
+        let wall_right = map(|a| if (-1.2..-0.3).contains(&a) { 0.8 } else { 3.0 });
+        let ask = |direction: f64, map: &LocalMap| {
+            settle(&mut Operator::new(RULE), Steering { direction, speed: 1.0 }, map)
+        };
+        let (a, b) = (ask(0.4, &wall_left), ask(-0.4, &wall_right));
+        assert!(
+            (a.linear - b.linear).abs() < 0.05 && (a.angular + b.angular).abs() < 0.1,
+            "{a:?} {b:?}"
+        );
+    }
+
+    #[test]
+    fn it_does_not_drive_into_a_wall_ahead() {
+        let wall = map(|a| if a.abs() < 1.4 { 0.45 / math::cos(a) } else { 3.0 });
+        let twist =
+            settle(&mut Operator::new(RULE), Steering { direction: 0.0, speed: 1.0 }, &wall);
+        assert!(twist.linear < 0.3, "{twist:?}");
+    }
+}

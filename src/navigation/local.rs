@@ -1,0 +1,240 @@
+//! What the robot saw lately close around it: a rolling window for the operator.
+
+use crate::geometry::{Point, Pose};
+use crate::grid::{Cell, GridFrame, line};
+use crate::math;
+use crate::robot::Scan;
+
+/// Size and reach of the window (prior-map facts, section 4, `costmap.yaml`).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LocalRule {
+    /// Side of the square window (m).
+    pub size: f64,
+    /// Side of a cell (m).
+    pub resolution: f64,
+    /// Ends of beams within this range (m) mark obstacles.
+    pub obstacle_range: f64,
+    /// Distances to obstacles are known up to this (m).
+    pub inflation_radius: f64,
+    /// Radius around the robot (m) that is free because the robot is there.
+    pub own_radius: f64,
+}
+
+impl Default for LocalRule {
+    fn default() -> Self {
+        Self {
+            size: 6.0,
+            resolution: 0.05,
+            obstacle_range: 5.0,
+            inflation_radius: 0.35,
+            own_radius: 0.3,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Seen {
+    Unknown,
+    Free,
+    Obstacle,
+}
+
+/// The window, in the odometry frame, moving with the robot by whole cells.
+#[derive(Debug, Clone)]
+pub struct LocalMap {
+    rule: LocalRule,
+    side: i32,
+    /// Lattice cell of the window's cell (0, 0).
+    corner: Cell,
+    seen: Vec<Seen>,
+    shifted: Vec<Seen>,
+    /// Squared distance in cells to the nearest obstacle, capped.
+    clearance: Vec<u16>,
+    /// Offsets of the disc an obstacle is felt in, with their squared distance.
+    disc: Vec<(i32, i32, u16)>,
+    ends: Vec<Cell>,
+}
+
+impl LocalMap {
+    /// A window around the origin in which nothing was seen.
+    pub fn new(rule: LocalRule) -> Self {
+        let count = |metres: f64| {
+            #[expect(clippy::cast_possible_truncation, reason = "a window has few cells")]
+            let cells = (metres / rule.resolution).round() as i32;
+            cells
+        };
+        let side = count(rule.size);
+        let reach = count(rule.inflation_radius);
+        let disc = (-reach..=reach)
+            .flat_map(|y| (-reach..=reach).map(move |x| (x, y)))
+            .filter(|(x, y)| x * x + y * y <= reach * reach)
+            .map(|(x, y)| (x, y, u16::try_from(x * x + y * y).unwrap_or(u16::MAX)))
+            .collect();
+        let cells =
+            GridFrame { resolution: 1.0, origin: Point::ZERO, width: side, height: side }.len();
+        Self {
+            rule,
+            side,
+            corner: Cell::new(-side / 2, -side / 2),
+            seen: vec![Seen::Unknown; cells],
+            shifted: Vec::new(),
+            clearance: vec![u16::MAX; cells],
+            disc,
+            ends: Vec::new(),
+        }
+    }
+
+    /// Takes in `scan`, taken at `pose`: beams clear the cells they cross, then their ends mark obstacles.
+    pub fn update(&mut self, pose: Pose, scan: &Scan) {
+        self.move_to(pose);
+        let sensor = pose.compose(scan.mount);
+        let from = self.lattice(sensor.position());
+        self.ends.clear();
+        for (i, &range) in scan.ranges.iter().enumerate() {
+            let reach = range.min(scan.max_range).min(self.rule.size);
+            let angle = sensor.heading + scan.angle(i);
+            let (sin, cos) = math::sin_cos(angle);
+            let to = self.lattice(sensor.position() + Point::new(cos, sin) * reach);
+            for cell in line(from, to) {
+                let Some(index) = self.index(cell) else { break };
+                if cell != to {
+                    self.seen[index] = Seen::Free;
+                }
+            }
+            if range < self.rule.obstacle_range.min(self.rule.size) {
+                self.ends.push(to);
+            }
+        }
+        for i in 0..self.ends.len() {
+            if let Some(index) = self.index(self.ends[i]) {
+                self.seen[index] = Seen::Obstacle;
+            }
+        }
+        self.clear_own(pose);
+        self.measure_clearance();
+    }
+
+    /// Distance (m) from `point` (odometry frame) to the nearest obstacle, at most the inflation radius;
+    /// `None` where nothing was seen yet or outside of the window.
+    pub fn clearance(&self, point: Point) -> Option<f64> {
+        let index = self.index(self.lattice(point))?;
+        match self.seen[index] {
+            Seen::Unknown => None,
+            Seen::Obstacle => Some(0.0),
+            Seen::Free if self.clearance[index] == u16::MAX => Some(self.rule.inflation_radius),
+            Seen::Free => Some(f64::from(self.clearance[index]).sqrt() * self.rule.resolution),
+        }
+    }
+
+    fn lattice(&self, point: Point) -> Cell {
+        let frame = GridFrame {
+            resolution: self.rule.resolution,
+            origin: Point::ZERO,
+            width: self.side,
+            height: self.side,
+        };
+        frame.cell_at(point)
+    }
+
+    fn index(&self, cell: Cell) -> Option<usize> {
+        let (x, y) = (cell.x - self.corner.x, cell.y - self.corner.y);
+        #[expect(clippy::cast_sign_loss, reason = "checked to be inside")]
+        ((0..self.side).contains(&x) && (0..self.side).contains(&y))
+            .then_some((y * self.side + x) as usize)
+    }
+
+    fn move_to(&mut self, pose: Pose) {
+        let center = self.lattice(pose.position());
+        let corner = Cell::new(center.x - self.side / 2, center.y - self.side / 2);
+        if corner == self.corner {
+            return;
+        }
+        self.shifted.clear();
+        for y in 0..self.side {
+            for x in 0..self.side {
+                let old = self.index(Cell::new(x + corner.x, y + corner.y));
+                self.shifted.push(old.map_or(Seen::Unknown, |i| self.seen[i]));
+            }
+        }
+        std::mem::swap(&mut self.seen, &mut self.shifted);
+        self.corner = corner;
+    }
+
+    fn clear_own(&mut self, pose: Pose) {
+        let center = self.lattice(pose.position());
+        #[expect(clippy::cast_possible_truncation, reason = "few cells")]
+        let reach = (self.rule.own_radius / self.rule.resolution) as i32;
+        for y in -reach..=reach {
+            for x in -reach..=reach {
+                if x * x + y * y <= reach * reach
+                    && let Some(index) = self.index(Cell::new(center.x + x, center.y + y))
+                    && self.seen[index] == Seen::Unknown
+                {
+                    self.seen[index] = Seen::Free;
+                }
+            }
+        }
+    }
+
+    fn measure_clearance(&mut self) {
+        self.clearance.fill(u16::MAX);
+        for y in 0..self.side {
+            for x in 0..self.side {
+                #[expect(clippy::cast_sign_loss, reason = "inside")]
+                let index = (y * self.side + x) as usize;
+                if self.seen[index] != Seen::Obstacle {
+                    continue;
+                }
+                for &(dx, dy, squared) in &self.disc {
+                    let cell = Cell::new(x + dx + self.corner.x, y + dy + self.corner.y);
+                    if let Some(near) = self.index(cell) {
+                        self.clearance[near] = self.clearance[near].min(squared);
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::units::Tick;
+
+    fn scan(range: f64) -> Scan {
+        Scan {
+            stamp: Tick(0),
+            mount: Pose::default(),
+            min_angle: -1.0,
+            increment: 0.005,
+            min_range: 0.0,
+            max_range: 10.0,
+            ranges: vec![range; 401],
+        }
+    }
+
+    #[test]
+    fn obstacles_are_felt_near_them_and_remembered_when_the_window_moves() {
+        let mut map = LocalMap::new(LocalRule::default());
+        map.update(Pose::default(), &scan(2.0));
+        let at = |map: &LocalMap, x: f64| map.clearance(Point::new(x + 0.01, 0.01));
+        assert_eq!(at(&map, 1.0), Some(0.35));
+        let near = at(&map, 1.8).unwrap();
+        assert!((0.14..0.21).contains(&near), "{near}");
+        assert_eq!(at(&map, 2.0), Some(0.0));
+        assert_eq!(at(&map, 2.5), None);
+        assert_eq!(at(&map, -1.0), None, "behind the robot nothing was seen");
+        assert_eq!(at(&map, -0.2), Some(0.35), "where the robot is, it is free");
+        // Turned round, the wall is behind and remembered.
+        map.update(Pose::new(0.5, 0.0, std::f64::consts::PI), &scan(5.5));
+        assert_eq!(at(&map, 2.0), Some(0.0));
+    }
+
+    #[test]
+    fn a_beam_that_passes_clears_an_obstacle() {
+        let mut map = LocalMap::new(LocalRule::default());
+        map.update(Pose::default(), &scan(1.0));
+        map.update(Pose::default(), &scan(2.0));
+        assert_eq!(map.clearance(Point::new(1.0, 0.0)), Some(0.35));
+    }
+}

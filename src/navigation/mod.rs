@@ -1,0 +1,16 @@
+//! Planning on the map and driving on the scan, after Nav2D's behaviour (prior-map facts, section 4):
+//! inflation, weighted wavefront, and an operator that samples arcs.
+//!
+//! A mind: it sees maps and messages, never the simulator or the world.
+
+mod arcs;
+mod costmap;
+mod inflation;
+mod local;
+mod wavefront;
+
+pub use arcs::{Operator, OperatorRule, Steering};
+pub use costmap::CostGrid;
+pub use inflation::inflate;
+pub use local::{LocalMap, LocalRule};
+pub use wavefront::{UNREACHED, Wavefront};
