@@ -76,3 +76,19 @@ pub struct TrialSpec {
     /// What it runs.
     pub setup: Setup,
 }
+
+/// Runs a trial: a pure function of `spec`.
+pub fn execute(spec: &TrialSpec) -> TrialRecord {
+    match &spec.setup {
+        Setup::PriorMap(setup) => prior_map::run(spec, setup, None),
+    }
+}
+
+/// Runs a trial and writes everything down. The record is the one that [`execute`] yields.
+pub fn reenact(spec: &TrialSpec) -> (TrialRecord, recording::Recording) {
+    let mut recording = recording::Recording::default();
+    let record = match &spec.setup {
+        Setup::PriorMap(setup) => prior_map::run(spec, setup, Some(&mut recording)),
+    };
+    (record, recording)
+}

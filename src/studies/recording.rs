@@ -15,10 +15,26 @@ pub struct Recording {
     /// The prior map, if the trial had one, in the world's frame.
     #[serde(skip)]
     pub prior: Option<OccupancyGrid>,
-    /// Where the robot's own map lies, in the world's frame.
+    /// Where the robot's own map lies, in the map's frame.
     pub map_frame: GridFrame,
+    /// The map's frame (the pose the robot began in), in the world's frame.
+    pub map_pose: Pose,
     /// What happened, in order of time.
     pub frames: Vec<Frame>,
+}
+
+impl Default for Recording {
+    fn default() -> Self {
+        let map_frame = GridFrame { resolution: 1.0, origin: Point::ZERO, width: 0, height: 0 };
+        Self {
+            world: Vec::new(),
+            footprint: Outline::Circle { center: Point::ZERO, radius: 0.0 },
+            prior: None,
+            map_frame,
+            map_pose: Pose::default(),
+            frames: Vec::new(),
+        }
+    }
 }
 
 /// One instant. What did not change since the frame before is left out.

@@ -4,7 +4,12 @@
 //! A lidar robot maps an indoor environment; the next frontier maximises u(p) (equations 1 to 4), whose
 //! information gain I(p) may use a prior map (section 3.2).
 
+pub mod explorer;
+pub mod frontier;
+pub mod information_gain;
+mod mission;
 mod parameters;
+pub mod utility;
 
 pub use parameters::{
     Coverage, Exploration, Gain, Mapping, Measurement, Mission, Navigation, Parameters, Reselect,
@@ -15,10 +20,12 @@ use crate::geometry::Pose;
 use crate::grid::OccupancyGrid;
 use crate::robot::Robot;
 use crate::world::World;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
+
+pub use mission::{MILESTONES, Prepared, run};
 
 /// Everything a trial of this study needs.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct Setup {
     /// The true world.
     pub world: Arc<World>,
@@ -30,4 +37,26 @@ pub struct Setup {
     pub start: Pose,
     /// Everything else.
     pub parameters: Parameters,
+    prepared: OnceLock<Result<Prepared, String>>,
+}
+
+impl Setup {
+    /// A setup; nothing is computed yet.
+    pub fn new(
+        world: Arc<World>,
+        robot: Arc<Robot>,
+        prior: Option<Arc<OccupancyGrid>>,
+        start: Pose,
+        parameters: Parameters,
+    ) -> Self {
+        Self { world, robot, prior, start, parameters, prepared: OnceLock::new() }
+    }
+
+    /// What all trials of this setup share, computed by the first that asks.
+    ///
+    /// # Errors
+    /// Where the setup cannot run at all, which resolution refuses with a better message.
+    pub fn prepared(&self) -> Result<&Prepared, String> {
+        self.prepared.get_or_init(|| Prepared::new(self)).as_ref().map_err(Clone::clone)
+    }
 }

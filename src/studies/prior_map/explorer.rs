@@ -1,0 +1,461 @@
+//! The robot's mind: perceive, find frontiers, choose, go (section 3.1, steps a to d).
+//!
+//! It sees odometry and scans and answers with velocities; it never sees the world. Its map's frame is the
+//! odometry frame.
+
+use super::frontier::{Frontier, find_frontiers};
+use super::information_gain::{AlignedPrior, InformationGain};
+use super::parameters::{Parameters, Reselect, Strategy};
+use super::utility::{Appraisal, ranked, utilities};
+use crate::geometry::{Point, Pose};
+use crate::grid::{Cell, GridFrame, Occupancy};
+use crate::mapping::{Change, KeyframeMapper, KeyframeRule, OccupancyMap, ScanRule};
+use crate::math;
+use crate::navigation::{
+    CostGrid, LocalMap, LocalRule, Operator, OperatorRule, Steering, Wavefront, inflate,
+};
+use crate::robot::{Lidar, Odometry, Scan, Twist};
+use crate::units::{Seconds, Tick};
+use std::f64::consts::FRAC_PI_2;
+
+/// The navigator plans at 5 Hz, the operator drives at 10 Hz, and the local map is renewed at about 3 Hz
+/// (prior-map facts, section 4).
+pub const CONTROL_PERIOD: Tick = Tick(300);
+const NAVIGATION_PERIOD: Tick = Tick(600);
+const LOCAL_MAP_PERIOD: Tick = Tick(900);
+
+/// The navigator heads for the cell this many steps down the wave.
+const LOOK_AHEAD: usize = 9;
+/// A location the robot comes no closer to for this long is given up.
+const PATIENCE: Seconds = Seconds(15.0);
+/// Coming closer means by this much (m).
+const PROGRESS: f64 = 0.1;
+/// A frontier whose candidate is this near (m) to one given up is given up too.
+const GIVEN_UP_RADIUS: f64 = 0.5;
+/// Facing the unknown means within this angle (rad).
+const FACING: f64 = 0.15;
+
+/// What the mind is doing.
+#[derive(Debug, Clone, PartialEq)]
+enum Phase {
+    /// About to choose a location.
+    Choosing,
+    /// On the way to a location.
+    Driving(Journey),
+    /// At a frontier whose unknown side it has not looked at: turning towards `towards`.
+    Facing { towards: Point },
+    /// Nothing left to do, and why.
+    Done(Ending),
+}
+
+/// Why exploration ended.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Ending {
+    /// No frontier is left.
+    NoFrontierLeft,
+    /// Frontiers are left, but there is no way to any of them.
+    NoWay {
+        /// How many.
+        frontiers: usize,
+    },
+}
+
+#[derive(Debug, Clone, PartialEq)]
+struct Journey {
+    target: Point,
+    /// Lowest weighted distance so far (m), and when it was reached.
+    closest: (f64, Tick),
+    chosen_at: Tick,
+}
+
+/// A choice among frontiers, with what it was made on. Cells are those of `frame`.
+#[derive(Debug, Clone)]
+pub struct Choice {
+    /// Where the cells lie.
+    pub frame: GridFrame,
+    /// All frontiers not given up.
+    pub frontiers: Vec<Frontier>,
+    /// D and I of each.
+    pub appraisals: Vec<Appraisal>,
+    /// u of each.
+    pub utilities: Vec<f64>,
+    /// The chosen one.
+    pub chosen: Option<usize>,
+}
+
+/// An exploring mind.
+#[derive(Debug)]
+pub struct Explorer {
+    parameters: Parameters,
+    prior: Option<AlignedPrior>,
+    range_cells: i32,
+    mapper: KeyframeMapper,
+    local: LocalMap,
+    operator: Operator,
+    phase: Phase,
+    wave: Option<Wavefront>,
+    steering: Option<Steering>,
+    keyframe_wanted: bool,
+    map_changed: bool,
+    next_local_map: Tick,
+    next_navigation: Tick,
+    given_up: Vec<Point>,
+    faced: Option<Point>,
+    choices: u32,
+    last_choice: Option<Choice>,
+    path_changed: bool,
+}
+
+impl Explorer {
+    /// A mind that has seen nothing, with the prior on the lattice of its map.
+    pub fn new(parameters: &Parameters, lidar: &Lidar, prior: Option<AlignedPrior>) -> Self {
+        let mapping = &parameters.mapping;
+        let navigation = &parameters.navigation;
+        let clip_range = mapping.clip_range_m.unwrap_or(f64::INFINITY).min(lidar.max_range);
+        #[expect(clippy::cast_possible_truncation, reason = "ranges are checked to be below 200 m")]
+        let range_cells = (clip_range / mapping.resolution_m).round() as i32;
+        let scan_rule = ScanRule {
+            resolution: mapping.resolution_m,
+            // A beam at exactly the sensor's range still hit something.
+            clip_range: mapping.clip_range_m.unwrap_or(f64::INFINITY),
+            hit_ratio: mapping.hit_ratio,
+        };
+        let keyframes =
+            KeyframeRule { distance: mapping.keyframe_distance_m, turn: mapping.keyframe_turn_rad };
+        let local_rule = LocalRule::default();
+        Self {
+            prior,
+            range_cells,
+            mapper: KeyframeMapper::new(keyframes, scan_rule),
+            local: LocalMap::new(local_rule),
+            operator: Operator::new(OperatorRule {
+                max_linear: navigation.max_linear_m_s,
+                max_angular: navigation.max_angular_rad_s,
+                robot_radius: navigation.robot_radius_m,
+                comfort_radius: local_rule.inflation_radius,
+            }),
+            parameters: parameters.clone(),
+            phase: Phase::Choosing,
+            wave: None,
+            steering: None,
+            keyframe_wanted: false,
+            map_changed: false,
+            next_local_map: Tick(0),
+            next_navigation: Tick(0),
+            given_up: Vec::new(),
+            faced: None,
+            choices: 0,
+            last_choice: None,
+            path_changed: false,
+        }
+    }
+
+    /// Whether the mind will look at the scan taken at `odometry`.
+    pub fn wants_scan(&mut self, odometry: Odometry) -> bool {
+        self.keyframe_wanted |= self.mapper.wants(odometry.pose);
+        self.keyframe_wanted || odometry.stamp >= self.next_local_map
+    }
+
+    /// Looks at `scan`, taken at `odometry`, and tells the map cells that changed.
+    pub fn take_scan(&mut self, odometry: Odometry, scan: &Scan) -> &[Change] {
+        if odometry.stamp >= self.next_local_map {
+            self.next_local_map = odometry.stamp + LOCAL_MAP_PERIOD;
+            self.local.update(odometry.pose, scan);
+        }
+        if !self.keyframe_wanted {
+            return &[];
+        }
+        self.keyframe_wanted = false;
+        self.map_changed = true;
+        self.mapper.integrate(odometry.pose, scan)
+    }
+
+    /// The velocity for the next control cycle.
+    pub fn control(&mut self, odometry: Odometry) -> Twist {
+        if odometry.stamp >= self.next_navigation {
+            self.next_navigation = odometry.stamp + NAVIGATION_PERIOD;
+            self.navigate(odometry);
+        }
+        match self.steering {
+            Some(steering) => {
+                self.operator.drive(steering, odometry.pose, &self.local, odometry.stamp)
+            }
+            None => Twist::STOP,
+        }
+    }
+
+    /// Why exploration ended, once it has.
+    pub fn ending(&self) -> Option<&Ending> {
+        match &self.phase {
+            Phase::Done(ending) => Some(ending),
+            _ => None,
+        }
+    }
+
+    /// The map so far.
+    pub fn map(&self) -> &OccupancyMap {
+        self.mapper.map()
+    }
+
+    /// How many times a location was chosen.
+    pub fn choices(&self) -> u32 {
+        self.choices
+    }
+
+    /// How many locations were given up.
+    pub fn given_up(&self) -> usize {
+        self.given_up.len()
+    }
+
+    /// The choice made since this was last asked, if any.
+    pub fn take_choice(&mut self) -> Option<Choice> {
+        self.last_choice.take()
+    }
+
+    /// The planned way (odometry frame) from `pose`, if it changed since this was last asked.
+    pub fn take_path(&mut self, pose: Pose) -> Option<Vec<Point>> {
+        if !std::mem::take(&mut self.path_changed) {
+            return None;
+        }
+        let frame = self.map().grid().frame();
+        let wave = self.wave.as_ref()?;
+        let start = nearest_reached(wave, frame.cell_at(pose.position()))?;
+        Some(wave.path(start).into_iter().map(|cell| frame.center(cell)).collect())
+    }
+
+    fn navigate(&mut self, odometry: Odometry) {
+        let tolerance = self.parameters.navigation.goal_tolerance_m;
+        match self.phase.clone() {
+            Phase::Done(_) => self.steering = None,
+            Phase::Choosing => self.choose(odometry),
+            Phase::Facing { towards } => {
+                let off = bearing(odometry.pose, towards);
+                if off.abs() < FACING {
+                    self.faced = Some(towards);
+                    self.keyframe_wanted = true;
+                    self.steering = None;
+                    self.phase = Phase::Choosing;
+                } else {
+                    // Slower at the end, so that it does not turn past.
+                    let speed = if off.abs() < 0.5 { 0.4 } else { 1.0 };
+                    self.steering = Some(Steering { direction: off.signum(), speed });
+                }
+            }
+            Phase::Driving(journey) => {
+                let arrived = odometry.pose.position().distance(journey.target) <= tolerance;
+                if arrived {
+                    self.keyframe_wanted = true;
+                    self.steering = None;
+                    self.phase = Phase::Choosing;
+                } else if self.is_time_to_reconsider(&journey, odometry) {
+                    self.choose(odometry);
+                } else {
+                    self.drive_on(journey, odometry);
+                }
+            }
+        }
+    }
+
+    fn is_time_to_reconsider(&self, journey: &Journey, odometry: Odometry) -> bool {
+        let exploration = &self.parameters.exploration;
+        if exploration.reselect == Reselect::OnArrival {
+            return false;
+        }
+        let remaining = self
+            .wave
+            .as_ref()
+            .and_then(|wave| wave.metres(self.cell_at(odometry.pose)))
+            .unwrap_or(f64::INFINITY);
+        let period = if remaining <= exploration.reselect_near_cost {
+            exploration.reselect_near_period_s
+        } else {
+            exploration.reselect_period_s
+        };
+        odometry.stamp >= journey.chosen_at + Tick::at_or_after(Seconds(period))
+    }
+
+    fn drive_on(&mut self, mut journey: Journey, odometry: Odometry) {
+        if std::mem::take(&mut self.map_changed) || self.wave.is_none() {
+            let costs = self.costs(odometry.pose);
+            self.wave = Some(self.wave_to(&costs, journey.target));
+            self.path_changed = true;
+        }
+        let Some(wave) = &self.wave else { return };
+        let Some(here) = nearest_reached(wave, self.cell_at(odometry.pose)) else {
+            self.steering = None;
+            self.phase = Phase::Choosing;
+            return;
+        };
+        let remaining = wave.metres(here).unwrap_or(f64::INFINITY);
+        if remaining < journey.closest.0 - PROGRESS {
+            journey.closest = (remaining, odometry.stamp);
+        } else if odometry.stamp > journey.closest.1 + Tick::at_or_after(PATIENCE) {
+            self.given_up.push(journey.target);
+            self.steering = None;
+            self.phase = Phase::Choosing;
+            return;
+        }
+        let path = wave.path(here);
+        let ahead = path.get(LOOK_AHEAD).or(path.last()).copied().unwrap_or(here);
+        let off = bearing(odometry.pose, self.map().grid().frame().center(ahead));
+        let speed = if remaining < 1.0 { 0.5 + remaining / 2.0 } else { 1.0 };
+        self.steering = Some(Steering { direction: (off / FRAC_PI_2).clamp(-1.0, 1.0), speed });
+        self.phase = Phase::Driving(journey);
+    }
+
+    /// Step (c): the most promising candidate location that there is a way to.
+    fn choose(&mut self, odometry: Odometry) {
+        self.choices += 1;
+        self.map_changed = false;
+        let costs = self.costs(odometry.pose);
+        let mut choice = self.appraise(&costs, odometry.pose);
+        let tolerance = self.parameters.navigation.goal_tolerance_m;
+        let robot = self.cell_at(odometry.pose);
+        let mut next = None;
+        for i in ranked(&choice.utilities) {
+            let target = choice.frame.center(choice.frontiers[i].candidate);
+            if odometry.pose.position().distance(target) <= tolerance {
+                // Already there, and the frontier is still one: look at its unknown side, once.
+                let towards = self.unknown_side(&choice.frontiers[i], &choice.frame);
+                if self.faced.is_none_or(|faced| faced.distance(towards) > tolerance) {
+                    choice.chosen = Some(i);
+                    next = Some(Phase::Facing { towards });
+                    break;
+                }
+                self.given_up.push(target);
+                continue;
+            }
+            let wave = self.wave_to(&costs, target);
+            if let Some(here) = nearest_reached(&wave, robot) {
+                choice.chosen = Some(i);
+                let distance = wave.metres(here).unwrap_or(f64::INFINITY);
+                let closest = (distance, odometry.stamp);
+                next = Some(Phase::Driving(self.journey_to(target, closest, odometry.stamp)));
+                self.wave = Some(wave);
+                self.path_changed = true;
+                break;
+            }
+        }
+        self.phase = next.unwrap_or_else(|| {
+            self.steering = None;
+            Phase::Done(if choice.frontiers.iter().all(|f| self.is_given_up(f, &choice.frame)) {
+                Ending::NoFrontierLeft
+            } else {
+                Ending::NoWay { frontiers: choice.frontiers.len() }
+            })
+        });
+        self.last_choice = Some(choice);
+    }
+
+    /// A new journey, or the present one gone on with where the target is still the same.
+    fn journey_to(&self, target: Point, closest: (f64, Tick), now: Tick) -> Journey {
+        match &self.phase {
+            Phase::Driving(journey) if journey.target == target => {
+                Journey { chosen_at: now, ..journey.clone() }
+            }
+            _ => Journey { target, closest, chosen_at: now },
+        }
+    }
+
+    /// Step (b) and the terms of equation 1.
+    fn appraise(&self, costs: &CostGrid, pose: Pose) -> Choice {
+        let map = self.map().grid();
+        let frame = *map.frame();
+        let exploration = &self.parameters.exploration;
+        let lethal = cost(self.parameters.navigation.frontier_lethal_cost);
+        let robot = frame.cell_at(pose.position());
+        let minimum = exploration.minimum_frontier_cells;
+        let mut frontiers = find_frontiers(map, costs, robot, lethal, minimum);
+        frontiers.retain(|frontier| !self.is_given_up(frontier, &frame));
+        let gain = InformationGain {
+            map,
+            offset: self.map().offset(),
+            prior: self.prior.as_ref(),
+            range: self.range_cells,
+            known_obstacles_occlude: exploration.known_obstacles_occlude,
+        };
+        let nearest_only = exploration.strategy == Strategy::NearestFrontier;
+        let appraisals: Vec<_> = frontiers
+            .iter()
+            .map(|f| Appraisal {
+                distance: pose.position().distance(frame.center(f.candidate)),
+                gain: if nearest_only { 0.0 } else { gain.at(f.candidate) },
+            })
+            .collect();
+        let alpha = if nearest_only { 1.0 } else { exploration.alpha };
+        let utilities = utilities(&appraisals, alpha);
+        Choice { frame, frontiers, appraisals, utilities, chosen: None }
+    }
+
+    fn is_given_up(&self, frontier: &Frontier, frame: &GridFrame) -> bool {
+        let candidate = frame.center(frontier.candidate);
+        self.given_up.iter().any(|given_up| given_up.distance(candidate) < GIVEN_UP_RADIUS)
+    }
+
+    /// The middle of the unknown cells next to the frontier.
+    fn unknown_side(&self, frontier: &Frontier, frame: &GridFrame) -> Point {
+        let map = self.map().grid();
+        let unknown: Vec<Point> = frontier
+            .cells
+            .iter()
+            .flat_map(|cell| cell.neighbours8())
+            .filter(|&cell| map.at(cell) == Occupancy::Unknown)
+            .map(|cell| frame.center(cell))
+            .collect();
+        #[expect(clippy::cast_precision_loss, reason = "few cells")]
+        let share = 1.0 / unknown.len().max(1) as f64;
+        unknown.iter().fold(Point::ZERO, |sum, &point| sum + point * share)
+    }
+
+    /// The inflated map, with the place where the robot stands free (prior-map facts, section 4).
+    fn costs(&self, pose: Pose) -> CostGrid {
+        let mut map = self.map().grid().clone();
+        let robot = map.frame().cell_at(pose.position());
+        for y in -2..=1 {
+            for x in -2..=1 {
+                map.set(Cell::new(robot.x + x, robot.y + y), Occupancy::Free);
+            }
+        }
+        inflate(&map, self.parameters.navigation.inflation_radius_cells)
+    }
+
+    fn wave_to(&self, costs: &CostGrid, target: Point) -> Wavefront {
+        let navigation = &self.parameters.navigation;
+        let goal = costs.frame().cell_at(target);
+        Wavefront::from_goal(
+            costs,
+            goal,
+            cost(navigation.planner_lethal_cost),
+            navigation.cost_weight,
+        )
+    }
+
+    fn cell_at(&self, pose: Pose) -> Cell {
+        self.map().grid().frame().cell_at(pose.position())
+    }
+}
+
+/// Bearing (rad) of `point` from the robot's heading.
+fn bearing(pose: Pose, point: Point) -> f64 {
+    let to = pose.inverse_transform(point);
+    math::atan2(to.y, to.x)
+}
+
+fn cost(parameter: u32) -> u8 {
+    u8::try_from(parameter.min(101)).unwrap_or(101)
+}
+
+/// The cell itself where the wave came, or else the cheapest reached one within 6 cells: a robot that stands
+/// too close to an obstacle first heads out.
+fn nearest_reached(wave: &Wavefront, cell: Cell) -> Option<Cell> {
+    if wave.metres(cell).is_some() {
+        return Some(cell);
+    }
+    (1..=6).find_map(|ring: i32| {
+        let side = -ring..=ring;
+        side.clone()
+            .flat_map(|y| side.clone().map(move |x| Cell::new(cell.x + x, cell.y + y)))
+            .filter(|c| wave.metres(*c).is_some())
+            .min_by_key(|c| (c.distance_squared(cell), c.y, c.x))
+    })
+}

@@ -1,0 +1,206 @@
+//! One trial: the simulator on one end, the mind on the other, and what is measured in between.
+
+mod recorder;
+mod reference;
+mod trace;
+
+pub use trace::MILESTONES;
+
+use super::Setup;
+use super::explorer::{CONTROL_PERIOD, Ending, Explorer};
+use super::information_gain::AlignedPrior;
+use crate::geometry::{Outline, Pose};
+use crate::robot::{Lidar, Scan};
+use crate::sim::{DriveNoise, OdometryNoise, Scene, Simulator};
+use crate::studies::recording::Recording;
+use crate::studies::{Outcome, TrialRecord, TrialSpec};
+use crate::units::{Seconds, Tick};
+use recorder::Recorder;
+use reference::Reference;
+use trace::Trace;
+
+/// What all trials of a setup share: computed once, from the setup alone.
+#[derive(Debug)]
+pub struct Prepared {
+    visible: Vec<Outline>,
+    solid: Vec<Outline>,
+    lidar: Lidar,
+    prior: Option<AlignedPrior>,
+    reference: Reference,
+}
+
+impl Prepared {
+    /// Cuts the world at the lidar's height, aligns the prior and explores ideally.
+    ///
+    /// # Errors
+    /// Where the robot has no range scanner, which resolution refuses with a better message.
+    pub fn new(setup: &Setup) -> Result<Self, String> {
+        let own = setup.robot.lidar.as_ref().ok_or("the robot has no range scanner")?;
+        let sensing = &setup.parameters.sensing;
+        let lidar = Lidar {
+            max_range: sensing.range_m.unwrap_or(own.max_range),
+            noise_sd: sensing.range_noise_sd_m.unwrap_or(own.noise_sd),
+            ..own.clone()
+        };
+        let visible = setup.world.slice(lidar.height);
+        let solid = setup.world.contact(setup.robot.body_z[0], setup.robot.body_z[1]);
+        let resolution = setup.parameters.mapping.resolution_m;
+        let prior =
+            setup.prior.as_ref().map(|prior| AlignedPrior::new(prior, setup.start, resolution));
+        let reference = Reference::explore(setup, &lidar, &visible, &solid);
+        Ok(Self { visible, solid, lidar, prior, reference })
+    }
+}
+
+/// Runs the trial, writing everything down in `recording` where there is one. The record is the same either way.
+pub fn run(spec: &TrialSpec, setup: &Setup, recording: Option<&mut Recording>) -> TrialRecord {
+    let prepared = match setup.prepared() {
+        Ok(prepared) => prepared,
+        Err(cause) => return TrialRecord::panicked(spec, cause),
+    };
+    let sensing = &setup.parameters.sensing;
+    let scene = Scene {
+        visible: &prepared.visible,
+        solid: &prepared.solid,
+        robot: &setup.robot,
+        lidar: prepared.lidar.clone(),
+        start: setup.start,
+        drive_noise: DriveNoise {
+            linear: sensing.drive_noise_linear,
+            angular: sensing.drive_noise_angular,
+            correlation: Seconds(sensing.drive_noise_correlation_s),
+        },
+        odometry_noise: OdometryNoise {
+            distance: sensing.odometry_noise_distance,
+            heading: sensing.odometry_noise_heading,
+        },
+    };
+    let sim = Simulator::new(scene, &spec.seeds);
+    let mission = Mission {
+        setup,
+        prepared,
+        scan: sim.blank_scan(),
+        sim,
+        mind: Explorer::new(&setup.parameters, &prepared.lidar, prepared.prior.clone()),
+        trace: Trace::new(prepared.reference.total()),
+        recorder: recording.map(|recording| Recorder::new(recording, setup, &prepared.visible)),
+        moved: (setup.start, Tick(0)),
+    };
+    mission.run(spec)
+}
+
+struct Mission<'a> {
+    setup: &'a Setup,
+    prepared: &'a Prepared,
+    sim: Simulator,
+    scan: Scan,
+    mind: Explorer,
+    trace: Trace,
+    recorder: Option<Recorder<'a>>,
+    /// Where the robot was when it last had moved on, and when.
+    moved: (Pose, Tick),
+}
+
+impl Mission<'_> {
+    fn run(mut self, spec: &TrialSpec) -> TrialRecord {
+        let limit = Tick::at_or_after(Seconds(self.setup.parameters.mission.time_limit_s));
+        let mut next_control = Tick(0);
+        self.perceive();
+        let (outcome, cause) = loop {
+            if self.sim.now() >= next_control {
+                next_control = next_control + CONTROL_PERIOD;
+                let twist = self.mind.control(self.sim.odometry());
+                self.sim.command(twist);
+                self.note_state();
+                if let Some(ending) = self.ending(limit) {
+                    break ending;
+                }
+            }
+            let until = next_control.min(self.sim.next_scan());
+            self.sim.advance_to(until);
+            if self.sim.now() == self.sim.odometry_at_scan().stamp {
+                self.perceive();
+            }
+        };
+        let mut record = self.trace.finish(spec, outcome, cause, self.sim.now());
+        let mut measure = |name: &str, value: f64| {
+            record.measures.insert(name.to_owned(), Some(value));
+        };
+        measure("distance-m", self.sim.travelled());
+        measure("turning-rad", self.sim.turned());
+        measure("decisions", f64::from(self.mind.choices()));
+        #[expect(clippy::cast_precision_loss, reason = "few")]
+        measure("frontiers-given-up", self.mind.given_up() as f64);
+        measure("contacts", f64::from(self.sim.contacts()));
+        record
+    }
+
+    /// Step (a): shows the mind the scan just taken, where it wants it.
+    fn perceive(&mut self) {
+        let odometry = self.sim.odometry_at_scan();
+        if !self.mind.wants_scan(odometry) {
+            return;
+        }
+        self.sim.read_scan(&mut self.scan);
+        let changes = self.mind.take_scan(odometry, &self.scan);
+        if changes.is_empty() {
+            return;
+        }
+        for change in changes {
+            let reference = &self.prepared.reference;
+            let was = reference.covers(change.cell, change.from);
+            let is = reference.covers(change.cell, change.to);
+            self.trace.cover(i64::from(is) - i64::from(was));
+        }
+        if let Some(recorder) = &mut self.recorder {
+            recorder.map_changed(changes, &self.scan, self.sim.true_pose());
+        }
+        self.trace.note_coverage(self.sim.now(), self.sim.travelled());
+    }
+
+    fn note_state(&mut self) {
+        let now = self.sim.now();
+        let pose = self.sim.true_pose();
+        self.trace.note_time(now, self.sim.travelled(), pose, self.mind.choices());
+        if let Some(recorder) = &mut self.recorder {
+            let choice = self.mind.take_choice();
+            let path = self.mind.take_path(self.sim.odometry().pose);
+            recorder.note(
+                now,
+                pose,
+                self.sim.travelled(),
+                self.trace.coverage_percent(),
+                choice.as_ref(),
+                path,
+            );
+        }
+    }
+
+    fn ending(&mut self, limit: Tick) -> Option<(Outcome, String)> {
+        match self.mind.ending() {
+            Some(Ending::NoFrontierLeft) => return Some((Outcome::Explored, String::new())),
+            Some(Ending::NoWay { frontiers }) => {
+                let cause = format!("no way to any of {frontiers} frontiers");
+                return Some((Outcome::Stuck, cause));
+            }
+            None => {}
+        }
+        let now = self.sim.now();
+        if now >= limit {
+            return Some((Outcome::TimeLimit, String::new()));
+        }
+        let mission = &self.setup.parameters.mission;
+        let pose = self.sim.true_pose();
+        if pose.position().distance(self.moved.0.position()) >= mission.stuck_distance_m {
+            self.moved = (pose, now);
+        }
+        let patience = Tick::at_or_after(Seconds(mission.stuck_after_s));
+        (now > self.moved.1 + patience).then(|| {
+            let cause = format!(
+                "moved less than {} m in {} s",
+                mission.stuck_distance_m, mission.stuck_after_s
+            );
+            (Outcome::Stuck, cause)
+        })
+    }
+}
