@@ -17,6 +17,8 @@ pub struct Steering {
     pub direction: f64,
     /// Desired share of the highest speed, 0 to 1.
     pub speed: f64,
+    /// Distance (m) to the place steered for: free way beyond it is worth nothing.
+    pub distance: f64,
 }
 
 /// Limits of the operator.
@@ -38,8 +40,10 @@ const STEPS: i32 = 100;
 const AGILITY: i32 = 20;
 /// Arcs are sampled every 5 cm ...
 const SPACING: f64 = 0.05;
-/// ... and more free way than this (m) is not worth more.
+/// ... and more free way than this (m) is not worth more, ...
 const ENOUGH: f64 = 2.0;
+/// ... nor is less than this asked for, however near the place steered for is.
+const AT_LEAST: f64 = 0.5;
 /// How much less an obstacle matters per sample further away.
 const DECAY: f64 = 0.97;
 /// With less free way than this (m) there is no going.
@@ -63,6 +67,7 @@ pub struct Operator {
 /// How an arc fares.
 #[derive(Debug, Clone, Copy)]
 struct Prospect {
+    /// Free way (m), at most the sampled length of the arc.
     free: f64,
     is_wholly_free: bool,
     safety: f64,
@@ -78,42 +83,41 @@ impl Operator {
     }
 
     /// The velocity for the next control cycle, with the robot at `pose` (odometry frame).
-    pub fn drive(&mut self, steering: Steering, pose: Pose, map: &LocalMap, now: Tick) -> Twist {
+    ///
+    /// The best of all directions is sought, and the direction moves towards it as fast as it may.
+    pub fn drive(&mut self, wish: Steering, pose: Pose, map: &LocalMap, now: Tick) -> Twist {
         let recovering = self.recovering_until.is_some_and(|until| now < until);
-        let range = if recovering {
-            -STEPS..=STEPS
-        } else {
-            (self.current - AGILITY).max(-STEPS)..=(self.current + AGILITY).min(STEPS)
-        };
         let here = map.clearance(pose.position()).unwrap_or(0.0);
         // Already too close, the robot may go on as long as it comes no closer.
         let needed = self.rule.robot_radius.min(here - SPACING / 2.0).max(SPACING);
-        let (sin, cos) = math::sin_cos(pose.heading);
-        let mut best: Option<(f64, i32, Prospect)> = None;
-        for direction in range {
-            let prospect = self.prospect(direction, pose, (sin, cos), needed, map);
-            let score = self.score(direction, steering, prospect, recovering);
-            if best.is_none_or(|(highest, ..)| score > highest) {
-                best = Some((score, direction, prospect));
+        let asked = wish.distance.clamp(AT_LEAST, ENOUGH);
+        let look = |direction: i32| self.prospect(direction, pose, needed, asked, map);
+        let mut best = (f64::NEG_INFINITY, self.current);
+        for direction in -STEPS..=STEPS {
+            let score = self.score(direction, wish, look(direction), asked, recovering);
+            if score > best.0 {
+                best = (score, direction);
             }
         }
-        let Some((_, direction, prospect)) = best else { return Twist::STOP };
+        let direction = best.1.clamp(self.current - AGILITY, self.current + AGILITY);
+        let prospect = look(direction);
         self.current = direction;
         let cap = self.speed_cap(prospect);
         if cap < 0.1 && direction.abs() < STEPS && !recovering {
             self.recovering_until = Some(now + Tick::at_or_after(RECOVERY));
         }
-        self.twist(direction, steering.speed, cap)
+        self.twist(direction, wish.speed, cap)
     }
 
     fn prospect(
         &self,
         direction: i32,
         pose: Pose,
-        (sin, cos): (f64, f64),
         needed: f64,
+        asked: f64,
         map: &LocalMap,
     ) -> Prospect {
+        let (sin, cos) = math::sin_cos(pose.heading);
         let points = self.arc(direction);
         let mut danger: f64 = 0.0;
         for (i, point) in points.iter().enumerate() {
@@ -122,26 +126,36 @@ impl Operator {
                 pose.y + sin * point.x + cos * point.y,
             );
             let clearance = map.clearance(at).unwrap_or(0.0);
+            #[expect(clippy::cast_precision_loss, reason = "few samples")]
+            let free = i as f64 * SPACING;
             if clearance < needed {
-                #[expect(clippy::cast_precision_loss, reason = "few samples")]
-                let free = i as f64 * SPACING;
                 return Prospect { free, is_wholly_free: false, safety: 1.0 - danger };
             }
-            if clearance < self.rule.comfort_radius {
+            if free <= asked && clearance < self.rule.comfort_radius {
                 let over = (clearance - self.rule.robot_radius).max(0.0);
                 danger = danger.max(math::exp(-COST_SCALING * over) * self.decay[i]);
             }
         }
-        // A tight turn can always be gone on with: its way is as good as endless.
-        Prospect { free: ENOUGH, is_wholly_free: true, safety: 1.0 - danger }
+        #[expect(clippy::cast_precision_loss, reason = "few samples")]
+        let free = points.len() as f64 * SPACING;
+        Prospect { free, is_wholly_free: true, safety: 1.0 - danger }
     }
 
     /// The plain mean of free way, safety, conformance and continuity; of the first two when recovering.
-    fn score(&self, direction: i32, wish: Steering, prospect: Prospect, recovering: bool) -> f64 {
-        let way = (prospect.free / ENOUGH).min(1.0);
+    fn score(
+        &self,
+        direction: i32,
+        wish: Steering,
+        prospect: Prospect,
+        asked: f64,
+        recovering: bool,
+    ) -> f64 {
         if recovering {
-            return f64::midpoint(way, prospect.safety);
+            // Room to go, which turning in place does not gain.
+            return f64::midpoint(prospect.free / ENOUGH, prospect.safety);
         }
+        // A tight turn that is wholly free can always be gone on with.
+        let way = if prospect.is_wholly_free { 1.0 } else { (prospect.free / asked).min(1.0) };
         let signed_square = |x: f64| x * x.abs();
         let share = f64::from(direction) / f64::from(STEPS);
         let off = signed_square(share) - signed_square(wish.direction.clamp(-1.0, 1.0));
@@ -246,15 +260,15 @@ mod tests {
     #[test]
     fn in_the_open_it_does_what_it_is_asked() {
         let open = map(|_| 20.0);
-        let straight = Steering { direction: 0.0, speed: 1.0 };
+        let straight = Steering { direction: 0.0, speed: 1.0, distance: 2.0 };
         let twist = settle(&mut Operator::new(RULE), straight, &open);
         assert_eq!(twist, Twist { linear: 1.0, angular: 0.0 });
-        let left = Steering { direction: 1.0, speed: 1.0 };
+        let left = Steering { direction: 1.0, speed: 1.0, distance: 2.0 };
         assert_eq!(
             settle(&mut Operator::new(RULE), left, &open),
             Twist { linear: 0.0, angular: 1.0 }
         );
-        let right = Steering { direction: -1.0, speed: 0.5 };
+        let right = Steering { direction: -1.0, speed: 0.5, distance: 2.0 };
         assert_eq!(
             settle(&mut Operator::new(RULE), right, &open),
             Twist { linear: 0.0, angular: -0.5 }
@@ -266,7 +280,7 @@ mod tests {
         let wall_left = map(|a| if (0.3..1.2).contains(&a) { 0.8 } else { 3.0 });
         let wall_right = map(|a| if (-1.2..-0.3).contains(&a) { 0.8 } else { 3.0 });
         let ask = |direction: f64, map: &LocalMap| {
-            settle(&mut Operator::new(RULE), Steering { direction, speed: 1.0 }, map)
+            settle(&mut Operator::new(RULE), Steering { direction, speed: 1.0, distance: 2.0 }, map)
         };
         let (a, b) = (ask(0.4, &wall_left), ask(-0.4, &wall_right));
         assert!(
@@ -278,8 +292,11 @@ mod tests {
     #[test]
     fn it_does_not_drive_into_a_wall_ahead() {
         let wall = map(|a| if a.abs() < 1.4 { 0.45 / math::cos(a) } else { 3.0 });
-        let twist =
-            settle(&mut Operator::new(RULE), Steering { direction: 0.0, speed: 1.0 }, &wall);
+        let twist = settle(
+            &mut Operator::new(RULE),
+            Steering { direction: 0.0, speed: 1.0, distance: 2.0 },
+            &wall,
+        );
         assert!(twist.linear < 0.3, "{twist:?}");
     }
 }

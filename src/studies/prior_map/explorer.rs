@@ -8,7 +8,7 @@ use super::information_gain::{AlignedPrior, InformationGain};
 use super::parameters::{Parameters, Reselect, Strategy};
 use super::utility::{Appraisal, ranked, utilities};
 use crate::geometry::{Point, Pose};
-use crate::grid::{Cell, GridFrame, Occupancy};
+use crate::grid::{Cell, GridFrame, Occupancy, line};
 use crate::mapping::{Change, KeyframeMapper, KeyframeRule, OccupancyMap, ScanRule};
 use crate::math;
 use crate::navigation::{
@@ -238,7 +238,8 @@ impl Explorer {
                 } else {
                     // Slower at the end, so that it does not turn past.
                     let speed = if off.abs() < 0.5 { 0.4 } else { 1.0 };
-                    self.steering = Some(Steering { direction: off.signum(), speed });
+                    self.steering =
+                        Some(Steering { direction: off.signum(), speed, distance: 0.0 });
                 }
             }
             Phase::Driving(journey) => {
@@ -295,12 +296,27 @@ impl Explorer {
             self.phase = Phase::Choosing;
             return;
         }
-        let path = wave.path(here);
-        let ahead = path.get(LOOK_AHEAD).or(path.last()).copied().unwrap_or(here);
-        let off = bearing(odometry.pose, self.map().grid().frame().center(ahead));
+        let ahead = self.look_ahead(wave, here);
+        let off = bearing(odometry.pose, ahead);
         let speed = if remaining < 1.0 { 0.5 + remaining / 2.0 } else { 1.0 };
-        self.steering = Some(Steering { direction: (off / FRAC_PI_2).clamp(-1.0, 1.0), speed });
+        self.steering = Some(Steering {
+            direction: (off / FRAC_PI_2).clamp(-1.0, 1.0),
+            speed,
+            distance: odometry.pose.position().distance(ahead),
+        });
         self.phase = Phase::Driving(journey);
+    }
+
+    /// The place to head for: the furthest of the next cells down the wave that there is a straight way to, so
+    /// that the robot does not cut the corners of doors.
+    fn look_ahead(&self, wave: &Wavefront, here: Cell) -> Point {
+        let path = wave.path(here);
+        let furthest = path
+            .iter()
+            .take(LOOK_AHEAD + 1)
+            .rev()
+            .find(|&&ahead| line(here, ahead).all(|cell| wave.metres(cell).is_some()));
+        self.map().grid().frame().center(furthest.copied().unwrap_or(here))
     }
 
     /// Step (c): the most promising candidate location that there is a way to.

@@ -165,7 +165,7 @@ parameters!(
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Coverage {
-    /// Section 4: the share of the free area of E mapped (as free) in M_E.
+    /// Section 4: the share of the free area of E that is mapped (known) in M_E.
     Paper,
     /// As the released program logged it: the share of known cells, free or occupied, that are known.
     Released,

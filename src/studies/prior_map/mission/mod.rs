@@ -2,6 +2,8 @@
 
 mod recorder;
 mod reference;
+#[cfg(test)]
+mod tests;
 mod trace;
 
 pub use trace::MILESTONES;

@@ -65,9 +65,11 @@ impl Reference {
         self.total
     }
 
-    /// Whether the robot's map, holding `value` at the lattice `cell`, covers it.
+    /// Whether the robot's map, holding `value` at the lattice `cell`, covers a cell that counts. Mapped means
+    /// known: range noise draws walls thicker than they are, and a cell of free floor that such a wall covers
+    /// has been mapped all the same.
     pub(super) fn covers(&self, cell: Cell, value: Occupancy) -> bool {
-        counts(self.coverage, self.map.at_lattice(cell)) && counts(self.coverage, value)
+        value != Occupancy::Unknown && counts(self.coverage, self.map.at_lattice(cell))
     }
 }
 

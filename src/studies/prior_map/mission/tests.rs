@@ -1,0 +1,170 @@
+//! Whole trials in a small flat of our own.
+
+use super::*;
+use crate::digest::{Sha256Digest, TrialKey};
+use crate::geometry::Point;
+use crate::grid::{GridFrame, Occupancy, OccupancyGrid};
+use crate::rng::Seeds;
+use crate::robot::{Drive, DriveKind, Robot};
+use crate::studies::prior_map::{Parameters, Reselect};
+use crate::studies::{self, Condition};
+use crate::world::{Body, Solid, World};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Two rooms of 4 x 4 m joined by a door 0.9 m wide; walls 0.15 m thick.
+fn flat() -> World {
+    let wall = |x0: f64, y0: f64, x1: f64, y1: f64| Solid {
+        name: String::new(),
+        layer: "walls".into(),
+        body: Body::Prism {
+            outline: Outline::Polygon(vec![
+                Point::new(x0, y0),
+                Point::new(x1, y0),
+                Point::new(x1, y1),
+                Point::new(x0, y1),
+            ]),
+            z: [0.0, 2.5],
+        },
+    };
+    World {
+        name: "flat".into(),
+        solids: vec![
+            wall(-4.15, -2.15, 4.15, -2.0),
+            wall(-4.15, 2.0, 4.15, 2.15),
+            wall(-4.15, -2.15, -4.0, 2.15),
+            wall(4.0, -2.15, 4.15, 2.15),
+            wall(-0.075, -2.0, 0.075, -1.0),
+            wall(-0.075, -0.1, 0.075, 2.0),
+        ],
+        regions: vec![],
+        tags: vec![],
+        starts: BTreeMap::new(),
+        goals: BTreeMap::new(),
+        warnings: vec![],
+    }
+}
+
+fn robot() -> Robot {
+    Robot {
+        name: "disc".into(),
+        footprint: Outline::Circle { center: Point::ZERO, radius: 0.178 },
+        body_z: [0.01, 0.43],
+        mass: 5.0,
+        drive: Drive {
+            kind: DriveKind::Differential,
+            wheel_separation: 0.23,
+            wheel_diameter: 0.07,
+            max_linear: None,
+            max_angular: None,
+        },
+        lidar: Some(Lidar {
+            name: "laser".into(),
+            mount: Pose::new(0.1, 0.0, 0.0),
+            height: 0.1602,
+            beams: 720,
+            min_angle: -std::f64::consts::FRAC_PI_2,
+            max_angle: std::f64::consts::FRAC_PI_2,
+            min_range: 0.01,
+            max_range: 10.0,
+            rate_hz: 20.0,
+            noise_sd: 0.01,
+        }),
+    }
+}
+
+/// A prior that knows the outer walls only.
+fn footprint() -> OccupancyGrid {
+    let frame =
+        GridFrame { resolution: 0.1, origin: Point::new(-5.0, -3.0), width: 100, height: 60 };
+    let inside = |p: Point| p.x.abs() < 4.0 && p.y.abs() < 2.0;
+    let cells = frame
+        .cells()
+        .map(|cell| if inside(frame.center(cell)) { Occupancy::Free } else { Occupancy::Occupied });
+    OccupancyGrid::from_cells(frame, cells.collect())
+}
+
+fn spec(trial: u32, prior: bool, parameters: Parameters) -> TrialSpec {
+    let prior = prior.then(|| Arc::new(footprint()));
+    let start = Pose::new(-2.5, 0.5, 0.0);
+    let setup = Setup::new(Arc::new(flat()), Arc::new(robot()), prior, start, parameters);
+    TrialSpec {
+        key: TrialKey(Sha256Digest::of("test")),
+        condition: Condition(vec![("prior".into(), "none".into())]),
+        trial,
+        seeds: Seeds::new(1, vec![("trial".into(), trial.to_string())]),
+        setup: studies::Setup::PriorMap(Arc::new(setup)),
+    }
+}
+
+#[test]
+fn every_kind_of_run_explores_the_flat_without_touching_it() {
+    for (prior, reselect) in
+        [(false, Reselect::OnArrival), (true, Reselect::OnArrival), (true, Reselect::Continuous)]
+    {
+        let mut parameters = Parameters::default();
+        parameters.exploration.reselect = reselect;
+        let record = studies::execute(&spec(0, prior, parameters));
+        let what = format!("prior {prior}, {reselect:?}: {:?} {}", record.outcome, record.cause);
+        assert_eq!(record.outcome, Outcome::Explored, "{what}");
+        let measure = |name: &str| record.measures[name].unwrap();
+        assert!(measure("coverage-percent") > 97.0, "{what}: {}", measure("coverage-percent"));
+        assert_eq!(measure("contacts"), 0.0, "{what}");
+        let (half, most) = (measure("distance-m-at-50"), measure("distance-m-at-95"));
+        assert!(half <= most && most <= measure("distance-m"), "{what}: {half} {most}");
+    }
+}
+
+#[test]
+fn recording_changes_no_bit_and_shows_the_map_that_was_made() {
+    let spec = spec(1, true, Parameters::default());
+    let (record, recording) = studies::reenact(&spec);
+    assert_eq!(record.to_line(), studies::execute(&spec).to_line());
+    let last = recording.frames.last().unwrap();
+    assert!((last.distance_m - record.measures["distance-m"].unwrap()).abs() < 1e-9);
+    let mut map = OccupancyGrid::filled(recording.map_frame, Occupancy::Unknown);
+    for (cell, value) in recording.frames.iter().flat_map(|f| &f.map_changes) {
+        assert!(recording.map_frame.contains(*cell));
+        map.set(*cell, *value);
+    }
+    let at = |x: f64, y: f64| {
+        let p = recording.map_pose.inverse_transform(Point::new(x, y));
+        map.at(map.frame().cell_at(p))
+    };
+    assert_eq!((at(2.0, 0.5), at(-4.05, 0.5)), (Occupancy::Free, Occupancy::Occupied));
+    assert!(
+        recording.frames.iter().any(|f| f.decision.as_ref().is_some_and(|d| d.chosen.is_some()))
+    );
+}
+
+#[test]
+fn records_survive_their_text() {
+    let record = studies::execute(&spec(2, false, Parameters::default()));
+    let line = record.to_line();
+    assert_eq!(TrialRecord::from_line(&line).unwrap(), record);
+}
+
+#[test]
+fn a_time_limit_and_a_walled_in_robot_are_recorded_as_such() {
+    let mut parameters = Parameters::default();
+    parameters.mission.time_limit_s = 2.0;
+    let record = studies::execute(&spec(0, false, parameters));
+    assert_eq!((record.outcome, record.sim_seconds), (Outcome::TimeLimit, 2.0));
+    assert_eq!(record.measures["distance-m-at-95"], None);
+}
+
+/// The golden trial: its bytes are part of the determinism contract (docs/determinism.md).
+#[test]
+fn the_golden_trial_has_not_changed() {
+    let line = studies::execute(&spec(0, true, Parameters::default())).to_line();
+    let found = (line.len(), Sha256Digest::of(&line).short());
+    assert_eq!(
+        found,
+        (2176, "dedd9457".to_owned()),
+        "a trial's bytes have changed (size, then digest).\n\
+         Re-mint only if trials were meant to change: raise ENGINE_VERSION in src/plan/key.rs, say in CHANGELOG.md \
+         what a reader of results will observe, then put the new pair here. If nothing was meant to change, this \
+         is a bug: look for a new source of order, time or platform arithmetic. A differing size alone points at \
+         the record's shape; an equal size with another digest at arithmetic"
+    );
+}
