@@ -4,6 +4,7 @@
 //! nothing else crosses.
 
 mod message;
+pub mod urdf;
 
 pub use message::{Odometry, Scan, Twist};
 

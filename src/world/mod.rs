@@ -4,7 +4,8 @@
 
 mod solid;
 
-pub use solid::{Body, Placement, Solid};
+pub use crate::geometry::Placement;
+pub use solid::{Body, Solid};
 
 use crate::digest::{MeaningDigest, Sha256Digest};
 use crate::geometry::{Bounds, Outline, Point, Pose};

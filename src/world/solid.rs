@@ -1,7 +1,7 @@
 //! Solid things in three dimensions, and the two ways the plane sees them: cut by a lidar's scan plane, and
 //! as the shadow of what a robot's body could touch.
 
-use crate::geometry::{Outline, Point, convex_hull};
+use crate::geometry::{Outline, Placement, Point, convex_hull};
 use crate::math;
 use serde::Serialize;
 
@@ -46,60 +46,6 @@ pub enum Body {
         /// Where its centre is and how it is turned.
         placement: Placement,
     },
-}
-
-/// A rigid placement in space: SDF's `x y z roll pitch yaw`, fixed axes, applied roll first.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub struct Placement {
-    /// Translation (m).
-    pub translation: [f64; 3],
-    /// Rotation matrix, row by row.
-    pub rotation: [[f64; 3]; 3],
-}
-
-impl Placement {
-    /// No translation and no rotation.
-    pub const IDENTITY: Self = Self {
-        translation: [0.0; 3],
-        rotation: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
-    };
-
-    /// From SDF's six numbers (m, rad): R = Rz(yaw) Ry(pitch) Rx(roll).
-    pub fn from_xyz_rpy([x, y, z, roll, pitch, yaw]: [f64; 6]) -> Self {
-        let (sr, cr) = math::sin_cos(roll);
-        let (sp, cp) = math::sin_cos(pitch);
-        let (sy, cy) = math::sin_cos(yaw);
-        Self {
-            translation: [x, y, z],
-            rotation: [
-                [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
-                [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
-                [-sp, cp * sr, cp * cr],
-            ],
-        }
-    }
-
-    /// Takes a point from the placed frame to the outer one.
-    pub fn apply(&self, point: [f64; 3]) -> [f64; 3] {
-        let mut out = self.translation;
-        for (value, row) in out.iter_mut().zip(&self.rotation) {
-            *value += row[0] * point[0] + row[1] * point[1] + row[2] * point[2];
-        }
-        out
-    }
-
-    /// The placement `inner`, given in this one's frame, in the outer frame.
-    #[must_use]
-    pub fn compose(&self, inner: &Self) -> Self {
-        let mut rotation = [[0.0; 3]; 3];
-        for (i, row) in rotation.iter_mut().enumerate() {
-            for (j, value) in row.iter_mut().enumerate() {
-                *value = (0..3).map(|k| self.rotation[i][k] * inner.rotation[k][j]).sum();
-            }
-        }
-        Self { translation: self.apply(inner.translation), rotation }
-    }
 }
 
 /// Corners used for the round ends of a tilted cylinder: the outline is within 0.5 % of its radius.
@@ -149,12 +95,6 @@ impl Body {
                 hull_between(&corners, low, high)
             }
         }
-    }
-}
-
-impl Placement {
-    fn is_upright(&self) -> bool {
-        self.rotation[2][2].abs() == 1.0
     }
 }
 
@@ -222,16 +162,5 @@ mod tests {
         assert!((width - 2.0_f64.sqrt()).abs() < 1e-9 && (height - 1.0).abs() < 1e-9);
         let (width, _) = size(&cube.slice(0.5).unwrap());
         assert!((width - (2.0_f64.sqrt() - 1.0)).abs() < 1e-9);
-    }
-
-    #[test]
-    fn composed_placements_apply_inner_first() {
-        let outer = Placement::from_xyz_rpy([1.0, 0.0, 0.0, 0.0, 0.0, FRAC_PI_2]);
-        let inner = Placement::from_xyz_rpy([2.0, 0.0, 0.0, 0.1, 0.2, 0.3]);
-        let composed = outer.compose(&inner).apply([0.5, -0.25, 2.0]);
-        let stepwise = outer.apply(inner.apply([0.5, -0.25, 2.0]));
-        for (a, b) in composed.iter().zip(stepwise) {
-            assert!((a - b).abs() < 1e-12);
-        }
     }
 }

@@ -1,0 +1,92 @@
+//! Rigid placements in space.
+
+use crate::math;
+use serde::Serialize;
+
+/// A rigid placement in space: SDF's `x y z roll pitch yaw`, fixed axes, applied roll first.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Placement {
+    /// Translation (m).
+    pub translation: [f64; 3],
+    /// Rotation matrix, row by row.
+    pub rotation: [[f64; 3]; 3],
+}
+
+impl Placement {
+    /// No translation and no rotation.
+    pub const IDENTITY: Self = Self {
+        translation: [0.0; 3],
+        rotation: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+    };
+
+    /// From SDF's six numbers (m, rad): R = Rz(yaw) Ry(pitch) Rx(roll).
+    pub fn from_xyz_rpy([x, y, z, roll, pitch, yaw]: [f64; 6]) -> Self {
+        let (sr, cr) = math::sin_cos(roll);
+        let (sp, cp) = math::sin_cos(pitch);
+        let (sy, cy) = math::sin_cos(yaw);
+        Self {
+            translation: [x, y, z],
+            rotation: [
+                [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+                [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+                [-sp, cp * sr, cp * cr],
+            ],
+        }
+    }
+
+    /// Takes a point from the placed frame to the outer one.
+    pub fn apply(&self, point: [f64; 3]) -> [f64; 3] {
+        let mut out = self.translation;
+        for (value, row) in out.iter_mut().zip(&self.rotation) {
+            *value += row[0] * point[0] + row[1] * point[1] + row[2] * point[2];
+        }
+        out
+    }
+
+    /// The placement `inner`, given in this one's frame, in the outer frame.
+    #[must_use]
+    pub fn compose(&self, inner: &Self) -> Self {
+        let mut rotation = [[0.0; 3]; 3];
+        for (i, row) in rotation.iter_mut().enumerate() {
+            for (j, value) in row.iter_mut().enumerate() {
+                *value = (0..3).map(|k| self.rotation[i][k] * inner.rotation[k][j]).sum();
+            }
+        }
+        Self { translation: self.apply(inner.translation), rotation }
+    }
+
+    /// Whether its z axis points straight up or straight down.
+    pub fn is_upright(&self) -> bool {
+        self.rotation[2][2].abs() == 1.0
+    }
+
+    /// Heading (rad) of the placed x axis seen from above.
+    pub fn yaw(&self) -> f64 {
+        math::atan2(self.rotation[1][0], self.rotation[0][0])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::FRAC_PI_2;
+
+    #[test]
+    fn composed_placements_apply_inner_first() {
+        let outer = Placement::from_xyz_rpy([1.0, 0.0, 0.0, 0.0, 0.0, FRAC_PI_2]);
+        let inner = Placement::from_xyz_rpy([2.0, 0.0, 0.0, 0.1, 0.2, 0.3]);
+        let composed = outer.compose(&inner).apply([0.5, -0.25, 2.0]);
+        let stepwise = outer.apply(inner.apply([0.5, -0.25, 2.0]));
+        for (a, b) in composed.iter().zip(stepwise) {
+            assert!((a - b).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_yawed_placement_stays_upright_and_a_rolled_one_does_not() {
+        let yawed = Placement::from_xyz_rpy([0.0, 0.0, 1.0, 0.0, -0.0, 1.25]);
+        assert!(yawed.is_upright() && (yawed.yaw() - 1.25).abs() < 1e-15);
+        assert!(!Placement::from_xyz_rpy([0.0, 0.0, 0.0, 0.1, 0.0, 0.0]).is_upright());
+    }
+}

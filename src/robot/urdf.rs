@@ -1,0 +1,139 @@
+//! Robots as ROS describes them: URDF links and joints with the `<gazebo>` blocks of sensors and drives.
+//!
+//! Hermetic: no package path is resolved, no macro expanded, no mesh opened. Links and joints are read by
+//! `urdf-rs` (this file alone names it); a strict pass before it reports, with lines, what that crate lets
+//! through. Joints stand at zero. The base frame is the root link's. The floor is that link's origin where it
+//! is called `base_footprint` (REP-120), else the lowest point of the collision shapes.
+
+mod gazebo;
+mod shape;
+mod strict;
+
+use super::Robot;
+use crate::document::xml::{self, Faults};
+use crate::document::{Diagnostic, Source};
+use crate::geometry::Placement;
+use shape::{Shape, ShapeKind};
+use std::collections::BTreeMap;
+
+/// Longest description read (bytes): real ones have some ten thousand.
+pub const MAX_BYTES: usize = 1 << 20;
+
+/// Largest body read (m): beyond it the unit is wrong.
+const MAX_SIZE: f64 = 20.0;
+
+/// Reads a robot with what was noticed on the way (warnings).
+///
+/// # Errors
+/// Every fault found, warnings among them, where the description cannot be used.
+pub fn read(source: &Source) -> Result<(Robot, Vec<Diagnostic>), Vec<Diagnostic>> {
+    let document = xml::parse(source, MAX_BYTES).map_err(|fault| vec![fault])?;
+    let mut faults = Faults::new(source);
+    let tree = strict::check(&document, &mut faults);
+    let (Some(tree), false) = (tree, faults.any_error()) else { return Err(faults.list) };
+
+    let description = match urdf_rs::read_from_string(&source.text) {
+        Ok(description) => description,
+        Err(fault) => {
+            faults.push(Diagnostic::placeless(format!("`{}` is not a URDF: {fault}", source.name)));
+            return Err(faults.list);
+        }
+    };
+    let frames = place(&description, &tree.root);
+    let mut shapes = Vec::new();
+    for link in &description.links {
+        for collision in &link.collision {
+            match shape_of(&collision.geometry) {
+                Some(kind) => shapes.push(Shape {
+                    kind,
+                    placement: frames[&link.name].compose(&placement_of(&collision.origin)),
+                }),
+                None => faults.push(
+                    Diagnostic::placeless(format!(
+                        "a mesh collides on link `{}` and is not part of the body",
+                        link.name
+                    ))
+                    .warning()
+                    .help("add a box or cylinder collision of its size"),
+                ),
+            }
+        }
+    }
+    let Some(footprint) = shape::footprint(&shapes) else {
+        faults.push(
+            Diagnostic::placeless(format!("robot `{}` has no body", description.name))
+                .help("give a link a box, cylinder or sphere collision"),
+        );
+        return Err(faults.list);
+    };
+    let [low, high] = shape::extent(&shapes);
+    let bounds = footprint.bounds();
+    let size = bounds.width().max(bounds.height()).max(high - low);
+    if !(size < MAX_SIZE) {
+        faults.push(
+            Diagnostic::placeless(format!(
+                "robot `{}` is {size} m across: expected less than {MAX_SIZE} m",
+                description.name
+            ))
+            .help("URDF lengths are in metres; is this in millimetres?"),
+        );
+    }
+    let ground = if tree.root == "base_footprint" { 0.0 } else { low };
+    let mass: f64 = description.links.iter().map(|link| link.inertial.mass.value).sum();
+    if !(mass > 0.0 && mass.is_finite()) {
+        faults.push(
+            Diagnostic::placeless(format!("robot `{}` has no mass", description.name))
+                .help("give its base link an <inertial> with a <mass>"),
+        );
+    }
+    let drive = gazebo::drive(&document, &mut faults);
+    let lidar = gazebo::lidar(&document, &mut faults, &frames, ground);
+    match drive {
+        Some(drive) if !faults.any_error() => {
+            let robot = Robot {
+                name: description.name,
+                footprint,
+                body_z: [low - ground, high - ground],
+                mass,
+                drive,
+                lidar,
+            };
+            Ok((robot, faults.list))
+        }
+        _ => Err(faults.list),
+    }
+}
+
+/// Where every link stands in the root link's frame, joints at zero.
+fn place(description: &urdf_rs::Robot, root: &str) -> BTreeMap<String, Placement> {
+    let mut frames = BTreeMap::from([(root.to_owned(), Placement::IDENTITY)]);
+    let mut open = vec![root];
+    while let Some(parent) = open.pop() {
+        for joint in description.joints.iter().filter(|joint| joint.parent.link == parent) {
+            let placement = frames[parent].compose(&placement_of(&joint.origin));
+            frames.insert(joint.child.link.clone(), placement);
+            open.push(&joint.child.link);
+        }
+    }
+    frames
+}
+
+fn placement_of(pose: &urdf_rs::Pose) -> Placement {
+    let ([x, y, z], [roll, pitch, yaw]) = (pose.xyz.0, pose.rpy.0);
+    Placement::from_xyz_rpy([x, y, z, roll, pitch, yaw])
+}
+
+fn shape_of(geometry: &urdf_rs::Geometry) -> Option<ShapeKind> {
+    Some(match *geometry {
+        urdf_rs::Geometry::Box { size } => ShapeKind::Box { size: size.0 },
+        urdf_rs::Geometry::Cylinder { radius, length } => ShapeKind::Cylinder { radius, length },
+        urdf_rs::Geometry::Capsule { radius, length } => {
+            ShapeKind::Cylinder { radius, length: length + 2.0 * radius }
+        }
+        urdf_rs::Geometry::Sphere { radius } => ShapeKind::Sphere { radius },
+        urdf_rs::Geometry::Mesh { .. } => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,216 @@
+//! What a URDF must be before anything is made of it: one tree of uniquely named links, numbers that are
+//! numbers, no macro left unexpanded.
+
+use crate::document::suggestion;
+use crate::document::xml::{self, Faults};
+use roxmltree::{Document, Node};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// What the strict pass found.
+pub(super) struct Tree {
+    /// The link that is no joint's child.
+    pub(super) root: String,
+}
+
+/// Attributes that hold numbers: element, attribute, count, least value allowed.
+const NUMBERS: [(&str, &str, usize, Least); 18] = [
+    ("origin", "xyz", 3, Least::Any),
+    ("origin", "rpy", 3, Least::Any),
+    ("axis", "xyz", 3, Least::Any),
+    ("box", "size", 3, Least::Positive),
+    ("cylinder", "radius", 1, Least::Positive),
+    ("cylinder", "length", 1, Least::Positive),
+    ("capsule", "radius", 1, Least::Positive),
+    ("capsule", "length", 1, Least::Positive),
+    ("sphere", "radius", 1, Least::Positive),
+    ("mesh", "scale", 3, Least::Any),
+    ("mass", "value", 1, Least::Zero),
+    ("inertia", "ixx", 1, Least::Zero),
+    ("inertia", "iyy", 1, Least::Zero),
+    ("inertia", "izz", 1, Least::Zero),
+    ("inertia", "ixy", 1, Least::Any),
+    ("inertia", "ixz", 1, Least::Any),
+    ("inertia", "iyz", 1, Least::Any),
+    ("limit", "velocity", 1, Least::Zero),
+];
+
+#[derive(Clone, Copy, PartialEq)]
+enum Least {
+    Any,
+    Zero,
+    Positive,
+}
+
+/// Elements known below `<robot>`; those after the fourth carry nothing that we use.
+const TOP_LEVEL: [&str; 6] =
+    ["link", "joint", "gazebo", "material", "transmission", "ros2_control"];
+
+/// Reports every fault of the document; the tree where its links and joints form one.
+pub(super) fn check(document: &Document<'_>, faults: &mut Faults<'_>) -> Option<Tree> {
+    let robot = document.root_element();
+    if robot.tag_name().name() != "robot" {
+        let found = robot.tag_name().name();
+        let mut fault = faults
+            .at(robot, "not a robot description")
+            .label(format!("expected <robot>, found <{found}>"));
+        if found == "sdf" {
+            fault = fault.help("an SDF file is a world here; robots are read from URDF");
+        }
+        faults.push(fault);
+        return None;
+    }
+    named(robot, faults);
+    check_macros(document, faults);
+    for element in xml::elements(robot) {
+        let name = element.tag_name().name();
+        if element.tag_name().namespace().is_none() && !TOP_LEVEL.contains(&name) {
+            let mut fault =
+                faults.at(element, format!("unknown element <{name}>")).label("ignored").warning();
+            if let Some(near) = suggestion(name, TOP_LEVEL) {
+                fault = fault.help(format!("did you mean <{near}>?"));
+            }
+            faults.push(fault);
+        }
+        if matches!(name, "link" | "joint") {
+            for node in element.descendants().filter(Node::is_element) {
+                check_numbers(node, faults);
+            }
+        }
+    }
+    tree(robot, faults)
+}
+
+/// The `name` of an element, or a fault.
+fn named<'a>(node: Node<'a, '_>, faults: &mut Faults<'_>) -> Option<&'a str> {
+    let name = node.attribute("name").filter(|name| !name.trim().is_empty());
+    if name.is_none() {
+        let fault = faults
+            .at(node, format!("<{}> without a name", node.tag_name().name()))
+            .label("expected an attribute `name`");
+        faults.push(fault);
+    }
+    name
+}
+
+fn check_macros(document: &Document<'_>, faults: &mut Faults<'_>) {
+    const HELP: &str = "expand the macros first: `xacro robot.urdf.xacro > robot.urdf`";
+    for node in document.descendants() {
+        let xacro = |uri: Option<&str>| uri.is_some_and(|uri| uri.contains("xacro"));
+        if xacro(node.tag_name().namespace()) {
+            let fault = faults.at(node, "xacro macro left in the description").help(HELP);
+            faults.push(fault);
+        }
+        let expression = |text: &str| text.contains("${") || text.contains("$(");
+        let left = node.attributes().find(|attribute| expression(attribute.value()));
+        if let Some(attribute) = left {
+            let fault = faults
+                .at(node, "xacro expression left in the description")
+                .label(format!("`{}` holds `{}`", attribute.name(), attribute.value()))
+                .help(HELP);
+            faults.push(fault);
+        } else if node.is_text() && node.text().is_some_and(expression) {
+            if let Some(parent) = node.parent_element() {
+                let fault =
+                    faults.at(parent, "xacro expression left in the description").help(HELP);
+                faults.push(fault);
+            }
+        }
+    }
+}
+
+fn check_numbers(node: Node<'_, '_>, faults: &mut Faults<'_>) {
+    let element = node.tag_name().name();
+    for (_, attribute, count, least) in NUMBERS.iter().filter(|entry| entry.0 == element) {
+        let smallest = if *count == 3 {
+            faults
+                .attribute::<3>(node, attribute)
+                .map(|numbers| numbers.into_iter().fold(f64::INFINITY, f64::min))
+        } else {
+            faults.attribute::<1>(node, attribute).map(|[number]| number)
+        };
+        let Some(smallest) = smallest else { continue };
+        let expected = match least {
+            Least::Zero if smallest < 0.0 => "zero or more",
+            Least::Positive if smallest <= 0.0 => "more than zero",
+            _ => continue,
+        };
+        let fault = faults
+            .at(node, format!("{element} {attribute} out of range"))
+            .label(format!("expected {expected}, found {smallest}"));
+        faults.push(fault);
+    }
+}
+
+fn tree(robot: Node<'_, '_>, faults: &mut Faults<'_>) -> Option<Tree> {
+    let mut links = BTreeSet::new();
+    let mut joints = BTreeSet::new();
+    let children_named =
+        |name: &'static str| xml::elements(robot).filter(move |e| e.tag_name().name() == name);
+    for (kind, names) in [("link", &mut links), ("joint", &mut joints)] {
+        for node in children_named(kind) {
+            if let Some(name) = named(node, faults)
+                && !names.insert(name)
+            {
+                let fault = faults
+                    .at(node, format!("duplicate {kind} `{name}`"))
+                    .help(format!("give every {kind} a name of its own"));
+                faults.push(fault);
+            }
+        }
+    }
+    let mut parent_of = BTreeMap::new();
+    for joint in children_named("joint") {
+        let mut end = |role: &str| {
+            let Some(link) = xml::child(joint, role).and_then(|node| node.attribute("link")) else {
+                let fault = faults
+                    .at(joint, format!("joint without a {role}"))
+                    .label(format!("expected <{role} link=\"...\"/>"));
+                faults.push(fault);
+                return None;
+            };
+            if !links.contains(link) {
+                let mut fault =
+                    faults.at(joint, format!("joint names an unknown {role} link `{link}`"));
+                if let Some(near) = suggestion(link, links.iter().copied()) {
+                    fault = fault.help(format!("did you mean `{near}`?"));
+                }
+                faults.push(fault);
+                return None;
+            }
+            Some(link)
+        };
+        let (Some(parent), Some(child)) = (end("parent"), end("child")) else { continue };
+        if parent_of.insert(child, parent).is_some() {
+            let fault = faults.at(joint, format!("link `{child}` is the child of two joints"));
+            faults.push(fault);
+        }
+    }
+    if faults.any_error() {
+        return None;
+    }
+    let roots: Vec<&str> =
+        links.iter().copied().filter(|link| !parent_of.contains_key(link)).collect();
+    let [root] = roots[..] else {
+        let found =
+            if roots.is_empty() { "none".to_owned() } else { format!("`{}`", roots.join("`, `")) };
+        let fault = faults
+            .at(robot, "the links do not form one tree")
+            .label(format!("expected one link without a parent, found {found}"))
+            .help("connect every link to the base by joints");
+        faults.push(fault);
+        return None;
+    };
+    // Every other link has one parent, so what does not reach the root is on a loop.
+    for link in &links {
+        let (mut at, mut steps) = (*link, 0);
+        while let Some(parent) = parent_of.get(at) {
+            (at, steps) = (parent, steps + 1);
+            if steps > links.len() {
+                let fault = faults.at(robot, format!("link `{link}` hangs on a loop of joints"));
+                faults.push(fault);
+                return None;
+            }
+        }
+    }
+    Some(Tree { root: root.to_owned() })
+}

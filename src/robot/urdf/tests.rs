@@ -1,0 +1,239 @@
+use super::*;
+use crate::document::Severity;
+use crate::document::mutation::{edits, mutate};
+use crate::geometry::Outline;
+use crate::robot::DriveKind;
+use proptest::prelude::*;
+
+const KOBUKI: &str = include_str!("../../../robots/kobuki.urdf");
+
+fn faults(text: &str) -> Vec<String> {
+    let source = Source::new("r.urdf", text);
+    let list = match read(&source) {
+        Ok((_, warnings)) => warnings,
+        Err(faults) => faults,
+    };
+    list.iter().map(|fault| fault.render(false)).collect()
+}
+
+/// The Kobuki with one piece of its text replaced.
+fn changed(from: &str, to: &str) -> Vec<String> {
+    assert!(KOBUKI.contains(from), "{from}");
+    faults(&KOBUKI.replacen(from, to, 1))
+}
+
+#[test]
+fn the_kobuki_is_what_the_study_published() {
+    let (robot, warnings) = read(&Source::new("robots/kobuki.urdf", KOBUKI)).unwrap();
+    assert_eq!(warnings, []);
+    assert_eq!(
+        robot.footprint,
+        Outline::Circle { center: crate::geometry::Point::ZERO, radius: 0.178 }
+    );
+    assert!(robot.body_z[0].abs() < 1e-9 && (robot.body_z[1] - 0.43).abs() < 1e-9);
+    assert!((robot.mass - 2.45).abs() < 1e-12);
+    assert_eq!(robot.drive.kind, DriveKind::Differential);
+    assert_eq!((robot.drive.wheel_separation, robot.drive.wheel_diameter), (0.23, 0.07));
+    assert_eq!((robot.drive.max_linear, robot.drive.max_angular), (None, None));
+    let lidar = robot.lidar.unwrap();
+    assert!((lidar.height - 0.1602).abs() < 1e-12);
+    assert_eq!((lidar.mount.x, lidar.mount.y, lidar.mount.heading), (0.1, 0.0, 0.0));
+    assert_eq!((lidar.beams, lidar.rate_hz, lidar.noise_sd), (720, 20.0, 0.01));
+    assert_eq!((lidar.min_range, lidar.max_range), (0.01, 10.0));
+    assert!((lidar.increment().to_degrees() - 0.2504).abs() < 1e-4);
+}
+
+const SKID: &str = r#"<robot name="skid">
+  <link name="base_link">
+    <inertial><mass value="12"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+    <collision><origin xyz="0 0 0.177"/><geometry><box size="0.5 0.4 0.15"/></geometry></collision>
+    <collision><geometry><mesh filename="package://skid/top.stl"/></geometry></collision>
+  </link>
+  <link name="wheel"/>
+  <joint name="wheel" type="continuous">
+    <origin xyz="0.1 0.3 0"/><parent link="base_link"/><child link="wheel"/><axis xyz="0 1 0"/>
+  </joint>
+  <link name="scanner"/>
+  <joint name="scanner" type="fixed">
+    <origin xyz="0.2 0.1 0.3" rpy="0 0 0.5"/><parent link="base_link"/><child link="scanner"/>
+  </joint>
+  <gazebo reference="scanner">
+    <sensor type="gpu_ray" name="lds">
+      <pose>0.1 0 0.05 0 0 0</pose>
+      <update_rate>5</update_rate>
+      <ray>
+        <scan><horizontal><samples>360</samples><resolution>1</resolution>
+          <min_angle>0</min_angle><max_angle>6.28319</max_angle></horizontal></scan>
+        <range><min>0.12</min><max>3.5</max></range>
+      </ray>
+    </sensor>
+    <sensor type="imu" name="gyro"/>
+  </gazebo>
+  <gazebo><plugin name="d" filename="libgazebo_ros_skid_steer_drive.so">
+    <wheelSeparation>0.4</wheelSeparation><wheelDiameter>0.215</wheelDiameter>
+    <max_linear_velocity>0.7</max_linear_velocity></plugin></gazebo>
+  <gazebo><plugin name="x" filename="libgazebo_ros_wifi.so"/></gazebo>
+</robot>"#;
+
+#[test]
+fn a_chain_of_joints_mounts_the_sensor_and_the_hull_is_the_footprint() {
+    let (robot, warnings) = read(&Source::new("s.urdf", SKID)).unwrap();
+    let messages: Vec<_> = warnings.iter().map(|w| w.message.as_str()).collect();
+    assert_eq!(
+        messages,
+        [
+            "a mesh collides on link `base_link` and is not part of the body",
+            "unknown plugin `libgazebo_ros_wifi.so`",
+            "range scanner `lds` looks all round",
+            "sensor `gyro` of type `imu` is not simulated",
+        ]
+    );
+    assert!(warnings.iter().all(|w| w.severity == Severity::Warning));
+    let Outline::Polygon(corners) = &robot.footprint else { panic!("{:?}", robot.footprint) };
+    assert_eq!(corners.len(), 4);
+    let bounds = robot.footprint.bounds();
+    assert!((bounds.width() - 0.5).abs() < 1e-12 && (bounds.height() - 0.4).abs() < 1e-12);
+    // No base_footprint: the floor is the lowest collision point, z = 0.102.
+    let lidar = robot.lidar.unwrap();
+    assert!((lidar.height - (0.35 - 0.102)).abs() < 1e-12, "{}", lidar.height);
+    assert!((lidar.mount.x - (0.2 + 0.1 * 0.5_f64.cos())).abs() < 1e-12);
+    assert!((lidar.mount.heading - 0.5).abs() < 1e-12);
+    assert_eq!((lidar.beams, lidar.noise_sd), (360, 0.0));
+    assert!((lidar.increment().to_degrees() - 1.0).abs() < 1e-9);
+    assert_eq!(robot.drive.kind, DriveKind::SkidSteer);
+    assert_eq!((robot.drive.max_linear, robot.drive.max_angular), (Some(0.7), None));
+}
+
+#[test]
+fn faults_say_where_and_what_to_do() {
+    assert_eq!(
+        changed("<mass value=\"2.4\"/>", "<mass value=\"-2.4\"/>"),
+        ["\
+error: mass value out of range
+  --> r.urdf:18:7
+   |
+18 |       <mass value=\"-2.4\"/> <!-- [K] with the small battery pack -->
+   |       ^^^^^ expected zero or more, found -2.4
+"]
+    );
+    assert_eq!(
+        changed("xyz=\"0 0 0.05949\"", "xyz=\"0 x 0.0 0.05949\""),
+        ["\
+error: malformed number in xyz
+  --> r.urdf:23:20
+   |
+23 |       <origin xyz=\"0 x 0.0 0.05949\" rpy=\"0 0 0\"/> <!-- [K] -->
+   |                    ^^^^^^^^^^^^^^^ expected a finite number, found `x`
+"]
+    );
+    assert_eq!(
+        changed("<child link=\"stack_link\"/>", "<child link=\"stak_link\"/>"),
+        ["\
+error: joint names an unknown child link `stak_link`
+  --> r.urdf:64:3
+   |
+64 |   <joint name=\"stack_joint\" type=\"fixed\">
+   |   ^^^^^^
+   |
+   = help: did you mean `stack_link`?
+"]
+    );
+}
+
+#[test]
+fn what_urdf_rs_lets_through_is_refused() {
+    for (from, to, message) in [
+        ("radius=\"0.178\"", "radius=\"NaN\"", "malformed number in radius"),
+        ("radius=\"0.178\"", "radius=\"0\"", "cylinder radius out of range"),
+        ("xyz=\"0 0 0.0102\"", "xyz=\"0 0\"", "wrong count of numbers in xyz"),
+        ("<link name=\"laser_link\"/>", "<link name=\"base_link\"/>", "duplicate link `base_link`"),
+        ("<link name=\"laser_link\"/>", "<link/>", "<link> without a name"),
+        ("xyz=\"0.10 0 0.15\"", "xyz=\"${x} 0 0.15\"", "xacro expression left in the description"),
+        (
+            "<robot name=\"kobuki\">",
+            "<robot name=\"kobuki\" xmlns:xacro=\"http://ros.org/wiki/xacro\"><xacro:m/>",
+            "xacro macro left in the description",
+        ),
+        (
+            "<child link=\"laser_link\"/>",
+            "<child link=\"base_link\"/>",
+            "link `base_link` is the child of two joints",
+        ),
+        (
+            "radius=\"0.178\"",
+            "radius=\"178\"",
+            "robot `kobuki` is 356 m across: expected less than 20 m",
+        ),
+        ("<samples>720</samples>", "<samples>1</samples>", "number of samples out of range"),
+        (
+            "<update_rate>20</update_rate>",
+            "<update_rate>7</update_rate>",
+            "range scanner `laser` scans at 7 Hz",
+        ),
+        ("<update_rate>20</update_rate>", "", "<sensor> has no <update_rate>"),
+        ("<max>10.0</max>", "<max>0.001</max>", "range scanner `laser` sees from 0.01 to 0.001 m"),
+        (
+            "rpy=\"0 0 0\"/>\n    <parent link=\"base_link\"/>\n    <child link=\"laser_link\"/>",
+            "rpy=\"3.1416 0 0\"/>\n    <parent link=\"base_link\"/>\n    <child link=\"laser_link\"/>",
+            "range scanner `laser` is tilted or upside down",
+        ),
+        (
+            "<stddev>0.01</stddev>",
+            "<stddev>-0.01</stddev>",
+            "range scanner `laser` has a negative standard deviation",
+        ),
+        (
+            "<type>gaussian</type>",
+            "<type>salty</type>",
+            "range scanner `laser` has noise of kind `salty`",
+        ),
+        (
+            "reference=\"laser_link\"",
+            "reference=\"lasr_link\"",
+            "reference to an unknown link `lasr_link`",
+        ),
+        ("<wheel_separation>0.230</wheel_separation>", "", "drive without its wheels' geometry"),
+        (
+            "libgazebo_ros_kobuki.so",
+            "libgazebo_ros_kobuko.so",
+            "unknown plugin `libgazebo_ros_kobuko.so`",
+        ),
+        ("<robot name=\"kobuki\">", "<sdf><robot name=\"kobuki\">", "not well-formed XML"),
+    ] {
+        let found = changed(from, to);
+        assert!(
+            found.iter().any(|f| f.lines().next().unwrap().ends_with(message)),
+            "{message}: {found:#?}"
+        );
+        let source = Source::new("r.urdf", KOBUKI.replacen(from, to, 1));
+        assert!(read(&source).is_err(), "{message}");
+    }
+    assert_eq!(
+        faults("<sdf version='1.6'/>"),
+        ["\
+error: not a robot description
+ --> r.urdf:1:1
+  |
+1 | <sdf version='1.6'/>
+  | ^^^^ expected <robot>, found <sdf>
+  |
+  = help: an SDF file is a world here; robots are read from URDF
+"]
+    );
+    assert!(
+        faults("<robot name='a'><link name='b'/><link name='c'/></robot>")[0]
+            .contains("expected one link without a parent, found `b`, `c`")
+    );
+}
+
+proptest! {
+    #[test]
+    fn damaged_descriptions_never_panic(edits in edits()) {
+        for text in [KOBUKI, SKID] {
+            let text = String::from_utf8_lossy(&mutate(text.as_bytes(), &edits)).into_owned();
+            for fault in faults(&text) {
+                prop_assert!(fault.ends_with('\n'));
+            }
+        }
+    }
+}
