@@ -27,7 +27,7 @@ const MAX_SIZE: f64 = 20.0;
 /// # Errors
 /// Every fault found, warnings among them, where the description cannot be used.
 pub fn read(source: &Source) -> Result<(Robot, Vec<Diagnostic>), Vec<Diagnostic>> {
-    let document = xml::parse(source, MAX_BYTES).map_err(|fault| vec![fault])?;
+    let document = xml::parse(source, MAX_BYTES)?;
     let mut faults = Faults::new(source);
     let tree = strict::check(&document, &mut faults);
     let (Some(tree), false) = (tree, faults.any_error()) else { return Err(faults.list) };
@@ -69,7 +69,7 @@ pub fn read(source: &Source) -> Result<(Robot, Vec<Diagnostic>), Vec<Diagnostic>
     let [low, high] = shape::extent(&shapes);
     let bounds = footprint.bounds();
     let size = bounds.width().max(bounds.height()).max(high - low);
-    if !(size < MAX_SIZE) {
+    if size.is_nan() || size >= MAX_SIZE {
         faults.push(
             Diagnostic::placeless(format!(
                 "robot `{}` is {size} m across: expected less than {MAX_SIZE} m",
@@ -80,7 +80,7 @@ pub fn read(source: &Source) -> Result<(Robot, Vec<Diagnostic>), Vec<Diagnostic>
     }
     let ground = if tree.root == "base_footprint" { 0.0 } else { low };
     let mass: f64 = description.links.iter().map(|link| link.inertial.mass.value).sum();
-    if !(mass > 0.0 && mass.is_finite()) {
+    if mass <= 0.0 || !mass.is_finite() {
         faults.push(
             Diagnostic::placeless(format!("robot `{}` has no mass", description.name))
                 .help("give its base link an <inertial> with a <mass>"),

@@ -2,6 +2,9 @@
 //!
 //! The mind never imports this module. Metres and radians; z up from the floor.
 
+#[cfg(test)]
+pub(crate) mod originals;
+pub mod sdf;
 mod solid;
 
 pub use crate::geometry::Placement;

@@ -77,22 +77,30 @@ impl Body {
                     .iter()
                     .flat_map(|&end| (0..ROUND).map(move |i| rim(end, i)))
                     .collect();
-                hull_between(&corners, low, high)
+                let pairs: Vec<_> = (0..corners.len())
+                    .flat_map(|i| (i + 1..corners.len()).map(move |j| (i, j)))
+                    .collect();
+                hull_between(&corners, &pairs, low, high)
             }
             Self::Box { size, placement } => {
-                let mut corners = Vec::with_capacity(8);
-                for sx in [-0.5, 0.5] {
-                    for sy in [-0.5, 0.5] {
-                        for sz in [-0.5, 0.5] {
-                            corners.push(placement.apply([
-                                sx * size[0],
-                                sy * size[1],
-                                sz * size[2],
-                            ]));
-                        }
-                    }
+                let corner = |i: usize| {
+                    let end = |axis: usize| if i >> axis & 1 == 0 { -0.5 } else { 0.5 };
+                    placement.apply([end(0) * size[0], end(1) * size[1], end(2) * size[2]])
+                };
+                let corners: Vec<_> = (0..8).map(corner).collect();
+                if placement.is_upright() {
+                    let (bottom, top) =
+                        (corners[0][2].min(corners[7][2]), corners[0][2].max(corners[7][2]));
+                    let sides: Vec<_> =
+                        corners[..4].iter().map(|c| Point::new(c[0], c[1])).collect();
+                    return (bottom <= high && top >= low)
+                        .then(|| Outline::Polygon(convex_hull(&sides)));
                 }
-                hull_between(&corners, low, high)
+                let edges: Vec<_> = (0..8_usize)
+                    .flat_map(|i| (0..3).map(move |axis| (i, i | 1 << axis)))
+                    .filter(|(i, j)| i != j)
+                    .collect();
+                hull_between(&corners, &edges, low, high)
             }
         }
     }
@@ -100,9 +108,14 @@ impl Body {
 
 /// Hull, seen from above, of the convex body spanned by `corners`, cut to `low..=high`.
 ///
-/// A section of a convex body is spanned by the corners within it and by where the lines between corners on
-/// either side of a cutting plane pierce it.
-fn hull_between(corners: &[[f64; 3]], low: f64, high: f64) -> Option<Outline> {
+/// A section of a convex body is spanned by the corners within it and by where its edges pierce a cutting plane.
+/// `edges` name corners by number and may hold inner lines too.
+fn hull_between(
+    corners: &[[f64; 3]],
+    edges: &[(usize, usize)],
+    low: f64,
+    high: f64,
+) -> Option<Outline> {
     let mut points: Vec<Point> = corners
         .iter()
         .filter(|c| (low..=high).contains(&c[2]))
@@ -112,12 +125,11 @@ fn hull_between(corners: &[[f64; 3]], low: f64, high: f64) -> Option<Outline> {
         if !plane.is_finite() {
             continue;
         }
-        for (i, a) in corners.iter().enumerate() {
-            for b in &corners[i + 1..] {
-                if (a[2] < plane) != (b[2] < plane) && a[2] != b[2] {
-                    let t = (plane - a[2]) / (b[2] - a[2]);
-                    points.push(Point::new(a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])));
-                }
+        for &(i, j) in edges {
+            let (a, b) = (corners[i], corners[j]);
+            if (a[2] < plane) != (b[2] < plane) {
+                let t = (plane - a[2]) / (b[2] - a[2]);
+                points.push(Point::new(a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])));
             }
         }
     }
@@ -142,6 +154,18 @@ mod tests {
         let car = Body::Box { size: [4.5, 4.0, 2.0], placement };
         let (width, height) = size(&car.slice(0.16).unwrap());
         assert!((width - 4.5).abs() < 1e-9 && (height - 2.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_turned_box_has_four_corners_wherever_it_is_cut() {
+        // Rounding must not add corners along its sides: each would be a wall to the lidar.
+        for yaw in [0.0, 0.1, FRAC_PI_2, -1.57, 2.5] {
+            let placement = Placement::from_xyz_rpy([32.0, 8.9, 1.25, 0.0, -0.0, yaw]);
+            let wall = Body::Box { size: [10.25, 0.15, 2.5], placement };
+            for outline in [wall.slice(0.1602), wall.shadow(0.0, 0.43), wall.shadow(-9.0, 9.0)] {
+                assert_eq!(outline.unwrap().sides().count(), 4, "{yaw}");
+            }
+        }
     }
 
     #[test]

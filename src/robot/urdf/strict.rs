@@ -108,12 +108,12 @@ fn check_macros(document: &Document<'_>, faults: &mut Faults<'_>) {
                 .label(format!("`{}` holds `{}`", attribute.name(), attribute.value()))
                 .help(HELP);
             faults.push(fault);
-        } else if node.is_text() && node.text().is_some_and(expression) {
-            if let Some(parent) = node.parent_element() {
-                let fault =
-                    faults.at(parent, "xacro expression left in the description").help(HELP);
-                faults.push(fault);
-            }
+        } else if node.is_text()
+            && node.text().is_some_and(expression)
+            && let Some(parent) = node.parent_element()
+        {
+            let fault = faults.at(parent, "xacro expression left in the description").help(HELP);
+            faults.push(fault);
         }
     }
 }

@@ -96,7 +96,7 @@ fn a_chain_of_joints_mounts_the_sensor_and_the_hull_is_the_footprint() {
     // No base_footprint: the floor is the lowest collision point, z = 0.102.
     let lidar = robot.lidar.unwrap();
     assert!((lidar.height - (0.35 - 0.102)).abs() < 1e-12, "{}", lidar.height);
-    assert!((lidar.mount.x - (0.2 + 0.1 * 0.5_f64.cos())).abs() < 1e-12);
+    assert!((lidar.mount.x - (0.2 + 0.1 * crate::math::cos(0.5))).abs() < 1e-12);
     assert!((lidar.mount.heading - 0.5).abs() < 1e-12);
     assert_eq!((lidar.beams, lidar.noise_sd), (360, 0.0));
     assert!((lidar.increment().to_degrees() - 1.0).abs() < 1e-9);
