@@ -9,11 +9,15 @@ pub mod frontier;
 pub mod information_gain;
 mod mission;
 mod parameters;
+mod requests;
 pub mod utility;
 
 pub use parameters::{
     Coverage, Exploration, Gain, Mapping, Measurement, Mission, Navigation, Parameters, Reselect,
     Sensing, Strategy,
+};
+pub use requests::{
+    COVERAGE_LEVELS, CoverageCurve, CoverageTable, FactorValue, FigureRequest, Metric, TableRequest,
 };
 
 use crate::geometry::Pose;

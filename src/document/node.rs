@@ -1,0 +1,201 @@
+//! A YAML document as a tree that remembers where everything stands.
+
+use super::{Diagnostic, Source};
+use std::ops::Range;
+
+/// Where something is written: bytes of one of a tree's sources.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Place {
+    /// Index into [`Tree::sources`]: 0 is the document itself.
+    pub source: u16,
+    /// First byte.
+    pub start: usize,
+    /// Byte after the last one.
+    pub end: usize,
+}
+
+/// One value and where it stands.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Node {
+    /// Where it stands, without its key.
+    pub place: Place,
+    /// What it is.
+    pub content: Content,
+}
+
+/// What a node is, by the core schema of YAML 1.2 without its lossy and ambiguous forms.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Content {
+    /// `null`, `~` or nothing at all.
+    Null,
+    /// `true` or `false`.
+    Bool(bool),
+    /// A whole number within the range of `i64` or `u64`.
+    Integer(i128),
+    /// A finite number written with a point or an exponent.
+    Float(f64),
+    /// Text, quoted or plain.
+    Text(String),
+    /// A list.
+    List(Vec<Node>),
+    /// A mapping, in the order written; keys are unique.
+    Map(Vec<Entry>),
+}
+
+/// One key of a mapping with its value.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Entry {
+    /// The key.
+    pub key: String,
+    /// Where the key stands.
+    pub key_place: Place,
+    /// Its value.
+    pub value: Node,
+}
+
+impl Node {
+    /// The value of `key`, where this is a mapping that has it.
+    pub fn get(&self, key: &str) -> Option<&Self> {
+        self.entry(key).map(|entry| &entry.value)
+    }
+
+    /// The entry of `key`, where this is a mapping that has it.
+    pub fn entry(&self, key: &str) -> Option<&Entry> {
+        self.entries().iter().find(|entry| entry.key == key)
+    }
+
+    /// The entries of a mapping; none for anything else.
+    pub fn entries(&self) -> &[Entry] {
+        match &self.content {
+            Content::Map(entries) => entries,
+            _ => &[],
+        }
+    }
+
+    /// The items of a list; none for anything else.
+    pub fn items(&self) -> &[Self] {
+        match &self.content {
+            Content::List(items) => items,
+            _ => &[],
+        }
+    }
+
+    /// This scalar as one text, the same for every way to write it (`0.50` is `0.5`); `None` for lists,
+    /// mappings and nothing.
+    pub fn scalar_text(&self) -> Option<String> {
+        match &self.content {
+            Content::Bool(value) => Some(value.to_string()),
+            Content::Integer(value) => Some(value.to_string()),
+            Content::Float(value) => Some(if *value == 0.0 { 0.0 } else { *value }.to_string()),
+            Content::Text(text) => Some(text.clone()),
+            Content::Null | Content::List(_) | Content::Map(_) => None,
+        }
+    }
+
+    /// What this is, for messages: ``the text `ten` ``.
+    pub fn found(&self) -> String {
+        match &self.content {
+            Content::Null => "nothing".to_owned(),
+            Content::Bool(value) => format!("`{value}`"),
+            Content::Integer(value) => format!("the number {value}"),
+            Content::Float(value) => format!("the number {value}"),
+            Content::Text(text) if text.chars().count() > 40 => {
+                format!("the text `{}...`", text.chars().take(37).collect::<String>())
+            }
+            Content::Text(text) => format!("the text `{text}`"),
+            Content::List(_) => "a list".to_owned(),
+            Content::Map(_) => "a mapping".to_owned(),
+        }
+    }
+
+    /// The same value as JSON; the order of keys is lost.
+    pub fn to_json(&self) -> serde_json::Value {
+        use serde_json::Value;
+        match &self.content {
+            Content::Null => Value::Null,
+            Content::Bool(value) => Value::Bool(*value),
+            Content::Integer(value) => u64::try_from(*value)
+                .map(Value::from)
+                .or_else(|_| i64::try_from(*value).map(Value::from))
+                .unwrap_or_default(),
+            Content::Float(value) => Value::from(*value),
+            Content::Text(text) => Value::String(text.clone()),
+            Content::List(items) => Value::Array(items.iter().map(Self::to_json).collect()),
+            Content::Map(entries) => {
+                Value::Object(entries.iter().map(|e| (e.key.clone(), e.value.to_json())).collect())
+            }
+        }
+    }
+}
+
+/// A document's tree with the texts its nodes come from.
+#[derive(Debug, Clone)]
+pub struct Tree {
+    /// The document first, then every text that nodes were grafted from.
+    pub sources: Vec<Source>,
+    /// The whole document.
+    pub root: Node,
+}
+
+impl Tree {
+    /// The node that the JSON pointer `pointer` (RFC 6901) names.
+    pub fn node(&self, pointer: &str) -> Option<&Node> {
+        match self.walk(pointer) {
+            (node, _, true) => Some(node),
+            _ => None,
+        }
+    }
+
+    /// Where the value at `pointer` stands, or the nearest thing around it that is written.
+    pub fn place(&self, pointer: &str) -> Place {
+        match self.walk(pointer) {
+            (node, _, true) => node.place,
+            (node, key, false) => key.unwrap_or_else(|| start_of(node)),
+        }
+    }
+
+    /// Where the key of the value at `pointer` stands; for items of lists, where the item does.
+    pub fn key_place(&self, pointer: &str) -> Place {
+        let (node, key, _) = self.walk(pointer);
+        key.unwrap_or_else(|| start_of(node))
+    }
+
+    /// An error that says `message` at `place`, cut to the line it begins on.
+    pub fn fault(&self, place: Place, message: impl Into<String>) -> Diagnostic {
+        let source = &self.sources[usize::from(place.source).min(self.sources.len() - 1)];
+        Diagnostic::error(source, first_line(&source.text, place), message)
+    }
+
+    /// The deepest node towards `pointer`, its key's place, and whether it is what the pointer names.
+    fn walk(&self, pointer: &str) -> (&Node, Option<Place>, bool) {
+        let (mut node, mut key_place) = (&self.root, None);
+        for part in pointer.split('/').skip(1) {
+            let part = part.replace("~1", "/").replace("~0", "~");
+            let next = match &node.content {
+                Content::Map(_) => node.entry(&part).map(|e| (&e.value, Some(e.key_place))),
+                Content::List(items) => part
+                    .parse::<usize>()
+                    .ok()
+                    .and_then(|i| items.get(i))
+                    .map(|item| (item, Some(item.place))),
+                _ => None,
+            };
+            let Some(found) = next else { return (node, key_place, false) };
+            (node, key_place) = found;
+        }
+        (node, key_place, true)
+    }
+}
+
+/// The place of a node as a whole: its first key, where it is a mapping.
+pub(super) fn start_of(node: &Node) -> Place {
+    node.entries().first().map_or(node.place, |entry| entry.key_place)
+}
+
+fn first_line(text: &str, place: Place) -> Range<usize> {
+    let start = place.start.min(text.len());
+    let end = place.end.clamp(start, text.len());
+    let written = text.get(start..end).unwrap_or("");
+    let line = written.find('\n').map_or(written.len(), |i| written[..i].trim_end().len());
+    start..start + line
+}

@@ -1,0 +1,353 @@
+//! Reads YAML into a tree, refusing what is lossy, ambiguous between YAML 1.1 and 1.2, or a trap: duplicate
+//! keys, merge keys, tags, directives, `yes`/`no`, octal-looking and non-finite numbers, alias bombs.
+
+use super::node::{Content, Entry, Node, Place, Tree};
+use super::{Diagnostic, Source};
+use serde_yaml::granit_parser::{Event, Parser, ScalarStyle, Span, StrInput, options};
+use std::collections::BTreeMap;
+
+/// More nodes than any manifest or world has; stops alias bombs.
+const MOST_NODES: usize = 250_000;
+/// Deeper than any document we define; keeps every recursion over a tree shallow.
+const MOST_NESTING: usize = 48;
+
+/// The tree of `source`, or every fault in its text.
+///
+/// # Errors
+/// All scalars and keys that are refused, or the first fault of the syntax.
+pub fn read(source: &Source) -> Result<Tree, Vec<Diagnostic>> {
+    let root = read_node(std::slice::from_ref(source), 0)?;
+    Ok(Tree { sources: vec![source.clone()], root })
+}
+
+/// The node that the last of `sources` holds, its places numbered `number`.
+pub(super) fn read_node(sources: &[Source], number: u16) -> Result<Node, Vec<Diagnostic>> {
+    let source = &sources[usize::from(number)];
+    let options = options! { disallow_directives: true, emit_comments: false };
+    let mut reader = Reader {
+        events: Parser::new_from_str_with_options(&source.text, options),
+        source,
+        number,
+        anchors: BTreeMap::new(),
+        nodes: 0,
+        faults: Vec::new(),
+    };
+    match reader.document() {
+        Ok(node) if reader.faults.is_empty() => Ok(node),
+        Ok(_) => Err(reader.faults),
+        Err(fault) => {
+            reader.faults.push(*fault);
+            Err(reader.faults)
+        }
+    }
+}
+
+/// A fault after which nothing more can be read.
+type Stop = Box<Diagnostic>;
+
+struct Reader<'a> {
+    events: Parser<'a, StrInput<'a>>,
+    source: &'a Source,
+    number: u16,
+    /// Finished anchored nodes, with how many nodes and levels each holds.
+    anchors: BTreeMap<usize, (Node, usize, usize)>,
+    nodes: usize,
+    faults: Vec<Diagnostic>,
+}
+
+impl<'a> Reader<'a> {
+    fn document(&mut self) -> Result<Node, Stop> {
+        let mut root = None;
+        while let Some((event, span)) = self.next()? {
+            match event {
+                Event::StreamEnd => break,
+                Event::DocumentStart(..) if root.is_some() => {
+                    let place = self.place(&span);
+                    return Err(Box::new(
+                        self.fault(place, "a second document begins here")
+                            .label("expected the end of the file")
+                            .help("keep one document per file and remove the `---` line"),
+                    ));
+                }
+                event if event.is_node() => root = Some(self.node(event, &span, 0)?),
+                _ => {}
+            }
+        }
+        let nothing = Place { source: self.number, start: 0, end: 0 };
+        Ok(root.unwrap_or(Node { place: nothing, content: Content::Null }))
+    }
+
+    fn next(&mut self) -> Result<Option<(Event<'a>, Span)>, Stop> {
+        match self.events.next() {
+            None => Ok(None),
+            Some(Ok(next)) => Ok(Some(next)),
+            Some(Err(error)) => {
+                let at = error.marker().byte_offset().unwrap_or(self.source.text.len());
+                let end = self.source.text[at.min(self.source.text.len())..]
+                    .chars()
+                    .next()
+                    .map_or(at, |c| at + c.len_utf8());
+                let place = Place { source: self.number, start: at, end };
+                let info = error.info();
+                Err(Box::new(self.fault(place, format!("not valid YAML: {info}"))))
+            }
+        }
+    }
+
+    /// The node that begins with `event`.
+    fn node(&mut self, event: Event<'a>, span: &Span, depth: usize) -> Result<Node, Stop> {
+        let place = self.place(span);
+        self.nodes += 1;
+        if self.nodes > MOST_NODES {
+            return Err(Box::new(
+                self.fault(place, format!("the document has more than {MOST_NODES} values"))
+                    .help("aliases (`*name`) multiply what they stand for: use fewer"),
+            ));
+        }
+        if depth > MOST_NESTING {
+            return Err(Box::new(self.too_deep(place)));
+        }
+        if event.tag().is_some() {
+            let tag = span.tag_span().map_or(place, |tag| self.place(&tag));
+            let fault = self
+                .fault(tag, "tags (`!name`) are not used here")
+                .help("remove the tag; a choice is written as `{name: settings}`");
+            self.faults.push(fault);
+        }
+        let anchor = event.anchor_id();
+        let before = self.nodes;
+        let node = match event {
+            Event::Scalar(text, style, ..) => {
+                let plain = style == ScalarStyle::Plain;
+                Node { place, content: self.scalar(&text, plain, place) }
+            }
+            Event::SequenceStart(..) => {
+                let mut items = Vec::new();
+                let mut end = place.end;
+                while let Some((event, span)) = self.next()? {
+                    if matches!(event, Event::SequenceEnd) {
+                        end = self.end_of(&span, end);
+                        break;
+                    }
+                    if event.is_node() {
+                        let item = self.node(event, &span, depth + 1)?;
+                        end = end.max(item.place.end);
+                        items.push(item);
+                    }
+                }
+                Node { place: Place { end, ..place }, content: Content::List(items) }
+            }
+            Event::MappingStart(..) => self.map(place, depth)?,
+            Event::Alias(id) => {
+                let Some((node, size, height)) = self.anchors.get(&id).cloned() else {
+                    return Err(Box::new(self.fault(place, "an alias cannot stand inside itself")));
+                };
+                self.nodes += size;
+                if depth + height > MOST_NESTING {
+                    return Err(Box::new(self.too_deep(place)));
+                }
+                node
+            }
+            _ => Node { place, content: Content::Null },
+        };
+        if let Some(id) = anchor {
+            let height = height_of(&node);
+            self.anchors.insert(id, (node.clone(), self.nodes - before, height));
+        }
+        Ok(node)
+    }
+
+    fn map(&mut self, place: Place, depth: usize) -> Result<Node, Stop> {
+        let mut entries: Vec<Entry> = Vec::new();
+        let mut known: BTreeMap<String, Place> = BTreeMap::new();
+        let mut end = place.end;
+        while let Some((event, span)) = self.next()? {
+            if matches!(event, Event::MappingEnd) {
+                end = self.end_of(&span, end);
+                break;
+            }
+            if !event.is_node() {
+                continue;
+            }
+            let key_place = self.place(&span);
+            let plain = matches!(&event, Event::Scalar(_, ScalarStyle::Plain, ..));
+            let text = event.scalar().map(|(text, _)| text.to_owned());
+            let Some(text) = text else {
+                let fault = self
+                    .fault(key_place, "a key must be a plain name")
+                    .label("found an alias, a list or a mapping");
+                self.faults.push(fault);
+                // Read on, so that the rest of the document keeps its structure.
+                self.node(event, &span, depth + 1)?;
+                if let Some((event, span)) = self.next()? {
+                    self.node(event, &span, depth + 1)?;
+                }
+                continue;
+            };
+            let key = self.key(&text, plain, event.tag().is_some(), key_place);
+            let Some((event, span)) = self.next()? else { break };
+            let value = self.node(event, &span, depth + 1)?;
+            end = end.max(value.place.end);
+            if let Some(first) = known.get(&key) {
+                let (line, _) = self.source.line_and_column(first.start);
+                let fault = self
+                    .fault(key_place, format!("duplicate key `{key}`"))
+                    .label(format!("already written on line {line}"))
+                    .help("remove one of the two");
+                self.faults.push(fault);
+            }
+            known.insert(key.clone(), key_place);
+            entries.push(Entry { key, key_place, value });
+        }
+        Ok(Node { place: Place { end, ..place }, content: Content::Map(entries) })
+    }
+
+    /// The name of a key; a number has one, however it is written: `0.50` and `0.5` are the same key.
+    fn key(&mut self, text: &str, plain: bool, tagged: bool, place: Place) -> String {
+        if plain && text == "<<" {
+            let fault =
+                self.fault(place, "merge keys (`<<`) are not used here").help("write the keys out");
+            self.faults.push(fault);
+        }
+        if tagged {
+            self.faults.push(self.fault(place, "a key cannot have a tag"));
+        }
+        let content = self.scalar(text, plain, place);
+        Node { place, content }.scalar_text().unwrap_or_else(|| {
+            self.faults.push(self.fault(place, "a key must have a name"));
+            String::new()
+        })
+    }
+
+    /// What the scalar `text` is; what is refused is noted and read as text.
+    fn scalar(&mut self, text: &str, plain: bool, place: Place) -> Content {
+        if !plain {
+            return Content::Text(text.to_owned());
+        }
+        let (message, help) = match plain_scalar(text) {
+            Ok(content) => return content,
+            Err(refused) => refused,
+        };
+        let fault = self.fault(place, message).help(help);
+        self.faults.push(fault);
+        Content::Text(text.to_owned())
+    }
+
+    fn place(&self, span: &Span) -> Place {
+        let length = self.source.text.len();
+        let range = span.byte_range().unwrap_or(length..length);
+        Place { source: self.number, start: range.start, end: range.end.max(range.start) }
+    }
+
+    /// Where a collection ends: at its closing bracket; a block's end event lies behind it.
+    fn end_of(&self, span: &Span, last: usize) -> usize {
+        let place = self.place(span);
+        if place.end > place.start { place.end } else { last }
+    }
+
+    fn fault(&self, place: Place, message: impl Into<String>) -> Diagnostic {
+        Diagnostic::error(self.source, place.start..place.end, message)
+    }
+
+    fn too_deep(&self, place: Place) -> Diagnostic {
+        self.fault(place, format!("nested more than {MOST_NESTING} levels deep"))
+    }
+}
+
+fn height_of(node: &Node) -> usize {
+    let entries = node.entries().iter().map(|entry| &entry.value);
+    node.items().iter().chain(entries).map(height_of).max().map_or(0, |height| height + 1)
+}
+
+/// A plain scalar by the core schema of YAML 1.2, or why it is refused and what to write instead.
+fn plain_scalar(text: &str) -> Result<Content, (String, String)> {
+    let old_boolean = |meant: bool| {
+        Err((
+            format!("`{text}` is a boolean in YAML 1.1 and text in YAML 1.2"),
+            format!("write `{meant}` for the boolean or \"{text}\" for the text"),
+        ))
+    };
+    match text {
+        "" | "~" | "null" => return Ok(Content::Null),
+        "true" => return Ok(Content::Bool(true)),
+        "false" => return Ok(Content::Bool(false)),
+        "yes" | "Yes" | "YES" | "on" | "On" | "ON" => return old_boolean(true),
+        "no" | "No" | "NO" | "off" | "Off" | "OFF" => return old_boolean(false),
+        "True" | "TRUE" | "False" | "FALSE" | "Null" | "NULL" => {
+            let help = format!("write `{}`, or \"{text}\" for the text", text.to_ascii_lowercase());
+            return Err((format!("`{text}` is written in lower case"), help));
+        }
+        _ => {}
+    }
+    let digits = text.trim_start_matches(['+', '-']);
+    if text.len() - digits.len() > 1 {
+        return Ok(Content::Text(text.to_owned()));
+    }
+    if matches!(digits, ".inf" | ".Inf" | ".INF" | ".nan" | ".NaN" | ".NAN") {
+        return Err((
+            format!("`{text}` is not a finite number"),
+            "write a finite number, or leave the key out where it is optional".to_owned(),
+        ));
+    }
+    let Some(first) = digits.bytes().next().filter(|b| b.is_ascii_digit() || *b == b'.') else {
+        return Ok(Content::Text(text.to_owned()));
+    };
+    let based = ["0x", "0o", "0b"].iter().any(|prefix| {
+        digits.strip_prefix(prefix).is_some_and(|rest| {
+            !rest.is_empty() && rest.bytes().all(|b| b.is_ascii_hexdigit() || b == b'_')
+        })
+    });
+    let grouped = digits.contains('_')
+        && first.is_ascii_digit()
+        && digits.bytes().all(|b| b.is_ascii_digit() || b"_.".contains(&b));
+    if based || grouped {
+        return Err((
+            format!("`{text}` is a number to some readers and text to others"),
+            format!("write it in plain decimal digits, or \"{text}\" for the text"),
+        ));
+    }
+    if !is_decimal(digits) {
+        return Ok(Content::Text(text.to_owned()));
+    }
+    if digits.len() > 1 && digits.starts_with('0') && digits.as_bytes()[1].is_ascii_digit() {
+        return Err((
+            format!("`{text}` begins with a zero, which some readers take for octal"),
+            format!("leave the zero out, or write \"{text}\" for the text"),
+        ));
+    }
+    if digits.bytes().all(|b| b.is_ascii_digit()) {
+        return match text.parse::<i128>() {
+            Ok(n) if (i128::from(i64::MIN)..=i128::from(u64::MAX)).contains(&n) => {
+                Ok(Content::Integer(n))
+            }
+            _ => Err((
+                format!("`{text}` is too large to be kept exactly"),
+                "whole numbers reach from -9223372036854775808 to 18446744073709551615".to_owned(),
+            )),
+        };
+    }
+    match text.parse::<f64>() {
+        Ok(x) if x.is_finite() => Ok(Content::Float(x)),
+        _ => Err((
+            format!("`{text}` is too large for a number"),
+            "numbers reach to about 1.8e308".to_owned(),
+        )),
+    }
+}
+
+/// Whether `text` is `digits[.digits][e[+-]digits]`, with a digit before or after the point.
+fn is_decimal(text: &str) -> bool {
+    let (mantissa, exponent) = match text.split_once(['e', 'E']) {
+        Some((mantissa, exponent)) => (mantissa, Some(exponent)),
+        None => (text, None),
+    };
+    let all_digits = |part: &str| part.bytes().all(|b| b.is_ascii_digit());
+    let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
+    all_digits(whole)
+        && all_digits(fraction)
+        && !(whole.is_empty() && fraction.is_empty())
+        && exponent.is_none_or(|e| {
+            let digits = e.strip_prefix(['+', '-']).unwrap_or(e);
+            !digits.is_empty() && all_digits(digits)
+        })
+}
