@@ -21,6 +21,7 @@ pub mod grid;
 pub mod json;
 pub mod math;
 pub mod rng;
+pub mod stats;
 pub mod table;
 pub mod units;
 
