@@ -25,7 +25,8 @@ pub mod stats;
 pub mod table;
 pub mod units;
 
-// Layer 1: the described body and the described truth.
+// Layer 1: the described body, the described truth, and what is claimed of them.
+pub mod claims;
 pub mod robot;
 pub mod world;
 

@@ -5,7 +5,7 @@ use super::summary::{sample_sd, sorted_quantile};
 use crate::rng::Stream;
 
 /// A statistic with what resampling says of its spread.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Bootstrapped {
     /// The statistic of the samples as seen.
     pub estimate: f64,
@@ -13,6 +13,8 @@ pub struct Bootstrapped {
     pub interval: Interval,
     /// Standard deviation over the resamples.
     pub standard_error: f64,
+    /// The statistic of each resample, ascending.
+    pub statistics: Vec<f64>,
 }
 
 /// Resamples each of `samples` on its own, with replacement, `resamples` times, and takes `statistic` of all.
@@ -45,5 +47,5 @@ pub fn bootstrap(
         high: sorted_quantile(&statistics, 0.5 + 0.5 * confidence),
         confidence,
     };
-    Bootstrapped { estimate, interval, standard_error }
+    Bootstrapped { estimate, interval, standard_error, statistics }
 }

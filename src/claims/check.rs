@@ -1,0 +1,339 @@
+//! The faults of claims, found before anything runs.
+
+use super::Claim;
+use super::cells::{Values, Where};
+use super::expect::Expect;
+use super::metric::{Metric, WALL_TIME};
+use super::power::Assume;
+use super::terms::{Censored, Order, Pairs, Sides, Statistic, Test};
+
+/// All faults of a manifest's claims: those of each ([`Claim::check`]) and ids used twice.
+pub fn check_all(
+    claims: &[Claim],
+    factors: &[(String, Vec<String>)],
+    metrics: &[String],
+    published: &[String],
+) -> Vec<String> {
+    let mut problems = Vec::new();
+    for (i, claim) in claims.iter().enumerate() {
+        if claims[..i].iter().any(|earlier| earlier.id == claim.id) {
+            problems.push(format!("claim `{}`: the id is used twice", claim.id));
+        }
+        problems.extend(claim.check(factors, metrics, published));
+    }
+    problems
+}
+
+/// What there is, and the nearest name to what was asked for.
+fn unknown<'a>(kind: &str, name: &str, known: impl Iterator<Item = &'a String> + Clone) -> String {
+    let near = known
+        .clone()
+        .map(|k| (strsim::jaro_winkler(k, name), k))
+        .filter(|(likeness, _)| *likeness > 0.8)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, k)| format!("; did you mean `{k}`?"))
+        .unwrap_or_default();
+    let all: Vec<&str> = known.map(String::as_str).collect();
+    format!("unknown {kind} `{name}`{near} (known: {})", all.join(", "))
+}
+
+impl Claim {
+    /// The faults of this claim in a study with these factors (and their values), metrics (`success`,
+    /// `outcome:NAME`, columns) and published tables. Empty where it can be judged.
+    pub fn check(
+        &self,
+        factors: &[(String, Vec<String>)],
+        metrics: &[String],
+        published: &[String],
+    ) -> Vec<String> {
+        let mut faults = Faults { factors, metrics, published, found: Vec::new() };
+        if self.id.is_empty() {
+            faults.add("id", "expected a name, found nothing".to_owned());
+        }
+        self.check_circumstance(&mut faults);
+        for (path, selection) in self.expect.selections() {
+            faults.selection(&path, selection);
+        }
+        faults.metrics(&self.expect);
+        faults.terms(&self.expect);
+        faults.form(&self.expect);
+        faults.assumption(self.power.as_ref());
+        let head = format!("claim `{}`: expect.{}", self.id, self.expect.form());
+        faults
+            .found
+            .into_iter()
+            .map(|(path, fault)| match path.as_str() {
+                "id" | "circumstance" => format!("claim `{}`: {path}: {fault}", self.id),
+                path if path.starts_with("power") => {
+                    format!("claim `{}`: {path}: {fault}", self.id)
+                }
+                path => format!("{head}.{path}: {fault}"),
+            })
+            .collect()
+    }
+
+    fn check_circumstance(&self, faults: &mut Faults<'_>) {
+        for metric in self.expect.metrics() {
+            let wall = metric.starts_with(WALL_TIME);
+            if wall && !self.circumstance {
+                faults.add(
+                    "metric",
+                    format!(
+                        "`{metric}` depends on the machine and belongs to the circumstance half of a bundle; \
+                         mark the claim `circumstance: true` or measure simulated time"
+                    ),
+                );
+            } else if !wall && self.circumstance {
+                faults.add(
+                    "circumstance",
+                    format!("`{metric}` is a result of the study; only claims on {WALL_TIME} metrics are circumstance"),
+                );
+            }
+        }
+    }
+}
+
+struct Faults<'a> {
+    factors: &'a [(String, Vec<String>)],
+    metrics: &'a [String],
+    published: &'a [String],
+    found: Vec<(String, String)>,
+}
+
+impl Faults<'_> {
+    fn add(&mut self, path: &str, fault: String) {
+        self.found.push((path.to_owned(), fault));
+    }
+
+    fn unless(&mut self, holds: bool, path: &str, fault: impl FnOnce() -> String) {
+        if !holds {
+            self.add(path, fault());
+        }
+    }
+
+    fn factor(&mut self, path: &str, name: &str) {
+        if !self.factors.iter().any(|(f, _)| f == name) {
+            let fault = unknown("factor", name, self.factors.iter().map(|(f, _)| f));
+            self.add(path, fault);
+        }
+    }
+
+    fn selection(&mut self, path: &str, selection: &Where) {
+        for (factor, values) in &selection.0 {
+            let path = format!("{path}.{factor}");
+            let Some((_, known)) = self.factors.iter().find(|(f, _)| f == factor) else {
+                self.factor(&path, factor);
+                continue;
+            };
+            self.unless(!values.0.is_empty(), &path, || "expected a value, found none".to_owned());
+            for (i, value) in values.0.iter().enumerate() {
+                if !known.contains(value) {
+                    self.add(&path, unknown("value", value, known.iter()));
+                }
+                if values.0[..i].contains(value) {
+                    self.add(&path, format!("the value `{value}` is listed twice"));
+                }
+            }
+        }
+    }
+
+    fn metrics(&mut self, expect: &Expect) {
+        let named = expect.metrics();
+        self.unless(!named.is_empty(), "metric", || "expected a metric, found none".to_owned());
+        for metric in named {
+            if !self.metrics.contains(&metric) {
+                let fault = unknown("metric", &metric, self.metrics.iter());
+                self.add("metric", fault);
+            }
+        }
+        if let Some(table) = expect.published()
+            && !self.published.iter().any(|p| p == table)
+        {
+            let fault = unknown("published table", table, self.published.iter());
+            self.add("published", fault);
+        }
+    }
+
+    fn terms(&mut self, expect: &Expect) {
+        let terms = expect.terms();
+        self.unless(terms.alpha > 0.0 && terms.alpha < 0.5, "alpha", || {
+            format!("expected a level between 0 and 0.5, found {}", terms.alpha)
+        });
+        self.unless(terms.minimum_n > 0, "minimum-n", || "expected at least 1, found 0".to_owned());
+        self.unless(terms.at_least != Some(0), "at-least", || {
+            "expected at least 1, found 0: every verdict would be supported".to_owned()
+        });
+        let shares: Vec<bool> =
+            expect.metrics().iter().map(|m| Metric::named(m).is_share()).collect();
+        if let Some(test) = terms.test {
+            let (allowed, for_shares) = match (expect, test) {
+                (Expect::Trend(_), Test::CochranArmitage) => (true, true),
+                (Expect::Trend(_), Test::Spearman) => (true, false),
+                (Expect::Trend(_), _) | (_, Test::CochranArmitage | Test::Spearman) => {
+                    (false, true)
+                }
+                (_, Test::FisherExact | Test::ChiSquare) => (true, true),
+                (_, Test::Welch | Test::Anova | Test::MannWhitney) => (true, false),
+            };
+            self.unless(allowed, "test", || format!("{} is no test of this form", test.name()));
+            let kind = if for_shares { "shares (success, outcome:...)" } else { "measures" };
+            self.unless(!allowed || shares.iter().all(|s| *s == for_shares), "test", || {
+                format!("{} is a test of {kind}", test.name())
+            });
+            let both = matches!(test, Test::Anova | Test::ChiSquare);
+            self.unless(!both || terms.sides == Sides::Two, "sides", || {
+                format!("{} has two sides; say `sides: two`", test.name())
+            });
+        }
+        let ranks = match expect {
+            Expect::Less(_) | Expect::Greater(_) | Expect::Rank(_) => {
+                terms.test == Some(Test::MannWhitney)
+            }
+            Expect::Trend(_) | Expect::Share(_) => true,
+            Expect::Between(form) => form.statistic != Statistic::Mean,
+            Expect::SignTest(form) => form.pairs == Pairs::Trials,
+            _ => false,
+        };
+        self.unless(ranks || terms.censored != Censored::Worst, "censored", || {
+            "`worst` has a rank and no value: it needs mann-whitney, spearman, median, p95 or pairs of trials".to_owned()
+        });
+    }
+
+    fn margin(&mut self, path: &str, margin: f64) {
+        self.unless(margin > 0.0 && margin.is_finite(), path, || {
+            format!("expected a positive number, found {margin}")
+        });
+    }
+
+    fn bounds(&mut self, low: Option<f64>, high: Option<f64>, open_unit: bool) {
+        self.unless(low.is_some() || high.is_some(), "low", || {
+            "expected `low`, `high` or both".to_owned()
+        });
+        if let (Some(low), Some(high)) = (low, high) {
+            self.unless(low < high, "low", || format!("{low} is not below high, {high}"));
+        }
+        for (path, bound) in [("low", low), ("high", high)] {
+            if let Some(bound) = bound {
+                let inside = !open_unit || (bound > 0.0 && bound < 1.0);
+                self.unless(bound.is_finite() && inside, path, || {
+                    format!("a share is bounded strictly between 0 and 1, found {bound}; leave out what always holds")
+                });
+            }
+        }
+    }
+
+    fn across(&mut self, across: &Where) {
+        let cells = across.combinations().len();
+        self.unless(cells >= 2, "across", || format!("expected two cells or more, found {cells}"));
+    }
+
+    fn form(&mut self, expect: &Expect) {
+        match expect {
+            Expect::Less(f) | Expect::Greater(f) => self.each(&f.than.each, &f.than.r#where),
+            Expect::Equivalent(f) => {
+                self.each(&f.to.each, &f.to.r#where);
+                self.margin("margin", f.margin);
+            }
+            Expect::Homogeneous(f) => {
+                self.across(&f.across);
+                self.margin("margin", f.margin);
+            }
+            Expect::Between(f) => {
+                let share = f.metric.0.iter().any(|m| Metric::named(m).is_share());
+                self.bounds(f.low, f.high, share && f.relative_to.is_none());
+                let mean = f.statistic == Statistic::Mean;
+                self.unless(mean || !share, "statistic", || "a share has a mean only".to_owned());
+                self.unless(mean || f.relative_to.is_none(), "statistic", || {
+                    "relative differences are of means".to_owned()
+                });
+                let low = f.low.into_iter().chain(f.high).fold(0.0, f64::min);
+                self.unless(f.relative_to.is_none() || low > -1.0, "low", || {
+                    format!("a relative difference is above -1, found {low}")
+                });
+            }
+            Expect::Share(f) => {
+                self.bounds(f.low, f.high, true);
+                let bounded = f.that.at_least.is_some() || f.that.at_most.is_some();
+                let share = Metric::named(&f.that.metric).is_share();
+                self.unless(bounded != share, "that", || {
+                    "a measure needs `at-least` or `at-most`, a share neither".to_owned()
+                });
+            }
+            Expect::Trend(f) => {
+                let scores: Vec<f64> = f.along.iter().map(|s| s.score).collect();
+                let apart = (1..scores.len()).all(|i| !scores[..i].contains(&scores[i]));
+                let finite = scores.iter().all(|s| s.is_finite());
+                self.unless(scores.len() >= 2 && apart && finite, "along", || {
+                    format!("expected two or more different scores, found {scores:?}")
+                });
+            }
+            Expect::Rank(f) => {
+                self.across(&f.across);
+                self.unless(f.across.0.len() == 1, "across", || {
+                    format!("expected one factor, found {}", f.across.0.len())
+                });
+                let ranked: Vec<String> = f.across.0.values().flat_map(|v| v.0.clone()).collect();
+                let (named, enough) = match &f.order {
+                    Order::First(value) | Order::Last(value) => (std::slice::from_ref(value), true),
+                    Order::Descending(values) => (&values[..], values.len() >= 2),
+                };
+                self.unless(enough, "order", || "expected two values or more".to_owned());
+                for value in named {
+                    if !ranked.contains(value) {
+                        self.add("order", unknown("value", value, ranked.iter()));
+                    }
+                }
+            }
+            Expect::SignTest(_) => {}
+            Expect::Spread(f) => {
+                self.across(&f.across);
+                self.unless(f.than.is_some() != f.at_most.is_some(), "than", || {
+                    "expected either `than` or `at-most`".to_owned()
+                });
+                f.at_most.iter().for_each(|bound| self.margin("at-most", *bound));
+            }
+            Expect::CorrelationWithPublished(f) => {
+                self.margin("scale", f.scale);
+                self.unless(f.at_least > -1.0 && f.at_least < 1.0, "at-least", || {
+                    format!("a correlation lies between -1 and 1, found {}", f.at_least)
+                });
+                let single =
+                    |w: &Where| !w.0.is_empty() && w.0.values().all(|Values(v)| v.len() == 1);
+                self.unless(f.ratio_to.as_ref().is_none_or(single), "ratio-to", || {
+                    "expected one value per factor: the base of a ratio is one cell".to_owned()
+                });
+            }
+            Expect::RmseWithPublished(f) => {
+                self.margin("scale", f.scale);
+                self.margin("at-most", f.at_most);
+                f.baseline.iter().for_each(|factor| self.factor("baseline", factor));
+            }
+        }
+    }
+
+    fn each(&mut self, each: &[String], other: &Where) {
+        for factor in each {
+            self.unless(other.0.contains_key(factor), "than.each", || {
+                format!("`{factor}` is not among the factors of `where`")
+            });
+        }
+    }
+
+    fn assumption(&mut self, power: Option<&Assume>) {
+        match power {
+            None => {}
+            Some(Assume::Published { table, scale }) => {
+                if !self.published.contains(table) {
+                    let fault = unknown("published table", table, self.published.iter());
+                    self.add("power.published.table", fault);
+                }
+                self.margin("power.published.scale", *scale);
+            }
+            Some(Assume::Cells(cells)) => {
+                for cell in cells {
+                    self.selection("power.cells.where", &cell.r#where);
+                }
+            }
+        }
+    }
+}

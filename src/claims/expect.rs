@@ -1,0 +1,385 @@
+//! What a claim expects, as data. One example of each form:
+//!
+//! `less`, `greater`: one cell or pool against another, or against several one by one (`each`), repeated
+//! over `for-each`. Tests: `fisher-exact`, `chi-square` (shares); `welch`, `anova`, `mann-whitney` (measures).
+//! ```yaml
+//! id: D1
+//! says: random is most effective from A except at the shortest deadline
+//! paper-table: supports
+//! expect:
+//!   greater:
+//!     metric: success
+//!     where: {start: A, strategy: random}
+//!     than: {where: {start: A, strategy: [frontier, normalized-frontier]}, each: [strategy]}
+//!     for-each: {deadline-s: [680, 477, 272]}
+//!     test: fisher-exact
+//!     alpha: 0.01
+//! ```
+//! ```yaml
+//! id: P1
+//! says: the floor plan makes exploration significantly shorter
+//! paper-table: supports
+//! expect:
+//!   less:
+//!     metric: [distance-m-at-70, distance-m-at-80]
+//!     where: {prior: floor-plan}
+//!     than: {where: {prior: none}}
+//!     for-each: {furnished: [true, false]}
+//!     test: anova
+//!     sides: two
+//!     at-least: 3
+//!     censored: reached-only
+//! ```
+//! `equivalent`: the difference of two cells lies inside a margin (two one-sided tests: Newcombe's interval
+//! for shares, Welch's test for measures). A large p-value of a test for a difference is never taken for equality.
+//! ```yaml
+//! id: D4
+//! says: at the tightest deadline normalized-frontier is comparable to frontier
+//! paper-table: contradicts
+//! expect:
+//!   equivalent:
+//!     metric: success
+//!     where: {strategy: normalized-frontier}
+//!     to: {where: {strategy: frontier}}
+//!     margin: 0.1
+//!     minimum-n: 50
+//! ```
+//! `between`: the mean (or `median`, `p95`) of a cell lies between bounds; with `relative-to`, its relative
+//! difference from another cell.
+//! ```yaml
+//! id: P6
+//! says: in the office the floor plan saves 25 to 40 % of the time to 70 %
+//! paper-table: supports
+//! expect:
+//!   between:
+//!     metric: time-s-at-70
+//!     where: {prior: floor-plan}
+//!     relative-to: {prior: none}
+//!     low: -0.45
+//!     high: -0.10
+//! ```
+//! `trend`: the metric rises or falls along scored cells (`cochran-armitage` for shares, `spearman` with a
+//! permutation p for measures).
+//! ```yaml
+//! id: D6
+//! says: strict deadlines boost failures of all algorithms
+//! paper-table: supports
+//! expect:
+//!   trend:
+//!     metric: success
+//!     direction: rising
+//!     along:
+//!       - {score: 0.1, where: {deadline-s: 68}}
+//!       - {score: 0.4, where: {deadline-s: 272}}
+//!       - {score: 0.7, where: {deadline-s: 477}}
+//!       - {score: 1.0, where: {deadline-s: 680}}
+//!     for-each: {strategy: [random, frontier]}
+//! ```
+//! `homogeneous`: all cells across a factor lie within a margin of one another.
+//! ```yaml
+//! id: D1b
+//! says: at the shortest deadline all strategies do alike
+//! paper-table: silent
+//! expect:
+//!   homogeneous:
+//!     metric: success
+//!     where: {start: A, deadline-s: 68}
+//!     across: {strategy: [random, frontier, normalized-frontier]}
+//!     margin: 0.1
+//!     minimum-n: 50
+//! ```
+//! `rank`: one cell is `first` (highest) or `last` of those across a factor, or all stand in `descending` order.
+//! ```yaml
+//! id: D2b
+//! says: from B random is the worst
+//! paper-table: supports
+//! expect:
+//!   rank:
+//!     metric: success
+//!     where: {start: B}
+//!     across: {strategy: [random, frontier, normalized-frontier]}
+//!     order: {last: random}
+//! ```
+//! `sign-test`: over many pairs of cells, or over trials that share their noise, one side is lower more often
+//! than not. Several metrics of the same runs vote together: they are one pair, not several.
+//! ```yaml
+//! id: P11
+//! says: prior knowledge improves performance considerably
+//! paper-table: supports
+//! expect:
+//!   sign-test:
+//!     metric: [distance-m-at-80, distance-m-at-90]
+//!     direction: less
+//!     where: {prior: floor-plan}
+//!     than: {prior: none}
+//!     for-each: {environment: [basic, office, open], furnished: [true, false]}
+//!     minimum-n: 6
+//!     censored: reached-only
+//! ```
+//! `spread`: largest less smallest cell mean across a factor is below that of another pool, or `at-most` a
+//! bound; by bootstrap.
+//! ```yaml
+//! id: D5
+//! says: the semantic strategies depend less on the start
+//! paper-table: contradicts
+//! expect:
+//!   spread:
+//!     metric: success
+//!     where: {strategy: corridors-first}
+//!     across: {start: [A, B, C]}
+//!     than: {strategy: frontier}
+//! ```
+//! `share`: the share of trials that meet a condition lies between bounds. A run that never reached the
+//! measure does not meet it.
+//! ```yaml
+//! id: D11
+//! says: half of the runs of frontier arrive within five minutes
+//! paper-table: silent
+//! expect:
+//!   share:
+//!     that: {metric: time-s, at-most: 300}
+//!     where: {strategy: frontier}
+//!     low: 0.5
+//! ```
+//! `correlation-with-published`: Spearman's correlation over the published cells, optionally of log ratios to
+//! a base cell.
+//! ```yaml
+//! id: D15
+//! says: the same conclusions in relative value
+//! paper-table: silent
+//! expect:
+//!   correlation-with-published:
+//!     metric: success
+//!     published: success-percent
+//!     scale: 0.01
+//!     at-least: 0.6
+//! ```
+//! `rmse-with-published`: root mean square difference over the published cells, in the metric's unit, with the
+//! skill over a constant and over `baseline` means beside it.
+//! ```yaml
+//! id: D15b
+//! says: success rates within 18 points of the paper's
+//! paper-table: silent
+//! expect:
+//!   rmse-with-published:
+//!     metric: success
+//!     published: success-percent
+//!     scale: 0.01
+//!     at-most: 0.18
+//!     baseline: [start, strategy]
+//! ```
+
+use super::cells::Where;
+use super::comparing::{Comparison, Equivalence, Homogeneity, Ranking, Trend};
+use super::measuring::{Correlation, Level, Rmse, Share, SignTest, Spread};
+use super::terms::{Censored, Correction, Sides, Test};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A checkable expectation.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Expect {
+    /// The first cell is lower.
+    Less(Comparison),
+    /// The first cell is higher.
+    Greater(Comparison),
+    /// Two cells are equal within a margin.
+    Equivalent(Equivalence),
+    /// A cell lies between bounds.
+    Between(Level),
+    /// A metric rises or falls along scores.
+    Trend(Trend),
+    /// Cells are equal within a margin.
+    Homogeneous(Homogeneity),
+    /// Cells stand in an order.
+    Rank(Ranking),
+    /// One side is lower more often than not.
+    SignTest(SignTest),
+    /// Cells across a factor lie close together.
+    Spread(Spread),
+    /// A share of trials meets a condition.
+    Share(Share),
+    /// Our cells correlate with the published ones.
+    CorrelationWithPublished(Correlation),
+    /// Our cells lie near the published ones.
+    RmseWithPublished(Rmse),
+}
+
+/// What all forms have in common, with the form's own defaults filled in.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Terms {
+    pub(crate) alpha: f64,
+    pub(crate) correction: Correction,
+    pub(crate) sides: Sides,
+    pub(crate) test: Option<Test>,
+    pub(crate) at_least: Option<usize>,
+    pub(crate) minimum_n: u64,
+    /// Runs that each single cell needs: `minimum_n`, or one where that counts pairs or cells.
+    pub(crate) minimum_runs: u64,
+    pub(crate) censored: Censored,
+}
+
+impl Terms {
+    fn new(alpha: f64, minimum_n: u64) -> Self {
+        Self {
+            alpha,
+            minimum_n,
+            minimum_runs: minimum_n,
+            correction: Correction::None,
+            sides: Sides::One,
+            test: None,
+            at_least: None,
+            censored: Censored::Refuse,
+        }
+    }
+}
+
+impl Expect {
+    /// The form's name in manifests.
+    pub fn form(&self) -> &'static str {
+        match self {
+            Self::Less(_) => "less",
+            Self::Greater(_) => "greater",
+            Self::Equivalent(_) => "equivalent",
+            Self::Between(_) => "between",
+            Self::Trend(_) => "trend",
+            Self::Homogeneous(_) => "homogeneous",
+            Self::Rank(_) => "rank",
+            Self::SignTest(_) => "sign-test",
+            Self::Spread(_) => "spread",
+            Self::Share(_) => "share",
+            Self::CorrelationWithPublished(_) => "correlation-with-published",
+            Self::RmseWithPublished(_) => "rmse-with-published",
+        }
+    }
+
+    /// The names of the metrics measured.
+    pub fn metrics(&self) -> Vec<String> {
+        match self {
+            Self::Less(f) | Self::Greater(f) => f.metric.0.clone(),
+            Self::Equivalent(f) => f.metric.0.clone(),
+            Self::Between(f) => f.metric.0.clone(),
+            Self::Trend(f) => f.metric.0.clone(),
+            Self::Homogeneous(f) => f.metric.0.clone(),
+            Self::Rank(f) => f.metric.0.clone(),
+            Self::SignTest(f) => f.metric.0.clone(),
+            Self::Spread(f) => f.metric.0.clone(),
+            Self::Share(f) => vec![f.that.metric.clone()],
+            Self::CorrelationWithPublished(f) => f.metric.0.clone(),
+            Self::RmseWithPublished(f) => f.metric.0.clone(),
+        }
+    }
+
+    /// The published table compared with, if any.
+    pub fn published(&self) -> Option<&str> {
+        match self {
+            Self::CorrelationWithPublished(f) => Some(&f.published),
+            Self::RmseWithPublished(f) => Some(&f.published),
+            _ => None,
+        }
+    }
+
+    pub(crate) fn terms(&self) -> Terms {
+        macro_rules! corrected {
+            ($f:expr) => {
+                Terms {
+                    correction: $f.correction,
+                    at_least: $f.at_least,
+                    ..Terms::new($f.alpha, $f.minimum_n)
+                }
+            };
+        }
+        match self {
+            Self::Less(f) | Self::Greater(f) => {
+                Terms { sides: f.sides, test: f.test, censored: f.censored, ..corrected!(f) }
+            }
+            Self::Rank(f) => {
+                Terms { sides: f.sides, test: f.test, censored: f.censored, ..corrected!(f) }
+            }
+            Self::Trend(f) => {
+                Terms { sides: f.sides, test: f.test, censored: f.censored, ..corrected!(f) }
+            }
+            Self::Equivalent(f) => Terms { censored: f.censored, ..corrected!(f) },
+            Self::Between(f) => Terms { censored: f.censored, ..corrected!(f) },
+            Self::Homogeneous(f) => Terms { censored: f.censored, ..corrected!(f) },
+            Self::Spread(f) => Terms { censored: f.censored, ..corrected!(f) },
+            Self::Share(f) => Terms { censored: Censored::Worst, ..corrected!(f) },
+            Self::SignTest(f) => Terms {
+                sides: f.sides,
+                censored: f.censored,
+                minimum_runs: 1,
+                ..Terms::new(f.alpha, f.minimum_n)
+            },
+            Self::CorrelationWithPublished(f) => {
+                Terms { censored: f.censored, minimum_runs: 1, ..Terms::new(f.alpha, f.minimum_n) }
+            }
+            Self::RmseWithPublished(f) => {
+                Terms { censored: f.censored, minimum_runs: 1, ..Terms::new(f.alpha, f.minimum_n) }
+            }
+        }
+    }
+
+    /// Every selection of trials the form names, with the path of its key.
+    pub(crate) fn selections(&self) -> Vec<(String, &Where)> {
+        let mut all: Vec<(String, &Where)> = Vec::new();
+        let mut add = |path: &str, cell| all.push((path.to_owned(), cell));
+        let mut repeated = None;
+        match self {
+            Self::Less(f) | Self::Greater(f) => {
+                add("where", &f.r#where);
+                add("than.where", &f.than.r#where);
+                repeated = Some(&f.for_each);
+            }
+            Self::Equivalent(f) => {
+                add("where", &f.r#where);
+                add("to.where", &f.to.r#where);
+                repeated = Some(&f.for_each);
+            }
+            Self::Between(f) => {
+                add("where", &f.r#where);
+                f.relative_to.iter().for_each(|cell| add("relative-to", cell));
+                repeated = Some(&f.for_each);
+            }
+            Self::Trend(f) => {
+                add("where", &f.r#where);
+                f.along.iter().for_each(|step| add("along.where", &step.r#where));
+                repeated = Some(&f.for_each);
+            }
+            Self::Homogeneous(f) => {
+                add("where", &f.r#where);
+                add("across", &f.across);
+                repeated = Some(&f.for_each);
+            }
+            Self::Rank(f) => {
+                add("where", &f.r#where);
+                add("across", &f.across);
+                repeated = Some(&f.for_each);
+            }
+            Self::SignTest(f) => {
+                add("where", &f.r#where);
+                add("than", &f.than);
+                repeated = Some(&f.for_each);
+            }
+            Self::Spread(f) => {
+                add("where", &f.r#where);
+                add("across", &f.across);
+                f.than.iter().for_each(|cell| add("than", cell));
+                repeated = Some(&f.for_each);
+            }
+            Self::Share(f) => {
+                add("where", &f.r#where);
+                repeated = Some(&f.for_each);
+            }
+            Self::CorrelationWithPublished(f) => {
+                add("where", &f.r#where);
+                f.ratio_to.iter().for_each(|cell| add("ratio-to", cell));
+            }
+            Self::RmseWithPublished(f) => add("where", &f.r#where),
+        }
+        for cell in repeated.iter().flat_map(|each| &each.0) {
+            all.push(("for-each".to_owned(), cell));
+        }
+        all
+    }
+}

@@ -1,0 +1,272 @@
+//! What a number of trials would decide, said before they run.
+//!
+//! Studies are made up from a supposed truth (the published cells, or values the manifest assumes), each is
+//! judged by the very code that judges the real one, and the verdicts are counted. So pools, corrections,
+//! margins, minimum n and the choice of test all enter as they are.
+
+use super::Claim;
+use super::cells::Where;
+use super::judge::{Context, judge_observations};
+use super::metric::Metric;
+use super::observations::Observations;
+use super::published::{PublishedCell, read, selection};
+use super::terms::one;
+use super::verdict::{Judgement, rounded};
+use crate::rng::Seeds;
+use crate::stats::real;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+
+/// Trials per condition that are tried beside the planned number.
+const LADDER: [u64; 7] = [10, 20, 50, 100, 200, 500, 1000];
+
+/// Probability of a verdict that counts as enough.
+const ENOUGH: f64 = 0.8;
+
+/// Made-up studies per number of trials: a share of 0.8 is then known to about ± 0.06 (two standard errors).
+pub const REPLICATES: u32 = 200;
+
+/// What is taken for the truth.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub enum Assume {
+    /// The paper's cells, as printed.
+    Published {
+        /// Name of the published table.
+        table: String,
+        /// Published values times this are in the metric's unit.
+        #[serde(default = "one")]
+        scale: f64,
+    },
+    /// Values by cell; the first that matches a condition holds there.
+    Cells(Vec<AssumedCell>),
+}
+
+/// A supposed truth in some conditions.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct AssumedCell {
+    /// Which conditions; default all.
+    #[serde(default)]
+    pub r#where: Where,
+    /// Mean, or share in 0 to 1.
+    pub value: f64,
+    /// Standard deviation of one trial, for measures.
+    pub sd: Option<f64>,
+}
+
+/// How often a number of trials would yield which verdict.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Chance {
+    /// Trials per condition.
+    pub trials: u64,
+    /// Share of made-up studies in which the claim is supported.
+    pub supported: f64,
+    /// Share in which it is contradicted.
+    pub contradicted: f64,
+}
+
+impl Chance {
+    fn decided(&self) -> f64 {
+        self.supported + self.contradicted
+    }
+}
+
+/// What trials would decide about one claim.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Power {
+    /// The claim's id.
+    pub id: String,
+    /// At the number planned.
+    pub planned: Chance,
+    /// At 10, 20, 50, ... until one is enough.
+    pub ladder: Vec<Chance>,
+    /// Fewest trials tried that decide the claim, one way or the other, in 80 % of studies.
+    pub enough: Option<u64>,
+}
+
+impl Power {
+    /// The line of `plan --power --format json`.
+    pub fn to_json(&self) -> Value {
+        let chance = |c: &Chance| {
+            json!({
+                "trials": c.trials,
+                "supported": rounded(c.supported),
+                "contradicted": rounded(c.contradicted),
+            })
+        };
+        json!({
+            "id": self.id,
+            "planned": chance(&self.planned),
+            "ladder": self.ladder.iter().map(chance).collect::<Vec<_>>(),
+            "enough": self.enough,
+        })
+    }
+}
+
+/// What `trials` per condition would decide about `claim`, by `replicates` made-up studies each.
+///
+/// `conditions` are the factor values of every condition of the plan, all with the same factors in one order.
+///
+/// # Errors
+/// Where the claim assumes no truth, or the truth is not known for a condition the claim compares.
+pub fn power(
+    claim: &Claim,
+    conditions: &[Vec<(String, String)>],
+    trials: u64,
+    context: &Context<'_>,
+    replicates: u32,
+) -> Result<Power, String> {
+    let truths = truths(claim, conditions, context)?;
+    // Resampling within resampling: fewer suffice, the studies average them.
+    let context = Context { resamples: 200, permutations: 199, ..*context };
+    let chance = |trials: u64| chance(claim, conditions, &truths, trials, &context, replicates);
+    let planned = chance(trials);
+    let mut ladder = Vec::new();
+    for step in LADDER {
+        ladder.push(chance(step));
+        if ladder.last().is_some_and(|c| c.decided() >= ENOUGH) {
+            break;
+        }
+    }
+    let enough =
+        ladder.iter().chain([&planned]).filter(|c| c.decided() >= ENOUGH).map(|c| c.trials).min();
+    Ok(Power { id: claim.id.clone(), planned, ladder, enough })
+}
+
+/// Mean (or share) and standard deviation of one metric in one condition.
+#[derive(Clone, Copy)]
+struct Truth {
+    value: f64,
+    sd: f64,
+}
+
+/// Truths by condition and metric; only conditions the claim may look at.
+type Truths = Vec<(usize, BTreeMap<String, Truth>)>;
+
+fn truths(
+    claim: &Claim,
+    conditions: &[Vec<(String, String)>],
+    context: &Context<'_>,
+) -> Result<Truths, String> {
+    let Some(assume) = &claim.power else {
+        return Err(
+            "the claim assumes no truth; add `power:` with `published` or `cells`".to_owned()
+        );
+    };
+    let metrics = claim.expect.metrics();
+    let factors: Vec<String> =
+        conditions.first().map(|c| c.iter().map(|(f, _)| f.clone()).collect()).unwrap_or_default();
+    let rows = match assume {
+        Assume::Published { table, .. } => {
+            let found = context.published.get(table);
+            let found = found.ok_or_else(|| format!("there is no published table `{table}`"))?;
+            read(found, &factors).map_err(|fault| format!("published table `{table}`: {fault}"))?
+        }
+        Assume::Cells(_) => Vec::new(),
+    };
+    let mut all = Vec::new();
+    for (i, condition) in conditions.iter().enumerate() {
+        let value_of = |f: &str| condition.iter().find(|(n, _)| n == f).map(|(_, v)| v.as_str());
+        let mut here = BTreeMap::new();
+        for name in &metrics {
+            let truth = match assume {
+                Assume::Published { scale, .. } => published_truth(&rows, name, *scale, &value_of),
+                Assume::Cells(cells) => cells
+                    .iter()
+                    .find(|cell| cell.r#where.admits(value_of))
+                    .map(|cell| (cell.value, cell.sd)),
+            };
+            let Some((value, sd)) = truth else { continue };
+            let share = Metric::named(name).is_share();
+            let words =
+                || condition.iter().map(|(f, v)| format!("{f}={v}")).collect::<Vec<_>>().join(", ");
+            if share && !(0.0..=1.0).contains(&value) {
+                return Err(format!(
+                    "{name} in ({}) is a share and cannot be {value}; is a scale missing?",
+                    words()
+                ));
+            }
+            let sd = match sd {
+                Some(sd) => sd,
+                None if share => 0.0,
+                None => {
+                    return Err(format!(
+                        "no standard deviation is known for {name} in ({})",
+                        words()
+                    ));
+                }
+            };
+            here.insert(name.clone(), Truth { value, sd });
+        }
+        if here.len() == metrics.len() {
+            all.push((i, here));
+        }
+    }
+    if all.is_empty() {
+        return Err("the truth assumed covers no condition of the plan".to_owned());
+    }
+    Ok(all)
+}
+
+fn published_truth<'a>(
+    rows: &[PublishedCell],
+    metric: &str,
+    scale: f64,
+    value_of: &impl Fn(&str) -> Option<&'a str>,
+) -> Option<(f64, Option<f64>)> {
+    rows.iter()
+        .find(|row| {
+            row.metric.as_ref().is_none_or(|m| m == metric) && selection(&row.pins).admits(value_of)
+        })
+        .and_then(|row| Some((row.value? * scale, row.sd.map(|sd| sd * scale))))
+}
+
+fn chance(
+    claim: &Claim,
+    conditions: &[Vec<(String, String)>],
+    truths: &Truths,
+    trials: u64,
+    context: &Context<'_>,
+    replicates: u32,
+) -> Chance {
+    let factors: Vec<String> = conditions[0].iter().map(|(f, _)| f.clone()).collect();
+    let seeds = Seeds::new(context.seed, vec![("claim".to_owned(), claim.id.clone())]);
+    let (mut supported, mut contradicted) = (0, 0);
+    for replicate in 0..replicates {
+        let mut stream = seeds.stream(&format!("claims/power/{trials}/{replicate}"));
+        let made_up = truths
+            .iter()
+            .map(|(i, truths)| {
+                let values = conditions[*i].iter().map(|(_, v)| v.clone()).collect();
+                let drawn = truths
+                    .iter()
+                    .map(|(name, truth)| {
+                        let share = Metric::named(name).is_share();
+                        let readings = (0..trials)
+                            .map(|_| {
+                                Some(if share {
+                                    f64::from(u8::from(stream.uniform() < truth.value))
+                                } else {
+                                    truth.value + truth.sd * stream.normal()
+                                })
+                            })
+                            .collect();
+                        (name.clone(), readings)
+                    })
+                    .collect();
+                (values, drawn)
+            })
+            .collect();
+        let study = Observations::simulated(factors.clone(), made_up, trials);
+        match judge_observations(claim, &study, context).judgement {
+            Judgement::Supported => supported += 1,
+            Judgement::Contradicted => contradicted += 1,
+            Judgement::Inconclusive | Judgement::CannotBeTested => {}
+        }
+    }
+    let share = |count: u64| real(count) / f64::from(replicates.max(1));
+    Chance { trials, supported: share(supported), contradicted: share(contradicted) }
+}

@@ -1,0 +1,206 @@
+//! `sign-test`: how often one side of a pair is the lower.
+
+use super::judge::{Bench, Draft, Evidence};
+use super::measuring::SignTest;
+use super::metric::Metric;
+use super::terms::{Censored, Pairs, Side, Sides};
+use super::verdict::{CellNumbers, Effect};
+use crate::stats;
+use crate::stats::proportion::{Proportion, wilson};
+use crate::stats::real;
+use std::collections::BTreeMap;
+
+/// Signs of the pairs, and what they were taken from.
+#[derive(Default)]
+struct Signs {
+    below: u64,
+    above: u64,
+    ties: u64,
+    cells: Vec<CellNumbers>,
+    conditions: Vec<usize>,
+    notes: Vec<String>,
+}
+
+impl Signs {
+    /// Counts one pair, in which each metric has one vote.
+    fn count(&mut self, differences: &[f64]) {
+        let vote = |d: &f64| i64::from(*d > 0.0) - i64::from(*d < 0.0);
+        match differences.iter().map(vote).sum::<i64>().signum() {
+            -1 => self.below += 1,
+            1 => self.above += 1,
+            _ => self.ties += 1,
+        }
+    }
+}
+
+pub(super) fn sign_test(bench: &Bench<'_>, form: &SignTest) -> Draft {
+    let sign = if form.direction == Side::Less { "<" } else { ">" };
+    let about = format!(
+        "{}: ({}) {sign} ({}), by sign",
+        form.metric.0.join(" and "),
+        form.r#where,
+        form.than
+    );
+    let mut signs = Signs::default();
+    let counted = match form.pairs {
+        Pairs::Cells => by_cells(bench, form, &mut signs),
+        Pairs::Trials => by_trials(bench, form, &mut signs),
+    };
+    let evidence = counted.and_then(|()| {
+        let pairs = signs.below + signs.above;
+        if pairs < form.minimum_n.max(1) {
+            return Err(format!(
+                "{pairs} pairs differ, fewer than the minimum of {} ({} are tied)",
+                form.minimum_n, signs.ties
+            ));
+        }
+        let claimed = match form.direction {
+            Side::Less => signs.below,
+            Side::Greater => signs.above,
+        };
+        let tails = stats::rank::sign_test(claimed, pairs - claimed);
+        let half = claimed * 2;
+        let (p_for, p_against) = match form.sides {
+            Sides::One => (tails.greater, tails.less),
+            Sides::Two => (
+                if half > pairs { tails.two_sided } else { 1.0 },
+                if half < pairs { tails.two_sided } else { 1.0 },
+            ),
+        };
+        let share = Proportion::new(claimed, pairs);
+        let effect = Effect {
+            name: "share-of-pairs",
+            value: share.share(),
+            interval: wilson(share, bench.confidence()),
+            standardised: None,
+        };
+        let statistics =
+            vec![("pairs", real(pairs)), ("as-claimed", real(claimed)), ("ties", real(signs.ties))];
+        Ok(Evidence { p_for, p_against, statistics, effect: Some(effect) })
+    });
+    // More trials make more pairs only where trials are the pairs.
+    let conditions = if form.pairs == Pairs::Trials { signs.conditions } else { Vec::new() };
+    Draft { about, test: "sign-test", cells: signs.cells, conditions, evidence, notes: signs.notes }
+}
+
+/// One pair per combination: noise in common is welcome within a pair and refused between pairs.
+fn by_cells(bench: &Bench<'_>, form: &SignTest, signs: &mut Signs) -> Result<(), String> {
+    let mut pair_of: BTreeMap<Vec<String>, usize> = BTreeMap::new();
+    let mut reason = None;
+    for (pair, pins) in form.for_each.combinations().iter().enumerate() {
+        let mut differences = Vec::new();
+        for name in &form.metric.0 {
+            let metric = Metric::named(name);
+            reason = reason.or_else(|| bench.observations.lacks(&metric));
+            let mut means = [0.0; 2];
+            for (mean, side) in means.iter_mut().zip([&form.r#where, &form.than]) {
+                let (group, mut numbers, fault) = bench.group(&side.pinned(pins), &metric);
+                reason = reason.or(fault);
+                *mean = group.summary.mean;
+                numbers.cell = format!("{metric}: {}", numbers.cell);
+                if numbers.reached < numbers.trials && !metric.is_share() {
+                    let (reached, trials) = (numbers.reached, numbers.trials);
+                    signs
+                        .notes
+                        .push(format!("reached by {reached} of {trials} ({})", numbers.cell));
+                }
+                signs.cells.push(numbers);
+                for &i in &group.conditions {
+                    let own = bench.observations.own_coordinates(i, bench.context.shared_noise);
+                    let own = own.into_iter().map(str::to_owned).collect();
+                    if *pair_of.entry(own).or_insert(pair) != pair {
+                        reason = reason.or_else(|| {
+                            Some(format!(
+                                "the condition {} shares its trials or their noise with another pair",
+                                bench.observations.name(i)
+                            ))
+                        });
+                    }
+                }
+                signs.conditions.extend(&group.conditions);
+            }
+            differences.push(means[0] - means[1]);
+        }
+        signs.count(&differences);
+    }
+    reason.map_or(Ok(()), Err)
+}
+
+/// One pair per trial number and condition, the two conditions differing in the compared factors only.
+fn by_trials(bench: &Bench<'_>, form: &SignTest, signs: &mut Signs) -> Result<(), String> {
+    let observations = bench.observations;
+    let compared: Vec<String> = form.r#where.0.keys().chain(form.than.0.keys()).cloned().collect();
+    if let Some(other) = bench.context.shared_noise.iter().find(|f| !compared.contains(f)) {
+        return Err(format!(
+            "noise is shared over `{other}` too, which this test does not compare"
+        ));
+    }
+    let metrics: Vec<Metric> = form.metric.0.iter().map(|name| Metric::named(name)).collect();
+    if let Some(reason) = metrics.iter().find_map(|m| observations.lacks(m)) {
+        return Err(reason);
+    }
+    let mut sides: [BTreeMap<(Vec<&str>, i64), Vec<Option<f64>>>; 2] = Default::default();
+    for pins in form.for_each.combinations() {
+        for (side, cell) in sides.iter_mut().zip([&form.r#where, &form.than]) {
+            let cell = cell.pinned(&pins);
+            for metric in &metrics {
+                let (_, mut numbers, _) = bench.group(&cell, metric);
+                numbers.cell = format!("{metric}: {}", numbers.cell);
+                signs.cells.push(numbers);
+            }
+            for i in observations.select(&cell) {
+                signs.conditions.push(i);
+                let condition = &observations.conditions[i];
+                let own = observations.own_coordinates(i, &compared);
+                for (row, &number) in condition.numbers.iter().enumerate() {
+                    let readings: Option<Vec<Option<f64>>> =
+                        metrics.iter().map(|m| condition.reading(row, m)).collect();
+                    let Some(readings) = readings else {
+                        return Err(format!(
+                            "trial {number} of ({}) failed to run",
+                            observations.name(i)
+                        ));
+                    };
+                    if side.insert((own.clone(), number), readings).is_some() {
+                        return Err(format!(
+                            "trial {number} of ({cell}) is there in several conditions: pin all factors compared"
+                        ));
+                    }
+                }
+            }
+        }
+    }
+    let [first, second] = &sides;
+    let mut unpaired = first.len() + second.len();
+    let mut censored = 0;
+    for (key, mine) in first {
+        let Some(theirs) = second.get(key) else { continue };
+        unpaired -= 2;
+        if mine.iter().chain(theirs).any(Option::is_none) {
+            censored += 1;
+            if bench.terms.censored == Censored::ReachedOnly {
+                continue;
+            }
+        }
+        let last = |x: &Option<f64>| x.unwrap_or(f64::INFINITY);
+        let difference = |(a, b): (&Option<f64>, &Option<f64>)| {
+            let (a, b) = (last(a), last(b));
+            // Two runs that never got there are tied; infinity less infinity would not be.
+            if a == b { 0.0 } else { a - b }
+        };
+        signs.count(&mine.iter().zip(theirs).map(difference).collect::<Vec<_>>());
+    }
+    if censored > 0 && bench.terms.censored == Censored::Refuse {
+        return Err(format!(
+            "in {censored} pairs a run never reached the measure; say with `censored` whether such pairs are \
+             left out (reached-only) or rank last (worst)"
+        ));
+    }
+    if censored > 0 {
+        signs.notes.push(format!("in {censored} pairs a run never reached the measure"));
+    }
+    if unpaired > 0 {
+        signs.notes.push(format!("{unpaired} trials have no partner"));
+    }
+    Ok(())
+}
