@@ -238,19 +238,19 @@ mod tests {
 
     #[test]
     fn combinations_cross_within_a_map_and_add_up_over_a_list() {
-        let crossed: ForEach = parse("{a: [1, 2], b: [x, y, z]}");
+        let crossed: ForEach = parse("{a: [1, 2], b: [u, v, w]}");
         assert_eq!(crossed.combinations().len(), 6);
-        let listed: ForEach = parse("[{a: 1, b: x}, {a: 2, b: [y, z]}]");
+        let listed: ForEach = parse("[{a: 1, b: u}, {a: 2, b: [v, w]}]");
         assert_eq!(listed.combinations().len(), 3);
         assert_eq!(ForEach::default().combinations(), vec![BTreeMap::new()]);
     }
 
     #[test]
     fn the_other_side_is_pooled_or_taken_one_by_one() {
-        let pooled: Than = parse("{where: {start: [A, B], strategy: [f, n]}}");
+        let pooled: Than = parse("{where: {start: [A, B], strategy: [f, g]}}");
         assert_eq!(pooled.cells().len(), 1);
-        let apart: Than = parse("{where: {start: [A, B], strategy: [f, n]}, each: [strategy]}");
+        let apart: Than = parse("{where: {start: [A, B], strategy: [f, g]}, each: [strategy]}");
         let names: Vec<_> = apart.cells().iter().map(ToString::to_string).collect();
-        assert_eq!(names, ["start=A|B, strategy=f", "start=A|B, strategy=n"]);
+        assert_eq!(names, ["start=A|B, strategy=f", "start=A|B, strategy=g"]);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::cells::Where;
 use super::comparing::{Comparison, Ranking, Trend};
-use super::judge::{Bench, Draft, Evidence, Group, varies};
+use super::gather::{Bench, Draft, Evidence, Group, varies};
 use super::metric::Metric;
 use super::terms::{Direction, Order, Side, Sides, Test};
 use super::verdict::Effect;

@@ -2,7 +2,7 @@
 
 use super::comparing::{Equivalence, Homogeneity};
 use super::comparison::{mean_effect, share_effect};
-use super::judge::{Bench, Draft, Evidence, Group, varies};
+use super::gather::{Bench, Draft, Evidence, Group, varies};
 use super::metric::Metric;
 use super::verdict::Effect;
 use crate::stats::equivalence::{self, tost_means, tost_proportions};

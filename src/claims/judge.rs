@@ -1,18 +1,15 @@
 //! From a claim and the trials to a verdict.
 
-use super::cells::Where;
 use super::expect::{Expect, Terms};
-use super::metric::Metric;
+use super::gather::{Bench, Draft, Evidence};
+use super::metric::WALL_TIME;
 use super::observations::Observations;
-use super::terms::{Censored, Correction, Sides};
-use super::verdict::{CellNumbers, ComparisonVerdict, Effect, Judgement, Verdict};
-use super::{Claim, comparison, equality, level, published, sign, spread};
-use crate::rng::{Seeds, Stream};
+use super::terms::{Correction, Sides};
+use super::verdict::{ComparisonVerdict, Judgement, Verdict};
+use super::{Claim, agreement, comparison, equality, level, sign, spread};
 use crate::stats::distribution::normal_quantile;
 use crate::stats::multiple::holm;
-use crate::stats::proportion::Proportion;
 use crate::stats::real;
-use crate::stats::summary::{Summary, median};
 use crate::table::Table;
 use std::collections::BTreeMap;
 
@@ -25,7 +22,7 @@ const MOST_TRIALS: f64 = 1e6;
 /// What a verdict depends on besides the trials.
 #[derive(Debug, Clone, Copy)]
 pub struct Context<'a> {
-    /// The paper's tables by name (contract: [`published`]).
+    /// The paper's tables by name (contract: [`super::published`]).
     pub published: &'a BTreeMap<String, Table>,
     /// Factors over which the trials share their noise.
     pub shared_noise: &'a [String],
@@ -63,7 +60,11 @@ pub fn judge_observations(
     context: &Context<'_>,
 ) -> Verdict {
     let bench = Bench { claim: &claim.id, observations, context, terms: claim.expect.terms() };
+    let machine = claim.expect.metrics().into_iter().find(|m| m.starts_with(WALL_TIME));
     let drafts = match &claim.expect {
+        _ if !claim.circumstance && machine.is_some() => {
+            vec![not_a_result(&machine.unwrap_or_default())]
+        }
         Expect::Less(form) => comparison::less(&bench, form),
         Expect::Greater(form) => comparison::greater(&bench, form),
         Expect::Rank(form) => comparison::rank(&bench, form),
@@ -74,197 +75,25 @@ pub fn judge_observations(
         Expect::Share(form) => level::share(&bench, form),
         Expect::SignTest(form) => vec![sign::sign_test(&bench, form)],
         Expect::Spread(form) => spread::spread(&bench, form),
-        Expect::CorrelationWithPublished(form) => vec![published::correlation(&bench, form)],
-        Expect::RmseWithPublished(form) => vec![published::rmse(&bench, form)],
+        Expect::CorrelationWithPublished(form) => vec![agreement::correlation(&bench, form)],
+        Expect::RmseWithPublished(form) => vec![agreement::rmse(&bench, form)],
     };
     conclude(claim, &bench, drafts)
 }
 
-/// Everything a form needs at hand.
-pub(super) struct Bench<'a> {
-    pub(super) claim: &'a str,
-    pub(super) observations: &'a Observations,
-    pub(super) context: &'a Context<'a>,
-    pub(super) terms: Terms,
-}
-
-/// One comparison before correction.
-pub(super) struct Draft {
-    pub(super) about: String,
-    pub(super) test: &'static str,
-    pub(super) cells: Vec<CellNumbers>,
-    /// Conditions whose number of trials the evidence grows with; empty where it grows with something else.
-    pub(super) conditions: Vec<usize>,
-    pub(super) evidence: Result<Evidence, String>,
-    pub(super) notes: Vec<String>,
-}
-
-/// What a test says.
-pub(super) struct Evidence {
-    pub(super) p_for: f64,
-    pub(super) p_against: f64,
-    pub(super) statistics: Vec<(&'static str, f64)>,
-    pub(super) effect: Option<Effect>,
-}
-
-/// The runs of one cell or pool.
-#[derive(Debug, Clone)]
-pub(super) struct Group {
-    pub(super) conditions: Vec<usize>,
-    /// One per run that counts; infinite for censored runs where they rank last.
-    pub(super) values: Vec<f64>,
-    /// For shares.
-    pub(super) proportion: Option<Proportion>,
-    pub(super) summary: Summary,
-}
-
-/// Cells gathered for one comparison.
-pub(super) struct Gathered {
-    pub(super) numbers: Vec<CellNumbers>,
-    pub(super) conditions: Vec<usize>,
-    pub(super) groups: Result<Vec<Group>, String>,
-    pub(super) notes: Vec<String>,
-}
-
-impl Bench<'_> {
-    /// The runs of `cells`, or why they cannot be compared: nothing there, failed or censored runs, too few of
-    /// them, a condition in two cells, or noise in common.
-    pub(super) fn gather(&self, cells: &[Where], metric: &Metric) -> Gathered {
-        let (mut numbers, mut groups, mut conditions) = (Vec::new(), Vec::new(), Vec::new());
-        let mut reasons = Vec::new();
-        reasons.extend(self.observations.lacks(metric));
-        for cell in cells {
-            let (group, seen, fault) = self.group(cell, metric);
-            for &i in &group.conditions {
-                if conditions.contains(&i) {
-                    let name = self.observations.name(i);
-                    reasons.push(format!("the condition {name} is in two of the cells compared"));
-                } else {
-                    conditions.push(i);
-                }
-            }
-            numbers.push(seen);
-            groups.push(group);
-            reasons.extend(fault);
-        }
-        reasons.extend(self.shared_noise(&conditions));
-        let notes = if self.terms.censored == Censored::ReachedOnly && !metric.is_share() {
-            unequal_reach(&numbers, self.terms.alpha)
-        } else {
-            Vec::new()
-        };
-        let groups = reasons.into_iter().next().map_or(Ok(groups), Err);
-        Gathered { numbers, conditions, groups, notes }
+/// Wall times say nothing of the study.
+fn not_a_result(metric: &str) -> Draft {
+    Draft {
+        about: metric.to_owned(),
+        test: "none",
+        cells: Vec::new(),
+        conditions: Vec::new(),
+        evidence: Err(format!(
+            "`{metric}` depends on the machine: such claims are marked `circumstance: true` and judged apart \
+             from the results"
+        )),
+        notes: Vec::new(),
     }
-
-    /// The refusal of trials that are not independent.
-    pub(super) fn shared_noise(&self, conditions: &[usize]) -> Option<String> {
-        let (one, other) = self.observations.sharing(conditions, self.context.shared_noise)?;
-        Some(format!(
-            "trials of ({one}) and ({other}) share their noise (over {}), and this test needs independent \
-             trials; a sign-test with `pairs: trials` does not",
-            self.context.shared_noise.join(", ")
-        ))
-    }
-
-    /// The runs of one cell, and what is wrong with them.
-    pub(super) fn group(
-        &self,
-        cell: &Where,
-        metric: &Metric,
-    ) -> (Group, CellNumbers, Option<String>) {
-        let conditions = self.observations.select(cell);
-        let readings = self.observations.readings(&conditions, metric);
-        let trials = readings.values.len() as u64 + readings.failed;
-        let reached: Vec<f64> = readings.values.iter().flatten().copied().collect();
-        let summary = Summary::of(&reached);
-        let proportion = metric.is_share().then(|| {
-            let successes = reached.iter().filter(|&&x| x == 1.0).count() as u64;
-            Proportion::new(successes, reached.len() as u64)
-        });
-        let finite = |x: f64| x.is_finite().then_some(x);
-        let numbers = CellNumbers {
-            cell: cell.to_string(),
-            trials,
-            reached: reached.len() as u64,
-            successes: proportion.map(|p| p.successes),
-            mean: finite(summary.mean),
-            sd: finite(summary.sd).filter(|_| proportion.is_none()),
-            median: finite(median(&reached)).filter(|_| proportion.is_none()),
-            published: None,
-        };
-        let censored = readings.values.len() - reached.len();
-        let mut values = reached;
-        if self.terms.censored == Censored::Worst {
-            values.resize(values.len() + censored, f64::INFINITY);
-        }
-        let n = values.len() as u64;
-        let fault = if trials == 0 {
-            Some(format!("no trial matches ({cell})"))
-        } else if readings.failed > 0 {
-            Some(format!("{} of {trials} trials of ({cell}) failed to run", readings.failed))
-        } else if censored > 0 && self.terms.censored == Censored::Refuse {
-            Some(format!(
-                "{censored} of {trials} runs of ({cell}) never reached {metric}; say with `censored` whether \
-                 those that did are compared (reached-only) or the others rank last (worst)"
-            ))
-        } else if n < self.terms.minimum_runs {
-            let minimum = self.terms.minimum_runs;
-            Some(format!("({cell}) has {n} runs to compare, fewer than the minimum of {minimum}"))
-        } else {
-            None
-        };
-        (Group { conditions, values, proportion, summary }, numbers, fault)
-    }
-
-    /// Confidence of the interval that says the same as the test.
-    pub(super) fn confidence(&self) -> f64 {
-        match self.terms.sides {
-            Sides::One => 1.0 - 2.0 * self.terms.alpha,
-            Sides::Two => 1.0 - self.terms.alpha,
-        }
-    }
-
-    /// The resampling stream of one comparison.
-    pub(super) fn stream(&self, about: &str) -> Stream {
-        let coordinates = vec![("claim".to_owned(), self.claim.to_owned())];
-        Seeds::new(self.context.seed, coordinates).stream(&format!("claims/{about}"))
-    }
-}
-
-/// Says where the share of runs that reached a measure differs between cells: the comparison is then one of
-/// those that got there.
-fn unequal_reach(cells: &[CellNumbers], alpha: f64) -> Vec<String> {
-    if cells.iter().all(|c| c.reached == c.trials) || cells.iter().any(|c| c.trials == 0) {
-        return Vec::new();
-    }
-    let reach: Vec<_> = cells.iter().map(|c| Proportion::new(c.reached, c.trials)).collect();
-    let p = match reach[..] {
-        [a, b] => crate::stats::proportion::fisher_exact(a, b).two_sided,
-        _ => crate::stats::proportion::chi_square_homogeneity(&reach).p,
-    };
-    let listed: Vec<String> =
-        cells.iter().map(|c| format!("{} of {} ({})", c.reached, c.trials, c.cell)).collect();
-    let differ = if p <= alpha {
-        "; the cells differ in this, so the runs compared are a selection"
-    } else {
-        ""
-    };
-    vec![format!("reached by {}{differ}", listed.join(", "))]
-}
-
-/// Groups that do not vary at all were not drawn at random, and no test of means applies.
-pub(super) fn varies(groups: &[&Group]) -> Result<(), String> {
-    if let Some(small) = groups.iter().find(|g| g.summary.n < 2) {
-        return Err(format!("a mean of {} runs has no known spread", small.summary.n));
-    }
-    if groups.iter().all(|g| g.proportion.is_none() && g.summary.sd == 0.0) {
-        return Err(
-            "no value varies within its cell: nothing was drawn at random, so no test applies"
-                .into(),
-        );
-    }
-    Ok(())
 }
 
 fn conclude(claim: &Claim, bench: &Bench<'_>, drafts: Vec<Draft>) -> Verdict {

@@ -1,7 +1,7 @@
 //! `between` and `share`: one quantity against bounds.
 
 use super::cells::Where;
-use super::judge::{Bench, Draft, Evidence, Group, varies};
+use super::gather::{Bench, Draft, Evidence, Group, varies};
 use super::measuring::{Level, Share, That};
 use super::metric::Metric;
 use super::terms::{Censored, Statistic};

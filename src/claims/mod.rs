@@ -11,12 +11,14 @@
 //! measure are counted and never silently dropped; trials that share their noise are refused by tests that
 //! need independence; wall times belong to the circumstance half and cannot decide a result.
 
+mod agreement;
 pub mod cells;
 mod check;
 pub mod comparing;
 mod comparison;
 mod equality;
 pub mod expect;
+mod gather;
 mod judge;
 mod level;
 pub mod measuring;

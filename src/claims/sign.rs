@@ -1,6 +1,6 @@
 //! `sign-test`: how often one side of a pair is the lower.
 
-use super::judge::{Bench, Draft, Evidence};
+use super::gather::{Bench, Draft, Evidence};
 use super::measuring::SignTest;
 use super::metric::Metric;
 use super::terms::{Censored, Pairs, Side, Sides};

@@ -1,7 +1,7 @@
 //! `spread`: how far cell means lie apart.
 
 use super::cells::Where;
-use super::judge::{Bench, Draft, Evidence, Group, varies};
+use super::gather::{Bench, Draft, Evidence, Group, varies};
 use super::measuring::Spread;
 use super::metric::Metric;
 use super::verdict::Effect;

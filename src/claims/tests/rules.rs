@@ -1,0 +1,498 @@
+//! What guards verdicts: censoring, independence, minimum n, faults of claims, the three facts, power.
+
+use super::*;
+
+fn wall_free() -> (Vec<(String, Vec<String>)>, Vec<String>, Vec<String>) {
+    let owned = |names: &[&str]| names.iter().map(|s| (*s).to_owned()).collect::<Vec<_>>();
+    let factors = vec![
+        ("start".to_owned(), owned(&["A", "B", "C"])),
+        ("strategy".to_owned(), owned(&STRATEGIES)),
+        ("deadline-s".to_owned(), owned(&["68", "272", "477", "680"])),
+        ("prior".to_owned(), owned(&["none", "floor-plan"])),
+        ("furnished".to_owned(), owned(&["true", "false"])),
+        ("environment".to_owned(), owned(&["basic", "office", "open"])),
+    ];
+    let metrics = owned(&[
+        "success",
+        "outcome:late",
+        "time-s",
+        "time-s-at-70",
+        "distance-m-at-70",
+        "distance-m-at-80",
+        "distance-m-at-90",
+    ]);
+    (factors, metrics, owned(&["success-percent"]))
+}
+
+fn faults(expect: &str) -> Vec<String> {
+    let (factors, metrics, published) = wall_free();
+    claim(expect).check(&factors, &metrics, &published)
+}
+
+/// The fenced YAML of a text, each line without `prefix`.
+fn examples(text: &str, prefix: &str) -> Vec<String> {
+    let mut found = Vec::new();
+    let mut open: Option<String> = None;
+    for line in text.lines() {
+        let Some(line) = line.strip_prefix(prefix) else { continue };
+        match (&mut open, line.trim()) {
+            (None, "```yaml") => open = Some(String::new()),
+            (Some(example), "```") => {
+                found.push(std::mem::take(example));
+                open = None;
+            }
+            (Some(example), _) => example.push_str(&format!(
+                "{}\n",
+                line.strip_prefix(' ').filter(|_| !prefix.is_empty()).unwrap_or(line)
+            )),
+            (None, _) => {}
+        }
+    }
+    found
+}
+
+#[test]
+fn every_form_has_an_example_that_parses_and_checks() {
+    let (factors, metrics, published) = wall_free();
+    let mut forms = std::collections::BTreeSet::new();
+    for text in examples(include_str!("../expect.rs"), "//!") {
+        let claim: Claim = serde_yaml::from_str(&text).unwrap_or_else(|e| panic!("{text}\n{e}"));
+        assert_eq!(claim.check(&factors, &metrics, &published), Vec::<String>::new(), "{text}");
+        forms.insert(claim.expect.form());
+        let back: Claim = serde_json::from_value(serde_json::to_value(&claim).unwrap()).unwrap();
+        assert_eq!(back, claim);
+    }
+    // `greater` stands for `less` and the other way round, and both are there.
+    assert_eq!(
+        forms.into_iter().collect::<Vec<_>>(),
+        [
+            "between",
+            "correlation-with-published",
+            "equivalent",
+            "greater",
+            "homogeneous",
+            "less",
+            "rank",
+            "rmse-with-published",
+            "share",
+            "sign-test",
+            "spread",
+            "trend"
+        ]
+    );
+}
+
+#[test]
+fn the_examples_of_the_page_parse_and_check() {
+    let (factors, metrics, published) = wall_free();
+    let found = examples(include_str!("../../../docs/claims.md"), "");
+    assert!(found.len() >= 12, "{} examples", found.len());
+    for text in found {
+        let claims: Vec<Claim> =
+            serde_yaml::from_str(&text).unwrap_or_else(|e| panic!("{text}\n{e}"));
+        assert_eq!(
+            check_all(&claims, &factors, &metrics, &published),
+            Vec::<String>::new(),
+            "{text}"
+        );
+    }
+}
+
+#[test]
+fn faults_are_named_with_their_place_and_the_nearest_name() {
+    assert_eq!(
+        faults("{less: {metric: sucess, where: {strat: random}, than: {where: {start: D}}}}"),
+        [
+            "claim `X`: expect.less.where.strat: unknown factor `strat`; did you mean `start`? (known: start, \
+             strategy, deadline-s, prior, furnished, environment)",
+            "claim `X`: expect.less.than.where.start: unknown value `D` (known: A, B, C)",
+            "claim `X`: expect.less.metric: unknown metric `sucess`; did you mean `success`? (known: success, \
+             outcome:late, time-s, time-s-at-70, distance-m-at-70, distance-m-at-80, distance-m-at-90)",
+        ]
+    );
+    assert_eq!(
+        faults(
+            "{less: {metric: success, than: {where: {start: A}}, test: welch, alpha: 0.7, at-least: 0, censored: worst}}"
+        ),
+        [
+            "claim `X`: expect.less.alpha: expected a level between 0 and 0.5, found 0.7",
+            "claim `X`: expect.less.at-least: expected at least 1, found 0: every verdict would be supported",
+            "claim `X`: expect.less.test: welch is a test of measures",
+            "claim `X`: expect.less.censored: `worst` has a rank and no value: it needs mann-whitney, spearman, \
+             median, p95 or pairs of trials",
+        ]
+    );
+    assert_eq!(
+        faults(
+            "{trend: {metric: success, direction: rising, along: [{score: 1, where: {}}, {score: 1, where: {}}]}}"
+        ),
+        ["claim `X`: expect.trend.along: expected two or more different scores, found [1.0, 1.0]"]
+    );
+    assert_eq!(
+        faults("{less: {metric: time-s, than: {where: {start: A}}, test: anova}}"),
+        ["claim `X`: expect.less.sides: anova has two sides; say `sides: two`"]
+    );
+    assert_eq!(
+        faults(
+            "{rmse-with-published: {metric: success, published: succes, at-most: 0, baseline: [x]}}"
+        ),
+        [
+            "claim `X`: expect.rmse-with-published.published: unknown published table `succes`; did you mean \
+             `success-percent`? (known: success-percent)",
+            "claim `X`: expect.rmse-with-published.at-most: expected a positive number, found 0",
+            "claim `X`: expect.rmse-with-published.baseline: unknown factor `x` (known: start, strategy, \
+             deadline-s, prior, furnished, environment)",
+        ]
+    );
+    assert_eq!(
+        faults("{between: {metric: success, low: 0, high: 0.5}}"),
+        [
+            "claim `X`: expect.between.low: a share is bounded strictly between 0 and 1, found 0; leave out what \
+          always holds"
+        ]
+    );
+    let twice = [
+        claim("{between: {metric: success, high: 0.5}}"),
+        claim("{between: {metric: success, high: 0.5}}"),
+    ];
+    let (factors, metrics, published) = wall_free();
+    assert_eq!(
+        check_all(&twice, &factors, &metrics, &published),
+        ["claim `X`: the id is used twice"]
+    );
+    let unknown = serde_yaml::from_str::<Claim>(
+        "id: X\nsays: s\npaper-table: silent\nexpect: {less: {metrik: a}}\n",
+    );
+    assert!(unknown.unwrap_err().to_string().contains("metrik"));
+}
+
+#[test]
+fn wall_time_is_circumstance() {
+    let (factors, _, published) = wall_free();
+    let metrics = ["wall-time-selection-ms".to_owned(), "success".to_owned()];
+    let expect = "{between: {metric: wall-time-selection-ms, statistic: p95, high: 50}}";
+    let mut about_speed = claim(expect);
+    assert_eq!(
+        about_speed.check(&factors, &metrics, &published),
+        [
+            "claim `X`: expect.between.metric: `wall-time-selection-ms` depends on the machine and belongs to the \
+          circumstance half of a bundle; mark the claim `circumstance: true` or measure simulated time"
+        ]
+    );
+    // And where nobody checked, judging refuses it just the same.
+    let found = verdict(expect);
+    assert_eq!(found.judgement, Judgement::CannotBeTested);
+    assert_eq!(
+        found.reason,
+        "`wall-time-selection-ms` depends on the machine: such claims are marked `circumstance: true` and judged \
+         apart from the results"
+    );
+    about_speed.circumstance = true;
+    assert!(about_speed.check(&factors, &metrics, &published).is_empty());
+    let mut about_success = claim("{between: {metric: success, high: 0.5}}");
+    about_success.circumstance = true;
+    assert_eq!(
+        about_success.check(&factors, &metrics, &published),
+        [
+            "claim `X`: circumstance: `success` is a result of the study; only claims on wall-time metrics are \
+          circumstance"
+        ]
+    );
+}
+
+#[test]
+fn cells_that_share_noise_are_refused_and_paired_instead() {
+    let published = published();
+    let shared = ["strategy".to_owned()];
+    let context = Context::new(&published, &shared, 1);
+    let two = "{less: {metric: success, where: {start: C, deadline-s: 5628, strategy: random}, than: {where: \
+               {start: C, deadline-s: 5628, strategy: frontier}}}}";
+    let found = judge(&claim(two), &as_printed(), &context).unwrap();
+    assert_eq!(found.judgement, Judgement::CannotBeTested);
+    assert_eq!(
+        found.reason,
+        "trials of (start=C, deadline-s=5628, strategy=random) and (start=C, deadline-s=5628, strategy=frontier) \
+         share their noise (over strategy), and this test needs independent trials; a sign-test with `pairs: \
+         trials` does not"
+    );
+    // The numbers are there all the same.
+    assert_eq!(found.comparisons[0].cells[0].successes, Some(4));
+    // Cells that differ in a factor of their own do not share anything.
+    let apart = two.replace(
+        "{start: C, deadline-s: 5628, strategy: frontier}",
+        "{start: B, deadline-s: 2899, strategy: frontier}",
+    );
+    assert_eq!(
+        judge(&claim(&apart), &as_printed(), &context).unwrap().judgement,
+        Judgement::Supported
+    );
+    // By trial: 4 and 27 of 50 succeed, in this table the first ones of each, so 23 pairs differ.
+    let paired = "{sign-test: {metric: success, direction: less, pairs: trials, where: {strategy: random}, than: \
+                  {strategy: frontier}, for-each: {start: C, deadline-s: 5628}}}";
+    let found = judge(&claim(paired), &as_printed(), &context).unwrap();
+    assert_eq!(found.judgement, Judgement::Supported);
+    assert_eq!(
+        found.comparisons[0].statistics,
+        [("pairs", 23.0), ("as-claimed", 23.0), ("ties", 27.0)]
+    );
+    assert_close(found.comparisons[0].p_for.unwrap().0, 0.5_f64 * 0.5 / 2_097_152.0, 1e-9);
+}
+
+#[test]
+fn sign_tests_of_cells_count_one_vote_per_pair() {
+    let expect = "{sign-test: {metric: success, direction: greater, where: {strategy: frontier}, than: {strategy: \
+                  complete-corridor}, for-each: [{start: A, deadline-s: [680, 477, 272, 68]}, {start: B, deadline-s: \
+                  [2899, 2030, 1160, 290]}, {start: C, deadline-s: [5628, 3940, 2251, 563]}]}}";
+    let found = verdict(expect);
+    // 28 20, 15 17, 16 18, 17 15, 30 29, 26 27, 31 23, 17 12, 27 23, 29 38, 28 24, 25 10: eight of twelve
+    assert_eq!(
+        found.comparisons[0].statistics,
+        [("pairs", 12.0), ("as-claimed", 8.0), ("ties", 0.0)]
+    );
+    // scipy.stats.binomtest(8, 12, alternative='greater')
+    assert_close(found.comparisons[0].p_for.unwrap().0, 0.193_847_656_25, 1e-9);
+    assert_eq!(found.judgement, Judgement::Inconclusive);
+    assert_eq!(found.comparisons[0].cells.len(), 24);
+    let few = expect.replace("greater,", "greater, minimum-n: 13,");
+    assert_eq!(verdict(&few).reason, "12 pairs differ, fewer than the minimum of 13 (0 are tied)");
+}
+
+#[test]
+fn censored_runs_are_counted_and_never_dropped_in_silence() {
+    let expect = "{less: {metric: time-s, where: {start: A, strategy: frontier}, than: {where: {start: A, strategy: \
+                  random}}}}";
+    let refused = verdict(expect);
+    assert_eq!(refused.judgement, Judgement::CannotBeTested);
+    assert_eq!(
+        refused.reason,
+        "124 of 200 runs of (start=A, strategy=frontier) never reached time-s; say with `censored` whether those \
+         that did are compared (reached-only) or the others rank last (worst)"
+    );
+    let reached = verdict(&expect.replace("less: {", "less: {censored: reached-only, "));
+    assert_eq!(reached.judgement, Judgement::Supported);
+    assert_eq!(
+        reached.notes,
+        [
+            "reached by 76 of 200 (start=A, strategy=frontier), 148 of 200 (start=A, strategy=random); the cells differ \
+          in this, so the runs compared are a selection"
+        ]
+    );
+    let cell = &reached.comparisons[0].cells[0];
+    assert_eq!((cell.trials, cell.reached), (200, 76));
+    // Ranked last, the 124 that never arrived turn it round.
+    let last = verdict(&expect.replace("less: {", "less: {censored: worst, test: mann-whitney, "));
+    assert_eq!(last.judgement, Judgement::Contradicted);
+    // A share of runs that arrive within a time counts those that never do.
+    let share = verdict(
+        "{share: {that: {metric: time-s, at-most: 1000}, where: {start: A, strategy: frontier}, low: 0.5}}",
+    );
+    assert_eq!(share.judgement, Judgement::Contradicted);
+    assert_eq!(share.comparisons[0].effect.as_ref().unwrap().value, 0.38);
+}
+
+#[test]
+fn nothing_is_judged_on_too_little_or_on_failed_runs() {
+    let few = deadline_trials(5, |_, j| if j == 0 { 0 } else { 5 });
+    let expect = "{less: {metric: success, where: {start: C, deadline-s: 563, strategy: random}, than: {where: {start: C, \
+                  deadline-s: 563, strategy: frontier}}}}";
+    assert_eq!(
+        verdict_on(&few, expect).reason,
+        "(deadline-s=563, start=C, strategy=random) has 5 runs to compare, fewer than the minimum of 10"
+    );
+    let mut failed = as_printed();
+    let place = failed.column("outcome").unwrap();
+    let last = failed.rows.len() - 1;
+    failed.rows[last][place] = "failed".into();
+    let found = verdict_on(&failed, "{between: {metric: success, where: {start: C}, high: 0.9}}");
+    assert_eq!(found.reason, "1 of 1000 trials of (start=C) failed to run");
+    let none =
+        verdict("{between: {metric: success, where: {start: C, deadline-s: 68}, high: 0.9}}");
+    assert_eq!(none.reason, "no trial matches (deadline-s=68, start=C)");
+    assert_eq!(none.judgement, Judgement::CannotBeTested);
+    let overlap = verdict(
+        "{less: {metric: success, where: {start: [A, B]}, than: {where: {start: [B, C]}}}}",
+    );
+    assert_eq!(
+        overlap.reason,
+        "the condition start=B, deadline-s=2899, strategy=random is in two of the cells compared"
+    );
+    let fixed = "{less: {metric: outcome:late, where: {start: A}, than: {where: {start: B}}}}";
+    assert_eq!(verdict(fixed).judgement, Judgement::Inconclusive);
+    let missing = verdict("{between: {metric: speed, high: 1}}");
+    assert_eq!(missing.reason, "the trials table has no column `speed`");
+}
+
+#[test]
+fn values_that_never_vary_are_no_sample() {
+    let mut table = Table::new(["key", "prior", "trial", "outcome", "d"]);
+    for (prior, d) in [("a", 1.0), ("b", 2.0)] {
+        for trial in 0..10_i64 {
+            table.push(vec!["k".into(), prior.into(), trial.into(), "explored".into(), d.into()]);
+        }
+    }
+    let found =
+        verdict_on(&table, "{less: {metric: d, where: {prior: a}, than: {where: {prior: b}}}}");
+    assert_eq!(
+        found.reason,
+        "no value varies within its cell: nothing was drawn at random, so no test applies"
+    );
+}
+
+#[test]
+fn published_tables_are_read_by_contract() {
+    let (factors, _, _) = wall_free();
+    let check = |text: &str| published::check_table("t", &Table::from_csv(text).unwrap(), &factors);
+    assert_eq!(
+        check("start,percent\n"),
+        ["published table `t`: no column `value` (there are start, percent)"]
+    );
+    assert_eq!(
+        check("start,value\nA,1\nA,2\n"),
+        ["published table `t`: rows 1 and 2 speak of the same cell"]
+    );
+    assert_eq!(
+        check("start,value\nA,x\n"),
+        ["published table `t`: row 1: `value` is `x`, expected a number"]
+    );
+    assert_eq!(
+        check("start,value\nA,1\nD,2\n"),
+        ["published table `t`: row 2: factor `start` has no value `D`"]
+    );
+    assert_eq!(
+        check("start,metric,value,sd,n,note\nA,m,1,0.5,10,x\nA,k,,,,y\n"),
+        Vec::<String>::new()
+    );
+    // A printed number without runs of ours is told, not dropped.
+    let mut tables = published();
+    let table = tables.get_mut("success-percent").unwrap();
+    table.push(vec!["A".into(), 99.into(), "random".into(), 50.0.into(), 50.into()]);
+    let expect = "{correlation-with-published: {metric: success, published: success-percent, at-least: 0.6}}";
+    let found = judge(&claim(expect), &as_printed(), &Context::new(&tables, &[], 1)).unwrap();
+    assert_eq!(found.judgement, Judgement::Supported);
+    assert_eq!(
+        found.notes,
+        ["1 published cells have no runs to compare: deadline-s=99, start=A, strategy=random"]
+    );
+}
+
+#[test]
+fn log_ratios_compare_gains_instead_of_levels() {
+    let mut tables = BTreeMap::new();
+    let mut table = Table::new(["start", "deadline-s", "strategy", "value"]);
+    for (start, deadline, row) in TABLE_1 {
+        for (strategy, k) in STRATEGIES.iter().zip(row) {
+            table.push(vec![
+                start.into(),
+                deadline.into(),
+                (*strategy).into(),
+                Value::Number(k as f64),
+            ]);
+        }
+    }
+    tables.insert("counts".to_owned(), table);
+    let expect = "{correlation-with-published: {metric: success, published: counts, ratio-to: {strategy: frontier}, \
+                  at-least: 0.5}}";
+    let found = judge(&claim(expect), &as_printed(), &Context::new(&tables, &[], 1)).unwrap();
+    // 48 cells are no base; random never succeeds in two.
+    assert_eq!(found.comparisons[0].statistics[0], ("cells", 46.0));
+    assert_eq!(found.notes, ["2 cells have no positive base to take a ratio to"]);
+    let slope = found.comparisons[0].statistics.iter().find(|(n, _)| *n == "slope").unwrap().1;
+    assert_close(slope, 1.0, 1e-9);
+}
+
+#[test]
+fn what_the_paper_says_shows_and_we_find_are_three_facts() {
+    let published = published();
+    let trials = as_printed();
+    let context = Context::new(&published, &[], 2019);
+    let mut stated = claim(
+        "{less: {metric: success, where: {start: C, strategy: random}, than: {where: {start: C, strategy: frontier}}}}",
+    );
+    let first = judge(&stated, &trials, &context).unwrap();
+    stated.paper_table = PaperTable::Contradicts;
+    stated.says = "the opposite".to_owned();
+    let second = judge(&stated, &trials, &context).unwrap();
+    assert_eq!(first.judgement, second.judgement);
+    assert_eq!(first.comparisons, second.comparisons);
+    assert_eq!(Score::of(&[first]), Score::of(&[second]));
+    assert_eq!(
+        Score { supported: 1, contradicted: 2, inconclusive: 3, cannot_be_tested: 4 }.to_string(),
+        "1 of 10 claims supported, 2 contradicted, 3 inconclusive, 4 cannot be tested"
+    );
+}
+
+#[test]
+fn verdicts_have_one_text() {
+    // p by scipy.stats.fisher_exact, limits by statsmodels' Newcombe interval at 90 %.
+    let expect = "{less: {metric: success, where: {start: C, deadline-s: 5628, strategy: random}, than: {where: {start: C, \
+                  deadline-s: 5628, strategy: frontier}}}}";
+    let text = canonical(&verdict(expect).to_json());
+    assert_eq!(
+        text,
+        "{\"alpha\":0.05,\"cite\":null,\"comparisons\":[{\"about\":\"success: (deadline-s=5628, start=C, \
+         strategy=random) < (deadline-s=5628, start=C, strategy=frontier)\",\"cells\":[{\"cell\":\"deadline-s=5628, \
+         start=C, strategy=random\",\"mean\":0.08,\"reached\":50,\"successes\":4,\"trials\":50},{\"cell\":\
+         \"deadline-s=5628, start=C, strategy=frontier\",\"mean\":0.54,\"reached\":50,\"successes\":27,\"trials\":50}],\
+         \"effect\":{\"confidence\":0.9,\"high\":-0.315986372,\"low\":-0.579142079,\"name\":\"risk-difference\",\
+         \"value\":-0.46},\"p-against\":0.999999972,\"p-against-corrected\":0.999999972,\"p-for\":4.02666661e-7,\
+         \"p-for-corrected\":4.02666661e-7,\"test\":\"fisher-exact\",\"verdict\":\"supported\"}],\"correction\":\
+         \"holm\",\"form\":\"less\",\"id\":\"X\",\"minimum-n\":10,\"notes\":[],\"paper-table\":\"silent\",\"reason\":\
+         \"p 4.03e-7 at alpha 0.05 by fisher-exact\",\"required\":1,\"says\":\"something\",\"trials-to-decide\":null,\
+         \"verdict\":\"supported\"}"
+    );
+    assert_eq!(verdict(expect), verdict(expect));
+    assert_eq!(verdict::rounded(1.0 / 3.0).to_string(), "0.333333333");
+    assert_eq!(verdict::rounded(f64::INFINITY), serde_json::Value::Null);
+}
+
+#[test]
+fn power_is_that_of_the_very_test() {
+    let mut stated = claim(
+        "{less: {metric: success, where: {strategy: random}, than: {where: {strategy: frontier}}, test: fisher-exact}}",
+    );
+    stated.power =
+        serde_yaml::from_str("{cells: [{where: {strategy: random}, value: 0.3}, {value: 0.6}]}")
+            .unwrap();
+    let conditions: Vec<Vec<(String, String)>> =
+        ["random", "frontier"].map(|s| vec![("strategy".to_owned(), s.to_owned())]).to_vec();
+    let none = BTreeMap::new();
+    let context = Context::new(&none, &[], 2019);
+    let found = power::power(&stated, &conditions, 30, &context, 1000).unwrap();
+    // scipy: sum over k1, k2 of binom.pmf(k1, 30, .3) binom.pmf(k2, 30, .6) [fisher_exact 'less' <= .05];
+    // three standard errors of a share over 1000 studies are 0.044
+    assert!(
+        (found.planned.supported - 0.665_356_518_542_805_8).abs() < 0.044,
+        "{}",
+        found.planned.supported
+    );
+    // The same sum for 'greater' is 6.9e-6: rare, not impossible. Two in a thousand would have probability 2e-5.
+    assert!(found.planned.contradicted < 0.002, "{}", found.planned.contradicted);
+    assert_eq!(found.enough, Some(50));
+    assert_eq!(found, power::power(&stated, &conditions, 30, &context, 1000).unwrap());
+    // From the published cells.
+    stated.power =
+        serde_yaml::from_str("{published: {table: success-percent, scale: 0.01}}").unwrap();
+    let tables = published();
+    let context = Context::new(&tables, &[], 2019);
+    let conditions: Vec<Vec<(String, String)>> = ["random", "frontier"]
+        .map(|s| {
+            [("start", "C"), ("deadline-s", "5628"), ("strategy", s)]
+                .map(|(f, v)| (f.to_owned(), v.to_owned()))
+                .to_vec()
+        })
+        .to_vec();
+    let found = power::power(&stated, &conditions, 50, &context, 100).unwrap();
+    assert!(found.planned.supported > 0.97);
+    assert_eq!(found.enough, Some(20));
+    // Percent without its scale is no share.
+    stated.power = serde_yaml::from_str("{published: {table: success-percent}}").unwrap();
+    assert_eq!(
+        power::power(&stated, &conditions, 50, &context, 10),
+        Err("success in (start=C, deadline-s=5628, strategy=random) is a share and cannot be 8; is a scale missing?".to_owned())
+    );
+    stated.power = None;
+    assert_eq!(
+        power::power(&stated, &conditions, 50, &context, 10),
+        Err("the claim assumes no truth; add `power:` with `published` or `cells`".to_owned())
+    );
+}
