@@ -79,6 +79,7 @@ pub struct Where(pub BTreeMap<String, Values>);
 
 impl Where {
     /// This selection with the factors of `pins` held at one value each.
+    #[must_use]
     pub fn pinned(&self, pins: &BTreeMap<String, String>) -> Self {
         let mut all = self.0.clone();
         for (factor, value) in pins {
@@ -88,6 +89,7 @@ impl Where {
     }
 
     /// This selection with all factors of `other` replaced by its values.
+    #[must_use]
     pub fn replaced(&self, other: &Self) -> Self {
         let mut all = self.0.clone();
         all.extend(other.0.iter().map(|(factor, values)| (factor.clone(), values.clone())));

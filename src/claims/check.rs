@@ -229,9 +229,11 @@ impl Faults<'_> {
 
     fn form(&mut self, expect: &Expect) {
         match expect {
-            Expect::Less(f) | Expect::Greater(f) => self.each(&f.than.each, &f.than.r#where),
+            Expect::Less(f) | Expect::Greater(f) => {
+                self.each("than.each", &f.than.each, &f.than.r#where);
+            }
             Expect::Equivalent(f) => {
-                self.each(&f.to.each, &f.to.r#where);
+                self.each("to.each", &f.to.each, &f.to.r#where);
                 self.margin("margin", f.margin);
             }
             Expect::Homogeneous(f) => {
@@ -311,9 +313,9 @@ impl Faults<'_> {
         }
     }
 
-    fn each(&mut self, each: &[String], other: &Where) {
+    fn each(&mut self, path: &str, each: &[String], other: &Where) {
         for factor in each {
-            self.unless(other.0.contains_key(factor), "than.each", || {
+            self.unless(other.0.contains_key(factor), path, || {
                 format!("`{factor}` is not among the factors of `where`")
             });
         }

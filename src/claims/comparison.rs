@@ -37,7 +37,6 @@ fn sided(bench: &Bench<'_>, form: &Comparison, side: Side) -> Vec<Draft> {
 }
 
 pub(super) fn rank(bench: &Bench<'_>, form: &Ranking) -> Vec<Draft> {
-    let ranked = form.across.combinations();
     let Some((factor, values)) = form.across.0.iter().next() else { return Vec::new() };
     let with = |base: &Where, value: &str| {
         base.pinned(&[(factor.clone(), value.to_owned())].into_iter().collect())
@@ -53,7 +52,6 @@ pub(super) fn rank(bench: &Bench<'_>, form: &Ranking) -> Vec<Draft> {
             order.windows(2).map(|pair| (pair[0].as_str(), pair[1].as_str())).collect()
         }
     };
-    debug_assert!(pairs.len() <= ranked.len(), "check() wants one factor with all values");
     let mut drafts = Vec::new();
     for metric in &form.metric.0 {
         for pins in form.for_each.combinations() {
@@ -254,6 +252,9 @@ fn trend_evidence(
     scores: &[f64],
     side: Side,
 ) -> Result<Evidence, String> {
+    if groups.len() < 2 {
+        return Err("a trend needs two steps or more".to_owned());
+    }
     let sides = bench.terms.sides;
     let shares: Option<Vec<Proportion>> = groups.iter().map(|g| g.proportion).collect();
     match (test, shares) {

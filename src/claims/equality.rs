@@ -93,6 +93,9 @@ pub(super) fn homogeneous(bench: &Bench<'_>, form: &Homogeneity) -> Vec<Draft> {
 }
 
 fn all_pairs(bench: &Bench<'_>, groups: &[Group], margin: f64) -> Result<Evidence, String> {
+    if groups.len() < 2 {
+        return Err("one cell has nothing to be alike to".to_owned());
+    }
     let mut beyond = Vec::new();
     let mut widest: Option<(f64, Effect)> = None;
     let mut p_for = 0.0_f64;

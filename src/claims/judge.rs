@@ -109,7 +109,7 @@ fn conclude(claim: &Claim, bench: &Bench<'_>, drafts: Vec<Draft>) -> Verdict {
     };
     let (p_for, p_against) = (correct(&raw_for), correct(&raw_against));
     let total = drafts.len();
-    let required = terms.at_least.unwrap_or(total).min(total);
+    let required = terms.at_least.unwrap_or(total).clamp(1, total.max(1));
     let mut notes = Vec::new();
     let mut comparisons = Vec::with_capacity(total);
     for (i, draft) in drafts.into_iter().enumerate() {
@@ -227,7 +227,7 @@ fn sum_up(
 
 /// Trials per condition that would have decided a comparison with 80 % power, if what was seen is the truth.
 ///
-/// A test statistic grows with the root of the number of trials, so n' = n ((z_alpha + z_power) / z_seen)²,
+/// A test statistic grows with the root of the number of trials, so `n' = n ((z_alpha + z_power) / z_seen)²`,
 /// with alpha shared among the comparisons of the claim as Bonferroni would. `None` where nothing was seen or
 /// more than a million would be needed.
 fn trials_to_decide(trials: u64, p: f64, terms: &Terms, comparisons: usize) -> Option<u64> {

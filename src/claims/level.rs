@@ -32,6 +32,10 @@ impl Bounds {
             let (above, below) = tails(bound);
             (below, above)
         });
+        if low.is_none() && high.is_none() {
+            // Nothing is claimed, so nothing is shown.
+            return (1.0, 1.0);
+        }
         let given = || low.iter().chain(&high);
         (
             given().map(|(inside, _)| *inside).fold(0.0, f64::max),

@@ -16,6 +16,13 @@ pub struct Observations {
     measures: Vec<String>,
 }
 
+/// Values by metric, one per trial; `None` where the run did not reach it.
+pub(crate) type Measures = BTreeMap<String, Vec<Option<f64>>>;
+
+/// A trial that the engine failed to run has no value of any kind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct FailedTrial;
+
 /// The trials of one condition.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Condition {
@@ -25,7 +32,7 @@ pub(crate) struct Condition {
     pub(crate) numbers: Vec<i64>,
     outcomes: Vec<String>,
     /// By name; as long as `numbers`.
-    measures: BTreeMap<String, Vec<Option<f64>>>,
+    measures: Measures,
 }
 
 /// The values of one metric over a set of conditions.
@@ -86,10 +93,12 @@ impl Observations {
         for condition in &conditions {
             let mut numbers = condition.numbers.clone();
             numbers.sort_unstable();
-            if let Some(twice) = numbers.windows(2).find(|pair| pair[0] == pair[1]) {
+            if let Some(twice) =
+                numbers.windows(2).find(|pair| pair[0] == pair[1]).map(|pair| pair[0])
+            {
                 return Err(format!(
                     "trial {} of {} is there twice",
-                    twice[0],
+                    twice,
                     condition.values.join("/")
                 ));
             }
@@ -100,7 +109,7 @@ impl Observations {
     /// Observations made up for a plan: each metric (shares as 0 and 1) by condition.
     pub(crate) fn simulated(
         factors: Vec<String>,
-        conditions: Vec<(Vec<String>, BTreeMap<String, Vec<Option<f64>>>)>,
+        conditions: Vec<(Vec<String>, Measures)>,
         trials: u64,
     ) -> Self {
         let measures =
@@ -146,8 +155,8 @@ impl Observations {
             let condition = &self.conditions[i];
             for row in 0..condition.numbers.len() {
                 match condition.reading(row, metric) {
-                    Some(value) => readings.values.push(value),
-                    None => readings.failed += 1,
+                    Ok(value) => readings.values.push(value),
+                    Err(FailedTrial) => readings.failed += 1,
                 }
             }
         }
@@ -198,18 +207,18 @@ impl Observations {
 }
 
 impl Condition {
-    /// The value of `metric` in one trial: `None` for a failed trial, `Some(None)` for one that did not reach it.
-    pub(crate) fn reading(&self, row: usize, metric: &Metric) -> Option<Option<f64>> {
+    /// The value of `metric` in one trial: `None` where the run did not reach it.
+    pub(crate) fn reading(&self, row: usize, metric: &Metric) -> Result<Option<f64>, FailedTrial> {
         let Some(outcome) = self.outcomes.get(row) else {
-            return self.measures.get(&metric.to_string()).map(|values| values[row]);
+            return Ok(self.measures.get(&metric.to_string()).and_then(|values| values[row]));
         };
         if outcome == FAILED {
-            return None;
+            return Err(FailedTrial);
         }
         match (metric, metric.counts(outcome)) {
-            (_, Some(counts)) => Some(Some(f64::from(u8::from(counts)))),
-            (Metric::Measure(name), None) => Some(self.measures.get(name).and_then(|v| v[row])),
-            (_, None) => Some(None),
+            (_, Some(counts)) => Ok(Some(f64::from(u8::from(counts)))),
+            (Metric::Measure(name), None) => Ok(self.measures.get(name).and_then(|v| v[row])),
+            (_, None) => Ok(None),
         }
     }
 }

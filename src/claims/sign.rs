@@ -126,6 +126,9 @@ fn by_cells(bench: &Bench<'_>, form: &SignTest, signs: &mut Signs) -> Result<(),
     reason.map_or(Ok(()), Err)
 }
 
+/// What two partners have in common: the factor values that are not compared, and the trial number.
+type Partner<'a> = (Vec<&'a str>, i64);
+
 /// One pair per trial number and condition, the two conditions differing in the compared factors only.
 fn by_trials(bench: &Bench<'_>, form: &SignTest, signs: &mut Signs) -> Result<(), String> {
     let observations = bench.observations;
@@ -139,7 +142,7 @@ fn by_trials(bench: &Bench<'_>, form: &SignTest, signs: &mut Signs) -> Result<()
     if let Some(reason) = metrics.iter().find_map(|m| observations.lacks(m)) {
         return Err(reason);
     }
-    let mut sides: [BTreeMap<(Vec<&str>, i64), Vec<Option<f64>>>; 2] = Default::default();
+    let mut sides: [BTreeMap<Partner<'_>, Vec<Option<f64>>>; 2] = Default::default();
     for pins in form.for_each.combinations() {
         for (side, cell) in sides.iter_mut().zip([&form.r#where, &form.than]) {
             let cell = cell.pinned(&pins);
@@ -153,9 +156,9 @@ fn by_trials(bench: &Bench<'_>, form: &SignTest, signs: &mut Signs) -> Result<()
                 let condition = &observations.conditions[i];
                 let own = observations.own_coordinates(i, &compared);
                 for (row, &number) in condition.numbers.iter().enumerate() {
-                    let readings: Option<Vec<Option<f64>>> =
+                    let readings: Result<Vec<Option<f64>>, _> =
                         metrics.iter().map(|m| condition.reading(row, m)).collect();
-                    let Some(readings) = readings else {
+                    let Ok(readings) = readings else {
                         return Err(format!(
                             "trial {number} of ({}) failed to run",
                             observations.name(i)

@@ -64,6 +64,9 @@ fn resampled(
     first: usize,
     limit: f64,
 ) -> Result<Evidence, String> {
+    if first < 2 {
+        return Err("one cell has no spread".to_owned());
+    }
     varies(&groups.iter().collect::<Vec<_>>())?;
     let samples: Vec<&[f64]> = groups.iter().map(|g| g.values.as_slice()).collect();
     let compared = first < samples.len();

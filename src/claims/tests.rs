@@ -42,7 +42,11 @@ fn deadline_trials(trials: u64, successes: impl Fn(usize, usize) -> u64) -> Tabl
                     (*strategy).into(),
                     Value::Integer(trial.cast_signed()),
                     if reached { "reached" } else { "collided" }.into(),
-                    if reached { Value::Number(10.0 + trial as f64) } else { Value::Missing },
+                    if reached {
+                        Value::Number(10.0 + crate::stats::real(trial))
+                    } else {
+                        Value::Missing
+                    },
                 ]);
             }
         }
@@ -59,7 +63,7 @@ fn published() -> BTreeMap<String, Table> {
     let mut table = Table::new(["start", "deadline-s", "strategy", "value", "n"]);
     for (start, deadline, row) in TABLE_1 {
         for (strategy, k) in STRATEGIES.iter().zip(row) {
-            let percent = Value::Number(2.0 * k as f64);
+            let percent = Value::Number(2.0 * crate::stats::real(k));
             table.push(vec![start.into(), deadline.into(), (*strategy).into(), percent, 50.into()]);
         }
     }
@@ -259,12 +263,12 @@ fn prior_trials() -> Table {
         ("footprint", 22.29, 1.50),
         ("bounding-box", 24.21, 1.55),
     ] {
-        for (trial, value) in printed(10, mean, sd).into_iter().enumerate() {
+        for (trial, value) in (0_i64..).zip(printed(10, mean, sd)) {
             let key = format!("{prior}-{trial}");
             table.push(vec![
                 key.into(),
                 prior.into(),
-                (trial as i64).into(),
+                trial.into(),
                 "explored".into(),
                 value.into(),
             ]);

@@ -2,7 +2,11 @@
 
 use super::*;
 
-fn wall_free() -> (Vec<(String, Vec<String>)>, Vec<String>, Vec<String>) {
+/// Factors with their values, metrics, published tables.
+type Known = (Vec<(String, Vec<String>)>, Vec<String>, Vec<String>);
+
+/// What the examples speak of.
+fn known() -> Known {
     let owned = |names: &[&str]| names.iter().map(|s| (*s).to_owned()).collect::<Vec<_>>();
     let factors = vec![
         ("start".to_owned(), owned(&["A", "B", "C"])),
@@ -25,7 +29,7 @@ fn wall_free() -> (Vec<(String, Vec<String>)>, Vec<String>, Vec<String>) {
 }
 
 fn faults(expect: &str) -> Vec<String> {
-    let (factors, metrics, published) = wall_free();
+    let (factors, metrics, published) = known();
     claim(expect).check(&factors, &metrics, &published)
 }
 
@@ -53,7 +57,7 @@ fn examples(text: &str, prefix: &str) -> Vec<String> {
 
 #[test]
 fn every_form_has_an_example_that_parses_and_checks() {
-    let (factors, metrics, published) = wall_free();
+    let (factors, metrics, published) = known();
     let mut forms = std::collections::BTreeSet::new();
     for text in examples(include_str!("../expect.rs"), "//!") {
         let claim: Claim = serde_yaml::from_str(&text).unwrap_or_else(|e| panic!("{text}\n{e}"));
@@ -84,7 +88,7 @@ fn every_form_has_an_example_that_parses_and_checks() {
 
 #[test]
 fn the_examples_of_the_page_parse_and_check() {
-    let (factors, metrics, published) = wall_free();
+    let (factors, metrics, published) = known();
     let found = examples(include_str!("../../../docs/claims.md"), "");
     assert!(found.len() >= 12, "{} examples", found.len());
     for text in found {
@@ -155,7 +159,7 @@ fn faults_are_named_with_their_place_and_the_nearest_name() {
         claim("{between: {metric: success, high: 0.5}}"),
         claim("{between: {metric: success, high: 0.5}}"),
     ];
-    let (factors, metrics, published) = wall_free();
+    let (factors, metrics, published) = known();
     assert_eq!(
         check_all(&twice, &factors, &metrics, &published),
         ["claim `X`: the id is used twice"]
@@ -168,7 +172,7 @@ fn faults_are_named_with_their_place_and_the_nearest_name() {
 
 #[test]
 fn wall_time_is_circumstance() {
-    let (factors, _, published) = wall_free();
+    let (factors, _, published) = known();
     let metrics = ["wall-time-selection-ms".to_owned(), "success".to_owned()];
     let expect = "{between: {metric: wall-time-selection-ms, statistic: p95, high: 50}}";
     let mut about_speed = claim(expect);
@@ -340,7 +344,7 @@ fn values_that_never_vary_are_no_sample() {
 
 #[test]
 fn published_tables_are_read_by_contract() {
-    let (factors, _, _) = wall_free();
+    let (factors, _, _) = known();
     let check = |text: &str| published::check_table("t", &Table::from_csv(text).unwrap(), &factors);
     assert_eq!(
         check("start,percent\n"),
@@ -385,7 +389,7 @@ fn log_ratios_compare_gains_instead_of_levels() {
                 start.into(),
                 deadline.into(),
                 (*strategy).into(),
-                Value::Number(k as f64),
+                Value::Number(crate::stats::real(k)),
             ]);
         }
     }
@@ -495,4 +499,26 @@ fn power_is_that_of_the_very_test() {
         power::power(&stated, &conditions, 50, &context, 10),
         Err("the claim assumes no truth; add `power:` with `published` or `cells`".to_owned())
     );
+}
+
+/// A claim that nobody checked is judged without a panic, and never supported for claiming nothing.
+#[test]
+fn empty_claims_are_not_supported() {
+    for expect in [
+        "{between: {metric: success}}",
+        "{homogeneous: {metric: success, across: {}, margin: 0.1}}",
+        "{homogeneous: {metric: success, across: {start: []}, margin: 0.1}}",
+        "{spread: {metric: success, across: {}, at-most: 0.9}}",
+        "{trend: {metric: success, direction: rising, along: []}}",
+        "{rank: {metric: success, across: {}, order: {first: random}}}",
+        "{rank: {metric: success, across: {start: A}, order: {descending: [x, y1, z, w]}}}",
+        "{less: {metric: [], than: {where: {}}}}",
+        "{less: {metric: success, where: {start: A}, than: {where: {start: B}}, test: welch, at-least: 0}}",
+        "{equivalent: {metric: success, where: {start: A}, to: {where: {start: B}}, margin: -1}}",
+        "{sign-test: {metric: success, direction: less, where: {}, than: {}, minimum-n: 0}}",
+        "{share: {that: {metric: success}}}",
+        "{rmse-with-published: {metric: success, published: nothing, at-most: 1}}",
+    ] {
+        assert_ne!(verdict(expect).judgement, Judgement::Supported, "{expect}");
+    }
 }
