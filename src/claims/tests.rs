@@ -1,11 +1,11 @@
 //! Claims of the two papers, judged on the papers' own printed numbers, and the rules that guard verdicts.
 
 use super::*;
-use crate::json::canonical;
 use crate::stats::assert_close;
 use crate::table::{Table, Value};
 use std::collections::BTreeMap;
 
+mod reporting;
 mod rules;
 
 const STRATEGIES: [&str; 5] =

@@ -1,4 +1,4 @@
-//! What guards verdicts: censoring, independence, minimum n, faults of claims, the three facts, power.
+//! What guards verdicts: censoring, independence, minimum n, faults of claims, and the examples.
 
 use super::*;
 
@@ -402,103 +402,6 @@ fn log_ratios_compare_gains_instead_of_levels() {
     assert_eq!(found.notes, ["2 cells have no positive base to take a ratio to"]);
     let slope = found.comparisons[0].statistics.iter().find(|(n, _)| *n == "slope").unwrap().1;
     assert_close(slope, 1.0, 1e-9);
-}
-
-#[test]
-fn what_the_paper_says_shows_and_we_find_are_three_facts() {
-    let published = published();
-    let trials = as_printed();
-    let context = Context::new(&published, &[], 2019);
-    let mut stated = claim(
-        "{less: {metric: success, where: {start: C, strategy: random}, than: {where: {start: C, strategy: frontier}}}}",
-    );
-    let first = judge(&stated, &trials, &context).unwrap();
-    stated.paper_table = PaperTable::Contradicts;
-    stated.says = "the opposite".to_owned();
-    let second = judge(&stated, &trials, &context).unwrap();
-    assert_eq!(first.judgement, second.judgement);
-    assert_eq!(first.comparisons, second.comparisons);
-    assert_eq!(Score::of(&[first]), Score::of(&[second]));
-    assert_eq!(
-        Score { supported: 1, contradicted: 2, inconclusive: 3, cannot_be_tested: 4 }.to_string(),
-        "1 of 10 claims supported, 2 contradicted, 3 inconclusive, 4 cannot be tested"
-    );
-}
-
-#[test]
-fn verdicts_have_one_text() {
-    // p by scipy.stats.fisher_exact, limits by statsmodels' Newcombe interval at 90 %.
-    let expect = "{less: {metric: success, where: {start: C, deadline-s: 5628, strategy: random}, than: {where: {start: C, \
-                  deadline-s: 5628, strategy: frontier}}}}";
-    let text = canonical(&verdict(expect).to_json());
-    assert_eq!(
-        text,
-        "{\"alpha\":0.05,\"cite\":null,\"comparisons\":[{\"about\":\"success: (deadline-s=5628, start=C, \
-         strategy=random) < (deadline-s=5628, start=C, strategy=frontier)\",\"cells\":[{\"cell\":\"deadline-s=5628, \
-         start=C, strategy=random\",\"mean\":0.08,\"reached\":50,\"successes\":4,\"trials\":50},{\"cell\":\
-         \"deadline-s=5628, start=C, strategy=frontier\",\"mean\":0.54,\"reached\":50,\"successes\":27,\"trials\":50}],\
-         \"effect\":{\"confidence\":0.9,\"high\":-0.315986372,\"low\":-0.579142079,\"name\":\"risk-difference\",\
-         \"value\":-0.46},\"p-against\":0.999999972,\"p-against-corrected\":0.999999972,\"p-for\":4.02666661e-7,\
-         \"p-for-corrected\":4.02666661e-7,\"test\":\"fisher-exact\",\"verdict\":\"supported\"}],\"correction\":\
-         \"holm\",\"form\":\"less\",\"id\":\"X\",\"minimum-n\":10,\"notes\":[],\"paper-table\":\"silent\",\"reason\":\
-         \"p 4.03e-7 at alpha 0.05 by fisher-exact\",\"required\":1,\"says\":\"something\",\"trials-to-decide\":null,\
-         \"verdict\":\"supported\"}"
-    );
-    assert_eq!(verdict(expect), verdict(expect));
-    assert_eq!(verdict::rounded(1.0 / 3.0).to_string(), "0.333333333");
-    assert_eq!(verdict::rounded(f64::INFINITY), serde_json::Value::Null);
-}
-
-#[test]
-fn power_is_that_of_the_very_test() {
-    let mut stated = claim(
-        "{less: {metric: success, where: {strategy: random}, than: {where: {strategy: frontier}}, test: fisher-exact}}",
-    );
-    stated.power =
-        serde_yaml::from_str("{cells: [{where: {strategy: random}, value: 0.3}, {value: 0.6}]}")
-            .unwrap();
-    let conditions: Vec<Vec<(String, String)>> =
-        ["random", "frontier"].map(|s| vec![("strategy".to_owned(), s.to_owned())]).to_vec();
-    let none = BTreeMap::new();
-    let context = Context::new(&none, &[], 2019);
-    let found = power::power(&stated, &conditions, 30, &context, 1000).unwrap();
-    // scipy: sum over k1, k2 of binom.pmf(k1, 30, .3) binom.pmf(k2, 30, .6) [fisher_exact 'less' <= .05];
-    // three standard errors of a share over 1000 studies are 0.044
-    assert!(
-        (found.planned.supported - 0.665_356_518_542_805_8).abs() < 0.044,
-        "{}",
-        found.planned.supported
-    );
-    // The same sum for 'greater' is 6.9e-6: rare, not impossible. Two in a thousand would have probability 2e-5.
-    assert!(found.planned.contradicted < 0.002, "{}", found.planned.contradicted);
-    assert_eq!(found.enough, Some(50));
-    assert_eq!(found, power::power(&stated, &conditions, 30, &context, 1000).unwrap());
-    // From the published cells.
-    stated.power =
-        serde_yaml::from_str("{published: {table: success-percent, scale: 0.01}}").unwrap();
-    let tables = published();
-    let context = Context::new(&tables, &[], 2019);
-    let conditions: Vec<Vec<(String, String)>> = ["random", "frontier"]
-        .map(|s| {
-            [("start", "C"), ("deadline-s", "5628"), ("strategy", s)]
-                .map(|(f, v)| (f.to_owned(), v.to_owned()))
-                .to_vec()
-        })
-        .to_vec();
-    let found = power::power(&stated, &conditions, 50, &context, 100).unwrap();
-    assert!(found.planned.supported > 0.97);
-    assert_eq!(found.enough, Some(20));
-    // Percent without its scale is no share.
-    stated.power = serde_yaml::from_str("{published: {table: success-percent}}").unwrap();
-    assert_eq!(
-        power::power(&stated, &conditions, 50, &context, 10),
-        Err("success in (start=C, deadline-s=5628, strategy=random) is a share and cannot be 8; is a scale missing?".to_owned())
-    );
-    stated.power = None;
-    assert_eq!(
-        power::power(&stated, &conditions, 50, &context, 10),
-        Err("the claim assumes no truth; add `power:` with `published` or `cells`".to_owned())
-    );
 }
 
 /// A claim that nobody checked is judged without a panic, and never supported for claiming nothing.
