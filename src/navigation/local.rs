@@ -18,6 +18,9 @@ pub struct LocalRule {
     pub inflation_radius: f64,
     /// Radius around the robot (m) that is free because the robot is there.
     pub own_radius: f64,
+    /// Each range is replaced by the median of this many neighbouring ones (odd; 1 leaves them as they are), so
+    /// that single noisy beams draw no obstacles.
+    pub median_beams: usize,
 }
 
 impl Default for LocalRule {
@@ -28,6 +31,7 @@ impl Default for LocalRule {
             obstacle_range: 5.0,
             inflation_radius: 0.35,
             own_radius: 0.3,
+            median_beams: 1,
         }
     }
 }
@@ -53,6 +57,7 @@ pub struct LocalMap {
     /// Offsets of the disc an obstacle is felt in, with their squared distance.
     disc: Vec<(i32, i32, u16)>,
     ends: Vec<Cell>,
+    ranges: Vec<f64>,
 }
 
 impl LocalMap {
@@ -81,6 +86,7 @@ impl LocalMap {
             clearance: vec![u16::MAX; cells],
             disc,
             ends: Vec::new(),
+            ranges: Vec::new(),
         }
     }
 
@@ -90,7 +96,9 @@ impl LocalMap {
         let sensor = pose.compose(scan.mount);
         let from = self.lattice(sensor.position());
         self.ends.clear();
-        for (i, &range) in scan.ranges.iter().enumerate() {
+        self.smooth(&scan.ranges);
+        for i in 0..self.ranges.len() {
+            let range = self.ranges[i];
             let reach = range.min(scan.max_range).min(self.rule.size);
             let angle = sensor.heading + scan.angle(i);
             let (sin, cos) = math::sin_cos(angle);
@@ -123,6 +131,24 @@ impl LocalMap {
             Seen::Obstacle => Some(0.0),
             Seen::Free if self.clearance[index] == u16::MAX => Some(self.rule.inflation_radius),
             Seen::Free => Some(f64::from(self.clearance[index]).sqrt() * self.rule.resolution),
+        }
+    }
+
+    fn smooth(&mut self, ranges: &[f64]) {
+        self.ranges.clear();
+        let half = self.rule.median_beams / 2;
+        if half == 0 {
+            self.ranges.extend_from_slice(ranges);
+            return;
+        }
+        let mut window = Vec::with_capacity(2 * half + 1);
+        for i in 0..ranges.len() {
+            window.clear();
+            window.extend_from_slice(
+                &ranges[i.saturating_sub(half)..(i + half + 1).min(ranges.len())],
+            );
+            window.sort_unstable_by(f64::total_cmp);
+            self.ranges.push(window[window.len() / 2]);
         }
     }
 
@@ -228,6 +254,13 @@ mod tests {
         // Turned round, the wall is behind and remembered.
         map.update(Pose::new(0.5, 0.0, std::f64::consts::PI), &scan(5.5));
         assert_eq!(at(&map, 2.0), Some(0.0));
+    }
+
+    #[test]
+    fn a_median_forgets_single_beams_and_keeps_edges() {
+        let mut map = LocalMap::new(LocalRule { median_beams: 3, ..LocalRule::default() });
+        map.smooth(&[2.0, 2.0, 0.4, 2.0, 2.0, 5.0, 5.0, 5.0]);
+        assert_eq!(map.ranges, [2.0, 2.0, 2.0, 2.0, 2.0, 5.0, 5.0, 5.0]);
     }
 
     #[test]

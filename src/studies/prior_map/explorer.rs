@@ -122,7 +122,10 @@ impl Explorer {
         };
         let keyframes =
             KeyframeRule { distance: mapping.keyframe_distance_m, turn: mapping.keyframe_turn_rad };
-        let local_rule = LocalRule::default();
+        let local_rule = LocalRule {
+            median_beams: navigation.obstacle_median_beams as usize,
+            ..LocalRule::default()
+        };
         Self {
             prior,
             range_cells,

@@ -95,6 +95,8 @@ parameters!(
         max_angular_rad_s: f64 = 1.0,
         /// Radius of the disc that must stay clear of obstacles when driving (m), above 0.
         robot_radius_m: f64 = 0.25,
+        /// The operator sees each range as the median of this many neighbouring beams, odd; 1 as they are.
+        obstacle_median_beams: u32 = 1,
         /// A target counts as reached within this distance (m), above 0.
         goal_tolerance_m: f64 = 0.3,
     }
