@@ -37,3 +37,6 @@ pub mod sim;
 
 // Layer 3: the studies.
 pub mod studies;
+
+// Layer 8: what people look at.
+pub mod report;

@@ -1,0 +1,210 @@
+//! What a report says, before it has a look: plain values, filled in from a bundle.
+
+use super::Agreement;
+use serde::Serialize;
+
+/// Everything on the page of one bundle.
+#[derive(Debug, Clone, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct ReportContent {
+    /// Title of the manifest.
+    pub title: String,
+    /// What is reproduced.
+    pub citation: Citation,
+    /// Authors of the manifest.
+    pub authors: Vec<String>,
+    /// Licence of the manifest and the results (SPDX).
+    pub license: String,
+    /// What the numbers do not show, one sentence each; said before any number.
+    pub limits: Vec<String>,
+    /// Why this run is partial; `None` for a whole one.
+    pub partial: Option<String>,
+    /// The run in a few numbers.
+    pub headline: Headline,
+    /// The tables, in the paper's order.
+    pub tables: Vec<ReportTable>,
+    /// The figures.
+    pub figures: Vec<Figure>,
+    /// The claims judged; empty where the manifest has none or the run is partial.
+    pub claims: Vec<ClaimRow>,
+    /// Choices the paper leaves open, with their reasons.
+    pub assumptions: Vec<Assumption>,
+    /// The sealed inputs.
+    pub inputs: Vec<InputRow>,
+    /// Commands with which a stranger checks and re-runs this.
+    pub commands: Vec<Command>,
+}
+
+/// The work that is reproduced.
+#[derive(Debug, Clone, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Citation {
+    /// The paper, as one would cite it.
+    pub paper: String,
+    /// Which part of it: `section 4.2, Tables 1 and 2`; may be empty.
+    pub section: String,
+}
+
+/// The run in a few numbers.
+#[derive(Debug, Clone, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Headline {
+    /// Study kind, as in the manifest.
+    pub study: String,
+    /// Trials in the bundle.
+    pub trials: u64,
+    /// Cells of the design.
+    pub conditions: u64,
+    /// How the trials ended, the most frequent first.
+    pub outcomes: Vec<OutcomeCount>,
+    /// Simulated time of all trials (s).
+    pub sim_seconds: f64,
+    /// The experiment's seed.
+    pub seed: u64,
+    /// Results digest, 64 hex digits.
+    pub results_digest: String,
+    /// Bundle id, 64 hex digits; empty where the bundle is not sealed yet.
+    pub bundle_id: String,
+    /// Version of the engine that ran the trials.
+    pub engine_version: String,
+}
+
+/// How many trials ended one way.
+#[derive(Debug, Clone, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct OutcomeCount {
+    /// Name of the outcome.
+    pub name: String,
+    /// Number of trials.
+    pub count: u64,
+}
+
+/// A mean over trials, in the unit of its table.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Measured {
+    /// The mean.
+    pub mean: f64,
+    /// The standard deviation, where there is one.
+    pub sd: Option<f64>,
+    /// Number of trials behind it, where known.
+    pub n: Option<u64>,
+}
+
+/// One table of ours in the paper's layout, each cell beside the paper's.
+#[derive(Debug, Clone, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct ReportTable {
+    /// Identifier, unique in the report: letters, digits, hyphens.
+    pub id: String,
+    /// What it shows.
+    pub title: String,
+    /// Where the published values stand: `Table 1`; empty where nothing is published.
+    pub source: String,
+    /// Quantity and unit of the cells: `distance travelled (m)`.
+    pub quantity: String,
+    /// Decimals the cells are shown with.
+    pub decimals: u8,
+    /// What the rows are: `coverage`.
+    pub row_header: String,
+    /// What the columns are, one name each: `no prior`, `floor plan`.
+    pub columns: Vec<String>,
+    /// The rows, each with one cell per column.
+    pub rows: Vec<ReportRow>,
+}
+
+/// One row of a table.
+#[derive(Debug, Clone, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct ReportRow {
+    /// Its name: `90 %`.
+    pub label: String,
+    /// Its cells.
+    pub cells: Vec<ReportCell>,
+}
+
+/// One cell: ours and the paper's.
+#[derive(Debug, Clone, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct ReportCell {
+    /// What we found; `None` where no trial got there.
+    pub ours: Option<Measured>,
+    /// Difference of our mean to our baseline's (percent); `None` for the baseline itself.
+    pub difference_percent: Option<f64>,
+    /// What the paper prints.
+    pub published: Option<Measured>,
+    /// The difference to its baseline that the paper prints (percent).
+    pub published_difference_percent: Option<f64>,
+    /// How the two compare; [`Agreement::between`] is the usual rule.
+    pub agreement: Agreement,
+}
+
+/// A figure.
+#[derive(Debug, Clone, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Figure {
+    /// Identifier, unique in the report: letters, digits, hyphens.
+    pub id: String,
+    /// Its title.
+    pub title: String,
+    /// The sentence under it.
+    pub caption: String,
+    /// What it shows, for those who cannot see it.
+    pub alt: String,
+    /// The drawing, SVG text.
+    pub svg: String,
+}
+
+/// A claim and what became of it.
+#[derive(Debug, Clone, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct ClaimRow {
+    /// Its id in the manifest.
+    pub id: String,
+    /// The paper's sentence.
+    pub says: String,
+    /// Where it says so.
+    pub cite: String,
+    /// The verdict's name: `supported`, `contradicted`, `undecided`.
+    pub verdict: String,
+    /// The numbers that decided it, in words, with their interval.
+    pub numbers: String,
+    /// What the paper's own table says: `supports`, `contradicts`, `silent`.
+    pub paper_table: String,
+}
+
+/// A value the paper leaves open, and why this one.
+#[derive(Debug, Clone, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Assumption {
+    /// Where it stands in the manifest: `parameters.mapping.particles`.
+    pub path: String,
+    /// The value chosen, as text.
+    pub value: String,
+    /// The reason.
+    pub why: String,
+}
+
+/// One sealed input.
+#[derive(Debug, Clone, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct InputRow {
+    /// What it is for: `world`, `robot`, `prior`, `published`.
+    pub role: String,
+    /// Its path as the manifest writes it.
+    pub written: String,
+    /// Its path in the bundle.
+    pub sealed: String,
+    /// SHA-256 of its bytes, 64 hex digits.
+    pub sha256: String,
+}
+
+/// A command line to copy.
+#[derive(Debug, Clone, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Command {
+    /// What it does, as an imperative: `check every checksum and re-derive the tables`.
+    pub purpose: String,
+    /// The line itself.
+    pub line: String,
+}

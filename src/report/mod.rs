@@ -1,0 +1,26 @@
+//! What people look at: one offline page of a bundle, and pages in which trials play.
+//!
+//! Everything here is a pure function of its arguments: no clock, no file, no network. Pages carry their
+//! style and script inside and forbid everything else by their own content security policy.
+
+mod agreement;
+mod content;
+mod inline_svg;
+mod pack;
+pub mod page;
+mod recorded;
+pub mod replay;
+mod still;
+mod template;
+
+pub use agreement::Agreement;
+pub use content::{
+    Assumption, Citation, ClaimRow, Command, Figure, Headline, InputRow, Measured, OutcomeCount,
+    ReportCell, ReportContent, ReportRow, ReportTable,
+};
+pub use page::page;
+pub use replay::replay_page;
+pub use still::still_svg;
+
+#[cfg(test)]
+mod fixtures;

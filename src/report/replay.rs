@@ -1,0 +1,82 @@
+//! Pages in which trials play.
+
+use super::recorded::Recorded;
+use super::template::render;
+use crate::json;
+use crate::studies::recording::Recording;
+use serde::Serialize;
+
+const SCRIPT: &str = concat!(
+    "\n",
+    include_str!("templates/unpack.js"),
+    include_str!("templates/draw.js"),
+    include_str!("templates/replay.js")
+);
+
+#[derive(Serialize)]
+struct Content<'a> {
+    title: &'a str,
+    note: &'a str,
+    /// The trials as JSON that no `<` can end.
+    data: String,
+}
+
+/// One self-contained page titled `title` in which the named trials play side by side on one clock.
+///
+/// `note` is a sentence over the page, such as whether the re-enacted records equal the archived ones; empty
+/// for none. The page starts at the instant of its address, if it ends in `#t=12.5` (s).
+pub fn replay_page(title: &str, trials: &[(String, &Recording)], note: &str) -> String {
+    let trials: Vec<_> =
+        trials.iter().map(|(name, recording)| Recorded::new(name, recording)).collect();
+    let data = json::canonical_of(&trials).replace('<', "\\u003c");
+    render(include_str!("templates/replay.html"), SCRIPT, &Content { title, note, data })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::fixtures::{assert_offline, recording};
+    use super::*;
+
+    #[test]
+    fn two_trials_share_a_page_that_needs_nothing_else() {
+        let (a, b) = (recording(40), recording(60));
+        let trials = [("prior=none #0".to_owned(), &a), ("prior=floor-plan #0".to_owned(), &b)];
+        let page = replay_page("Replay", &trials, "Both records equal the archived ones.");
+        assert_offline(&page);
+        assert!(page.contains("Both records equal the archived ones."));
+        assert!(page.contains("prior=floor-plan #0"));
+        assert_eq!(page, replay_page("Replay", &trials, "Both records equal the archived ones."));
+    }
+
+    #[test]
+    fn hostile_names_stay_text() {
+        let mut recording = recording(5);
+        recording.frames[1].event = Some("</script><script>alert(2)</script>".into());
+        let name = "</script><script>alert(1)</script>".to_owned();
+        let page = replay_page("<b>&", &[(name, &recording)], "<i>");
+        assert_eq!(page.matches("</script>").count(), 2, "the data block and the script");
+        assert!(!page.contains("<script>alert") && !page.contains("<b>&") && !page.contains("<i>"));
+        assert_offline(&page);
+    }
+
+    #[test]
+    fn a_trial_of_150_s_stays_small_and_an_empty_one_still_makes_a_page() {
+        let mut long = recording(1500);
+        let page = replay_page("Long", &[("one".into(), &long)], "");
+        assert!(page.len() < 2_000_000, "{} bytes", page.len());
+        long.frames.clear();
+        long.world.clear();
+        assert_offline(&replay_page("Empty", &[("none".into(), &long)], ""));
+    }
+
+    #[test]
+    fn the_script_stays_readable() {
+        let parts = [
+            include_str!("templates/unpack.js"),
+            include_str!("templates/draw.js"),
+            include_str!("templates/replay.js"),
+        ];
+        assert!(parts.iter().all(|part| part.lines().count() <= 300));
+        assert!(parts.iter().flat_map(|part| part.lines()).all(|line| line.len() <= 120));
+    }
+}

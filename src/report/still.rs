@@ -1,0 +1,179 @@
+//! One instant of a trial as the paper would print it.
+
+use super::recorded::bounds;
+use crate::figure::svg::{Element, document, number, path_data};
+use crate::geometry::{Outline, Point};
+use crate::grid::{Cell, Occupancy, OccupancyGrid};
+use crate::studies::recording::{Frame, Recording};
+
+/// Longest side of the drawing (px).
+const SIZE: f64 = 800.0;
+
+/// The robot's map (free white, occupied black, unknown grey), the frontiers with the chosen candidate, the
+/// path and the trail, and the robot, at `at` s or at the end; with a scale bar.
+pub fn still_svg(recording: &Recording, at: Option<f64>) -> String {
+    let seen = recording.frames.iter().take_while(|f| at.is_none_or(|at| f.time_s <= at));
+    let frames: Vec<&Frame> = seen.collect();
+    let bounds = bounds(recording);
+    let scale = SIZE / bounds.width().max(bounds.height()).max(1e-3);
+    let (width, height) = (bounds.width() * scale, bounds.height() * scale);
+    let place = |p: Point| ((p.x - bounds.min.x) * scale, (bounds.max.y - p.y) * scale);
+    let line = |points: &[Point]| path_data(points.iter().map(|p| place(*p)), false);
+    let stroke = |data: String, colour: &str, width: f64| {
+        let path = Element::new("path").set("d", data).set("fill", "none");
+        path.set("stroke", colour).at("stroke-width", width).set("stroke-linejoin", "round")
+    };
+
+    let ground = Element::new("rect").at("width", width).at("height", height);
+    let mut body = vec![ground.set("fill", "#c4c7cc")];
+    let map = map_of(recording, &frames);
+    for (value, colour) in [(Occupancy::Free, "#ffffff"), (Occupancy::Occupied, "#111111")] {
+        let data = cells_path(&map, value, scale);
+        if !data.is_empty() {
+            // Crisp edges: neighbouring cells must not show seams.
+            let path = Element::new("path").set("d", data).set("fill", colour);
+            let path = path.set("shape-rendering", "crispEdges");
+            // The map lies in the frame the robot began in.
+            let (x, y) = place(recording.map_pose.position());
+            let turn = number(-recording.map_pose.heading.to_degrees());
+            let transform = format!("translate({} {}) rotate({turn})", number(x), number(y));
+            body.push(path.set("transform", transform));
+        }
+    }
+    let trail: Vec<_> = frames.iter().map(|f| f.pose.position()).collect();
+    body.push(stroke(line(&trail), "#555555", 1.5));
+    if let Some(path) = frames.iter().rev().find_map(|f| f.path.as_deref()) {
+        body.push(stroke(line(path), "#0072b2", 2.5).set("stroke-dasharray", "7 4"));
+    }
+    let dot = |p: Point, r: f64| {
+        let (x, y) = place(p);
+        Element::new("circle").at("cx", x).at("cy", y).at("r", r)
+    };
+    let decision = frames.iter().rev().find_map(|f| f.decision.as_ref());
+    for (i, frontier) in decision.iter().flat_map(|d| d.frontiers.iter().enumerate()) {
+        let side = recording.map_frame.resolution * scale;
+        for &cell in &frontier.cells {
+            body.push(dot(cell, (side * 0.5).max(1.5)).set("fill", "#009e73"));
+        }
+        let chosen = decision.is_some_and(|d| d.chosen == Some(i));
+        let candidate = dot(frontier.candidate, 4.0 + 6.0 * frontier.utility.clamp(0.0, 1.0));
+        let name = format!(
+            "D {:.2} m, I {:.2} m², u {:.3}",
+            frontier.distance_m, frontier.gain_m2, frontier.utility
+        );
+        let title = Element::new("title").text(&name);
+        let (fill, edge) = if chosen { ("#d55e00", "#111111") } else { ("#ffffff", "#009e73") };
+        let candidate = candidate.set("fill", fill).set("stroke", edge).at("stroke-width", 2.0);
+        body.push(candidate.child(title));
+    }
+    if let Some(frame) = frames.last() {
+        body.push(robot(recording, frame, &place, scale));
+        let nose = frame.pose.transform(Point::new(0.35, 0.0));
+        body.push(stroke(line(&[frame.pose.position(), nose]), "#111111", 2.0));
+    }
+    body.extend(scale_bar(height, scale));
+    let time = frames.last().map_or(0.0, |f| f.time_s);
+    let title = format!("Map, frontiers, path and robot after {} s", number(time));
+    document(width, height, &title, body)
+}
+
+/// The robot's map after `frames`.
+fn map_of(recording: &Recording, frames: &[&Frame]) -> OccupancyGrid {
+    let mut map = OccupancyGrid::filled(recording.map_frame, Occupancy::Unknown);
+    for (cell, value) in frames.iter().flat_map(|f| &f.map_changes) {
+        map.set(*cell, *value);
+    }
+    map
+}
+
+/// The cells that hold `value` as one path in the map's frame, y downwards: a rectangle per run along a row.
+fn cells_path(map: &OccupancyGrid, value: Occupancy, scale: f64) -> String {
+    let (frame, mut data) = (map.frame(), String::new());
+    let side = frame.resolution * scale;
+    for y in 0..frame.height {
+        let mut x = 0;
+        while x < frame.width {
+            let begin = x;
+            while x < frame.width && map.at(Cell::new(x, y)) == value {
+                x += 1;
+            }
+            if x == begin {
+                x += 1;
+                continue;
+            }
+            let center = frame.center(Cell::new(begin, y)) * scale;
+            let (left, top) = (center.x - side / 2.0, -center.y - side / 2.0);
+            let long = number(f64::from(x - begin) * side);
+            data.push_str(&format!(
+                "M{} {}h{long}v{s}h-{long}z",
+                number(left),
+                number(top),
+                s = number(side)
+            ));
+        }
+    }
+    data
+}
+
+fn robot(
+    recording: &Recording,
+    frame: &Frame,
+    place: &impl Fn(Point) -> (f64, f64),
+    scale: f64,
+) -> Element {
+    let element = match &recording.footprint {
+        Outline::Polygon(corners) => Element::new("path")
+            .set("d", path_data(corners.iter().map(|c| place(frame.pose.transform(*c))), true)),
+        Outline::Circle { center, radius } => {
+            let (x, y) = place(frame.pose.transform(*center));
+            Element::new("circle").at("cx", x).at("cy", y).at("r", radius * scale)
+        }
+    };
+    element.set("fill", "#56b4e9").set("stroke", "#111111").at("stroke-width", 1.5)
+}
+
+/// A bar of 1, 2, 5 or ten times that many metres, about a sixth of the drawing long.
+fn scale_bar(height: f64, scale: f64) -> [Element; 2] {
+    let lengths = [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0];
+    let metres = lengths.into_iter().rev().find(|m| m * scale <= SIZE / 6.0).unwrap_or(0.5);
+    let (x, y) = (12.0, height - 12.0);
+    let bar = Element::new("path")
+        .set("d", format!("M{0} {1}v6h{2}v-6", number(x), number(y - 6.0), number(metres * scale)))
+        .set("fill", "none")
+        .set("stroke", "#111111")
+        .at("stroke-width", 2.0);
+    let label = Element::new("text").at("x", x + 4.0).at("y", y - 5.0).at("font-size", 13.0);
+    [bar, label.set("fill", "#111111").text(&format!("{metres} m"))]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::fixtures::recording;
+    use super::*;
+
+    #[test]
+    fn the_still_shows_map_frontiers_path_and_robot() {
+        let recording = recording(40);
+        let svg = still_svg(&recording, None);
+        let parsed = roxmltree::Document::parse(&svg).unwrap();
+        let with = |name: &str, value: &str| {
+            parsed.descendants().filter(|n| n.attribute(name) == Some(value)).count()
+        };
+        assert_eq!(with("fill", "#d55e00"), 1, "one candidate is chosen");
+        assert_eq!(with("stroke-dasharray", "7 4"), 1, "one path");
+        assert_eq!(with("fill", "#56b4e9"), 1, "one robot");
+        assert_eq!((with("fill", "#111111"), with("stroke", "#111111")), (2, 4));
+        assert_eq!(svg, still_svg(&recording, None));
+        assert!(!svg.contains("NaN") && !svg.contains("inf"));
+    }
+
+    #[test]
+    fn an_earlier_instant_knows_less() {
+        let recording = recording(40);
+        let frames: Vec<_> = recording.frames.iter().collect();
+        let known = |n: usize| map_of(&recording, &frames[..n]).count(Occupancy::Unknown);
+        assert!(known(40) < known(5) && known(5) < known(0));
+        assert!(still_svg(&recording, Some(0.3)).contains("after 0.3 s"));
+        assert!(still_svg(&recording, Some(-1.0)).contains("after 0 s"), "before it began");
+    }
+}
