@@ -2,6 +2,7 @@
 //!
 //! The mind never imports this module. Metres and radians; z up from the floor.
 
+pub mod floor_plan;
 #[cfg(test)]
 pub(crate) mod originals;
 pub mod sdf;
