@@ -1,4 +1,4 @@
-//! What people look at: one offline page of a bundle, and pages in which trials play.
+//! What people look at: drawings of inputs, one offline page of a bundle, and pages in which trials play.
 //!
 //! Everything here is a pure function of its arguments: no clock, no file, no network. Pages carry their
 //! style and script inside and forbid everything else by their own content security policy.
@@ -10,6 +10,7 @@ mod pack;
 pub mod page;
 mod recorded;
 pub mod replay;
+pub mod show;
 mod still;
 mod template;
 

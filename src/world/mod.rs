@@ -2,7 +2,9 @@
 //!
 //! The mind never imports this module. Metres and radians; z up from the floor.
 
+pub mod document;
 pub mod floor_plan;
+pub mod map_server;
 #[cfg(test)]
 pub(crate) mod originals;
 pub mod sdf;

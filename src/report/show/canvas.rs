@@ -1,0 +1,325 @@
+//! The sheet that everything is drawn on: metres to pixels, axes, a scale bar, dimensions, texts.
+
+use crate::figure::svg::{self, Element};
+use crate::geometry::{Bounds, Outline, Point};
+use crate::math;
+
+/// Space (px) left, right, above and below the drawing.
+const LEFT: f64 = 58.0;
+const RIGHT: f64 = 24.0;
+const TOP: f64 = 62.0;
+const BOTTOM: f64 = 78.0;
+
+/// Ink for texts and axes.
+pub(super) const INK: &str = "#222";
+/// Ink for what accompanies.
+pub(super) const FAINT: &str = "#777";
+/// The one colour: what the robot does or is told (starts, goals, field of view).
+pub(super) const ACCENT: &str = "#0b62a4";
+
+/// A sheet under construction.
+pub(super) struct Canvas {
+    bounds: Bounds,
+    scale: f64,
+    elements: Vec<Element>,
+}
+
+impl Canvas {
+    /// A sheet for `bounds` (m) with about `width` by at most `height` px for the drawing.
+    pub(super) fn new(bounds: Bounds, width: f64, height: f64) -> Self {
+        let scale = (width / bounds.width()).min(height / bounds.height());
+        let mut canvas = Self { bounds, scale, elements: Vec::new() };
+        let (w, h) = canvas.size();
+        canvas.push(Element::new("rect").at("width", w).at("height", h).set("fill", "#fff"));
+        canvas
+    }
+
+    /// Width and height of the sheet (px).
+    fn size(&self) -> (f64, f64) {
+        let width = self.bounds.width() * self.scale + LEFT + RIGHT;
+        // Room for a title and a legend above small drawings.
+        (width.max(420.0), self.bounds.height() * self.scale + TOP + BOTTOM)
+    }
+
+    /// Pixels per metre.
+    pub(super) fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// Where `point` (m) lies on the sheet (px).
+    pub(super) fn at(&self, point: Point) -> (f64, f64) {
+        (
+            LEFT + (point.x - self.bounds.min.x) * self.scale,
+            TOP + (self.bounds.max.y - point.y) * self.scale,
+        )
+    }
+
+    pub(super) fn push(&mut self, element: Element) {
+        self.elements.push(element);
+    }
+
+    /// The outline as an element to be styled.
+    pub(super) fn outline(&self, outline: &Outline) -> Element {
+        match outline {
+            Outline::Circle { center, radius } => {
+                let (x, y) = self.at(*center);
+                Element::new("circle").at("cx", x).at("cy", y).at("r", radius * self.scale)
+            }
+            Outline::Polygon(corners) => self.path(corners, true),
+        }
+    }
+
+    /// The polyline through `points` (m) as an element to be styled.
+    pub(super) fn path(&self, points: &[Point], closed: bool) -> Element {
+        Element::new("path")
+            .set("d", svg::path_data(points.iter().map(|point| self.at(*point)), closed))
+    }
+
+    /// A text of `size` px centred at `point` (m) and moved by `shift` px, with a white rim.
+    pub(super) fn label(&self, point: Point, shift: (f64, f64), size: f64, text: &str) -> Element {
+        let (x, y) = self.at(point);
+        Element::new("text")
+            .at("x", x + shift.0)
+            .at("y", y + shift.1)
+            .at("font-size", size)
+            .set("text-anchor", "middle")
+            .set("stroke", "#fff")
+            .set("stroke-width", 3)
+            .set("stroke-linejoin", "round")
+            .set("paint-order", "stroke")
+            .set("fill", INK)
+            .text(text)
+    }
+
+    /// A dimension line from `a` to `b` (m), `shift` px off to its left, with its length.
+    pub(super) fn dimension(&mut self, a: Point, b: Point, shift: f64, text: &str) {
+        let ((ax, ay), (bx, by)) = (self.at(a), self.at(b));
+        let length = math::hypot(bx - ax, by - ay).max(1e-9);
+        let (ux, uy) = ((bx - ax) / length, (by - ay) / length);
+        let (nx, ny) = (uy, -ux);
+        let line = |from: (f64, f64), to: (f64, f64)| {
+            Element::new("path")
+                .set("d", svg::path_data([from, to], false))
+                .set("stroke", FAINT)
+                .set("fill", "none")
+        };
+        let end = |x: f64, y: f64, off: f64| (x + nx * off, y + ny * off);
+        let gap = shift.signum() * 4.0;
+        self.push(line(end(ax, ay, gap), end(ax, ay, shift + gap)));
+        self.push(line(end(bx, by, gap), end(bx, by, shift + gap)));
+        let (from, to) = (end(ax, ay, shift), end(bx, by, shift));
+        self.push(line(from, to).set("stroke-width", 1));
+        for (tip, sign) in [(from, 1.0), (to, -1.0)] {
+            let back = (tip.0 + sign * ux * 7.0, tip.1 + sign * uy * 7.0);
+            let head = [
+                tip,
+                (back.0 + nx * 2.5, back.1 + ny * 2.5),
+                (back.0 - nx * 2.5, back.1 - ny * 2.5),
+            ];
+            self.push(Element::new("path").set("d", svg::path_data(head, true)).set("fill", FAINT));
+        }
+        let (x, y) = (f64::midpoint(from.0, to.0), f64::midpoint(from.1, to.1));
+        let turned = uy.abs() > ux.abs();
+        let mut label = Element::new("text")
+            .at("x", x)
+            .at("y", y - 5.0)
+            .at("font-size", 12.0)
+            .set("text-anchor", "middle")
+            .set("fill", INK);
+        if turned {
+            let at = format!("rotate(-90 {} {})", svg::number(x), svg::number(y));
+            label = label.set("transform", at);
+        }
+        self.push(label.text(text));
+    }
+
+    /// An arrow from `tail` to `tip` (m).
+    pub(super) fn arrow(&mut self, tail: Point, tip: Point, color: &str) {
+        let ((ax, ay), (bx, by)) = (self.at(tail), self.at(tip));
+        let length = math::hypot(bx - ax, by - ay).max(1e-9);
+        let (ux, uy) = ((bx - ax) / length, (by - ay) / length);
+        let neck = (bx - ux * 9.0, by - uy * 9.0);
+        self.push(
+            Element::new("path")
+                .set("d", svg::path_data([(ax, ay), neck], false))
+                .set("stroke", color)
+                .set("stroke-width", 2.5),
+        );
+        let head = [
+            (bx, by),
+            (neck.0 - uy * 5.0, neck.1 + ux * 5.0),
+            (neck.0 + uy * 5.0, neck.1 - ux * 5.0),
+        ];
+        self.push(Element::new("path").set("d", svg::path_data(head, true)).set("fill", color));
+    }
+
+    /// Light lines at every tick, below everything drawn after.
+    pub(super) fn raster(&mut self) {
+        let Bounds { min, max } = self.bounds;
+        let lines: Vec<[Point; 2]> = ticks(min.x, max.x)
+            .map(|x| [Point::new(x, min.y), Point::new(x, max.y)])
+            .chain(ticks(min.y, max.y).map(|y| [Point::new(min.x, y), Point::new(max.x, y)]))
+            .collect();
+        for line in lines {
+            let line = self.path(&line, false).set("stroke", "#e6e6e6").set("stroke-width", 1);
+            self.push(line);
+        }
+    }
+
+    /// Axes in metres around the drawing, and a scale bar below.
+    pub(super) fn axes(&mut self) {
+        let Bounds { min, max } = self.bounds;
+        let corners = [min, Point::new(max.x, min.y), max, Point::new(min.x, max.y)];
+        let frame = self.path(&corners, true).set("fill", "none").set("stroke", FAINT);
+        self.push(frame);
+        let text = |x: f64, y: f64, anchor: &str, text: &str| {
+            Element::new("text")
+                .at("x", x)
+                .at("y", y)
+                .at("font-size", 11.0)
+                .set("text-anchor", anchor)
+                .set("fill", INK)
+                .text(text)
+        };
+        for x in ticks(min.x, max.x) {
+            let (px, py) = self.at(Point::new(x, min.y));
+            self.push(tick((px, py), (px, py + 5.0)));
+            self.push(text(px, py + 17.0, "middle", &metres(x)));
+        }
+        for y in ticks(min.y, max.y) {
+            let (px, py) = self.at(Point::new(min.x, y));
+            self.push(tick((px - 5.0, py), (px, py)));
+            self.push(text(px - 8.0, py + 4.0, "end", &metres(y)));
+        }
+        let (left, bottom) = self.at(min);
+        let (right, top) = self.at(max);
+        self.push(text(f64::midpoint(left, right), bottom + 33.0, "middle", "x (m)"));
+        let (x, y) = (16.0, f64::midpoint(top, bottom));
+        let turn = format!("rotate(-90 {} {})", svg::number(x), svg::number(y));
+        self.push(text(x, y, "middle", "y (m)").set("transform", turn));
+        self.scale_bar(left, bottom + 52.0);
+    }
+
+    /// A bar of a round length, black and white, from `left` at height `y` (px).
+    fn scale_bar(&mut self, left: f64, y: f64) {
+        let length = round_step(self.bounds.width() / 4.0);
+        let half = length / 2.0 * self.scale;
+        for (i, fill) in [INK, "#fff"].into_iter().enumerate() {
+            let x = if i == 0 { left } else { left + half };
+            self.push(
+                Element::new("rect")
+                    .at("x", x)
+                    .at("y", y)
+                    .at("width", half)
+                    .at("height", 6.0)
+                    .set("fill", fill)
+                    .set("stroke", INK),
+            );
+        }
+        self.push(
+            Element::new("text")
+                .at("x", left + 2.0 * half + 8.0)
+                .at("y", y + 7.0)
+                .at("font-size", 12.0)
+                .set("fill", INK)
+                .text(&format!("{} m", metres(length))),
+        );
+    }
+
+    /// Title and a line below it.
+    pub(super) fn heading(&mut self, title: &str, subtitle: &str) {
+        for (y, size, fill, weight, text) in
+            [(24.0, 16.0, INK, "bold", title), (44.0, 12.0, FAINT, "normal", subtitle)]
+        {
+            self.push(
+                Element::new("text")
+                    .at("x", LEFT)
+                    .at("y", y)
+                    .at("font-size", size)
+                    .set("font-weight", weight)
+                    .set("fill", fill)
+                    .text(text),
+            );
+        }
+    }
+
+    /// Swatches with names, below the drawing to the right of the scale bar.
+    pub(super) fn legend(&mut self, entries: &[(String, &str, &str)]) {
+        let (_, height) = self.size();
+        let mut x = LEFT + round_step(self.bounds.width() / 4.0) * self.scale + 80.0;
+        for (name, fill, stroke) in entries {
+            self.push(
+                Element::new("rect")
+                    .at("x", x)
+                    .at("y", height - 28.0)
+                    .at("width", 14.0)
+                    .at("height", 10.0)
+                    .set("fill", fill)
+                    .set("stroke", stroke),
+            );
+            self.push(
+                Element::new("text")
+                    .at("x", x + 19.0)
+                    .at("y", height - 19.0)
+                    .at("font-size", 12.0)
+                    .set("fill", INK)
+                    .text(name),
+            );
+            #[expect(clippy::cast_precision_loss, reason = "names are short")]
+            let advance = name.chars().count() as f64 * 6.6;
+            x += 19.0 + advance + 18.0;
+        }
+    }
+
+    /// The finished file.
+    pub(super) fn finish(self, title: &str) -> String {
+        let (width, height) = self.size();
+        svg::document(width, height, title, self.elements)
+    }
+}
+
+fn tick(from: (f64, f64), to: (f64, f64)) -> Element {
+    Element::new("path").set("d", svg::path_data([from, to], false)).set("stroke", FAINT)
+}
+
+/// The largest of 1, 2, 5 times a power of ten that is not above `length`.
+fn round_step(length: f64) -> f64 {
+    let power = math::pow(10.0, math::log10(length.max(1e-9)).floor());
+    [5.0, 2.0, 1.0]
+        .into_iter()
+        .map(|digit| digit * power)
+        .find(|step| *step <= length * 1.000_001)
+        .unwrap_or(power)
+}
+
+/// Round numbers from `low` to `high`, about eight of them.
+fn ticks(low: f64, high: f64) -> impl Iterator<Item = f64> {
+    let step = round_step((high - low) / 5.0);
+    let (first, last) = ((low / step).ceil(), (high / step + 1e-9).floor());
+    #[expect(clippy::cast_possible_truncation, reason = "some ten")]
+    let count = (last - first).clamp(-1.0, 1000.0) as i32;
+    (0..=count).map(move |i| (first + f64::from(i)) * step)
+}
+
+/// A length in metres, to the millimetre, without trailing zeros.
+pub(super) fn metres(length: f64) -> String {
+    let rounded = (length * 1000.0).round() / 1000.0;
+    format!("{}", if rounded == 0.0 { 0.0 } else { rounded })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_and_ticks_are_round() {
+        assert_eq!(round_step(4.7), 2.0);
+        assert_eq!(round_step(0.05), 0.05);
+        assert_eq!(round_step(19.0), 10.0);
+        assert_eq!(ticks(-0.9, 2.1).collect::<Vec<_>>(), [-0.5, 0.0, 0.5, 1.0, 1.5, 2.0]);
+        assert_eq!(
+            (metres(-0.0001), metres(0.1602), metres(18.7)),
+            ("0".into(), "0.16".into(), "18.7".into())
+        );
+    }
+}

@@ -1,0 +1,93 @@
+//! Grid maps: free white, occupied black, unknown grey.
+
+use super::canvas::{Canvas, FAINT, INK, metres};
+use crate::figure::svg::{Element, number};
+use crate::grid::{Occupancy, OccupancyGrid};
+
+/// Fill of free, occupied and unknown cells in drawings.
+const FILLS: [(Occupancy, &str, &str); 3] = [
+    (Occupancy::Free, "free", "#ffffff"),
+    (Occupancy::Occupied, "occupied", "#111111"),
+    (Occupancy::Unknown, "unknown", "#c9c9c9"),
+];
+
+/// The map called `name` with axes in metres, as an SVG file.
+pub fn grid_svg(name: &str, grid: &OccupancyGrid) -> String {
+    let frame = grid.frame();
+    let mut canvas = Canvas::new(frame.bounds(), 900.0, 760.0);
+    let (left, top) = canvas.at(crate::geometry::Point::new(frame.origin.x, frame.bounds().max.y));
+    let side = frame.resolution * canvas.scale();
+    // Cells as runs along a row, in units of cells from the upper left corner.
+    let mut group = Element::new("g")
+        .set("transform", format!("translate({} {}) scale({side})", number(left), number(top)))
+        .set("shape-rendering", "crispEdges");
+    let whole = Element::new("rect").set("width", frame.width).set("height", frame.height);
+    group.push(whole.set("fill", FILLS[0].2));
+    for (value, _, fill) in &FILLS[1..] {
+        let mut data = String::new();
+        for (row, cells) in rows(grid).enumerate() {
+            let mut x = 0;
+            for run in cells.chunk_by(|a, b| a == b) {
+                if run[0] == *value {
+                    data.push_str(&format!("M{x} {row}h{}v1h-{}z", run.len(), run.len()));
+                }
+                x += run.len();
+            }
+        }
+        if !data.is_empty() {
+            group.push(Element::new("path").set("d", data).set("fill", fill));
+        }
+    }
+    canvas.push(group);
+    canvas.axes();
+    let bounds = frame.bounds();
+    let subtitle = format!(
+        "{} x {} cells of {} m: {} x {} m from ({}, {})",
+        frame.width,
+        frame.height,
+        frame.resolution,
+        metres(bounds.width()),
+        metres(bounds.height()),
+        metres(frame.origin.x),
+        metres(frame.origin.y)
+    );
+    canvas.heading(name, &subtitle);
+    let legend: Vec<(String, &str, &str)> = FILLS
+        .iter()
+        .filter(|(value, _, _)| grid.count(*value) > 0)
+        .map(|(_, name, fill)| {
+            ((*name).to_owned(), *fill, if *fill == "#111111" { INK } else { FAINT })
+        })
+        .collect();
+    canvas.legend(&legend);
+    canvas.finish(&format!("Grid map {name}"))
+}
+
+/// The map as an 8-bit grey PNG with one pixel per cell, north up, in the greys of ROS's `map_saver`: 0 occupied,
+/// 254 free, 205 unknown.
+pub fn grid_png(grid: &OccupancyGrid) -> Vec<u8> {
+    let frame = grid.frame();
+    let size = |cells: i32| u32::try_from(cells).unwrap_or(0);
+    let pixels: Vec<u8> = rows(grid)
+        .flatten()
+        .map(|cell| match cell {
+            Occupancy::Occupied => 0,
+            Occupancy::Free => 254,
+            Occupancy::Unknown => 205,
+        })
+        .collect();
+    let mut file = Vec::new();
+    let mut encoder = png::Encoder::new(&mut file, size(frame.width), size(frame.height));
+    encoder.set_color(png::ColorType::Grayscale);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::Balanced);
+    let written = encoder.write_header().and_then(|mut writer| writer.write_image_data(&pixels));
+    written.expect("a grid has at least one cell, and memory does not fail");
+    file
+}
+
+/// Rows of cells from the north.
+fn rows(grid: &OccupancyGrid) -> impl Iterator<Item = &[Occupancy]> {
+    let width = usize::try_from(grid.frame().width).unwrap_or(0).max(1);
+    grid.values().chunks(width).rev()
+}

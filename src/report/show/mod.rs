@@ -1,0 +1,109 @@
+//! Drawings of what a manifest can name (robot, world, grid map), and what was understood of each in words.
+//!
+//! [`draw`] tells the kind of a file by its content; the `*_svg`, `*_png` and `describe_*` functions do one kind
+//! each. All are pure: the caller fetches files and writes the results.
+
+mod canvas;
+mod describe;
+mod grid;
+mod robot;
+mod world;
+
+pub use describe::{describe_grid, describe_robot, describe_world};
+pub use grid::{grid_png, grid_svg};
+pub use robot::robot_svg;
+pub use world::world_svg;
+
+use crate::document::{Diagnostic, Source};
+use crate::robot::urdf;
+use crate::world::{document as world_document, map_server, sdf};
+
+/// Height (m) at which worlds are cut where no robot says otherwise: the lidar of the studies' Kobuki.
+pub const CUT_HEIGHT: f64 = 0.1602;
+
+/// What `reenact show` gives for one file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Drawing {
+    /// The drawing, as an SVG file.
+    pub svg: String,
+    /// Grid maps only: a PNG of one pixel per cell, as `map_saver` writes it.
+    pub png: Option<Vec<u8>>,
+    /// What was understood, for stdout.
+    pub text: String,
+    /// What should be known, for stderr.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// Draws the robot, world or map in the file `name`, told apart by content: URDF, SDF, `map_server` YAML (with an
+/// `image:`) or world YAML. Worlds are cut at `height` m; all their layers are drawn.
+///
+/// `fetch` is asked for a map's image, by its path relative to the descriptor's folder; its error is a fragment
+/// that says why not.
+///
+/// # Errors
+/// Every fault of the file.
+pub fn draw(
+    name: &str,
+    bytes: &[u8],
+    height: f64,
+    fetch: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
+) -> Result<Drawing, Vec<Diagnostic>> {
+    let Ok(text) = std::str::from_utf8(bytes) else {
+        let fault = Diagnostic::placeless(format!("`{name}` is not text")).help(
+            "show reads URDF robots, SDF or YAML worlds and map_server YAML; of a map image name the YAML",
+        );
+        return Err(vec![fault]);
+    };
+    let source = Source::new(name, text);
+    if text.trim_start().starts_with('<') {
+        if root_is(text, "robot") {
+            let (robot, warnings) = urdf::read(&source)?;
+            let (svg, text) = (robot_svg(&robot), describe_robot(&robot));
+            return Ok(Drawing { svg, png: None, text, warnings });
+        }
+        return Ok(drawn_world(&sdf::read(&source)?, height));
+    }
+    if text.lines().any(|line| line.starts_with("image:")) {
+        let path = map_server::image_path(&source)?;
+        let image = fetch(&path).map_err(|why| {
+            vec![Diagnostic::placeless(format!(
+                "cannot read the image `{path}` of `{name}`: {why}"
+            ))]
+        })?;
+        let map = map_server::read(&source, &path, &image, map_server::Options::default())?;
+        return Ok(Drawing {
+            svg: grid_svg(name, &map),
+            png: Some(grid_png(&map)),
+            text: describe_grid(name, &map),
+            warnings: Vec::new(),
+        });
+    }
+    Ok(drawn_world(&world_document::read(&source, None)?, height))
+}
+
+fn drawn_world(world: &crate::world::World, height: f64) -> Drawing {
+    let warning = |text: &String| Diagnostic::placeless(text.clone()).warning();
+    Drawing {
+        svg: world_svg(world, height),
+        png: None,
+        text: describe_world(world, height),
+        warnings: world.warnings.iter().map(warning).collect(),
+    }
+}
+
+/// Whether the first tag of an XML text, after declarations and comments, is `name`.
+fn root_is(text: &str, name: &str) -> bool {
+    let mut rest = text;
+    while let Some(start) = rest.find('<') {
+        rest = &rest[start + 1..];
+        if let Some(comment) = rest.strip_prefix("!--") {
+            rest = comment.find("-->").map_or("", |end| &comment[end..]);
+        } else if !rest.starts_with(['?', '!']) {
+            return rest.starts_with(name);
+        }
+    }
+    false
+}
+
+#[cfg(test)]
+mod tests;

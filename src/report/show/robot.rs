@@ -1,0 +1,119 @@
+//! A robot from above: footprint, wheels, scanner with its field of view.
+
+use super::canvas::{ACCENT, Canvas, FAINT, INK, metres};
+use crate::geometry::{Bounds, Outline, Point, Pose};
+use crate::math;
+use crate::robot::Robot;
+
+/// Width of a wheel as drawn, in wheel diameters: the description does not say.
+const WHEEL_WIDTH: f64 = 0.3;
+
+/// The robot from above, x to the right, with its dimensions, as an SVG file.
+pub fn robot_svg(robot: &Robot) -> String {
+    let radius = robot.circumscribed_radius();
+    let body = robot.footprint.bounds();
+    let margin = 0.75 * radius.max(robot.drive.wheel_separation / 2.0);
+    let reach = 2.1 * radius;
+    let mut bounds = body.grown(margin);
+    if let Some(lidar) = &robot.lidar {
+        // The wedge is cut off: it shows the direction, not the range.
+        for point in wedge(lidar.mount, lidar.min_angle, lidar.max_angle, reach) {
+            bounds = bounds.union(Bounds { min: point, max: point }.grown(0.12 * radius));
+        }
+    }
+    let mut canvas = Canvas::new(bounds, 620.0, 620.0);
+    canvas.raster();
+    if let Some(lidar) = &robot.lidar {
+        let mut corners = wedge(lidar.mount, lidar.min_angle, lidar.max_angle, reach);
+        corners.push(lidar.mount.position());
+        let view = canvas
+            .path(&corners, true)
+            .set("fill", ACCENT)
+            .set("fill-opacity", 0.12)
+            .set("stroke", ACCENT)
+            .set("stroke-dasharray", "5 4");
+        canvas.push(view);
+    }
+    let body_shape = canvas
+        .outline(&robot.footprint)
+        .set("fill", "#d9d9d9")
+        .set("fill-opacity", 0.85)
+        .set("stroke", INK)
+        .set("stroke-width", 2);
+    canvas.push(body_shape);
+    let (half, diameter) = (robot.drive.wheel_separation / 2.0, robot.drive.wheel_diameter);
+    for y in [half, -half] {
+        let wheel = Outline::rectangle(Point::new(0.0, y), diameter, WHEEL_WIDTH * diameter, 0.0);
+        let wheel = canvas.outline(&wheel).set("fill", "#555");
+        canvas.push(wheel);
+    }
+    let axle = canvas
+        .path(&[Point::new(0.0, -half), Point::new(0.0, half)], false)
+        .set("stroke", "#555")
+        .set("stroke-dasharray", "2 3");
+    canvas.push(axle);
+    canvas.arrow(Point::ZERO, Point::new(0.45 * radius, 0.0), INK);
+    if let Some(lidar) = &robot.lidar {
+        let at = Outline::Circle { center: lidar.mount.position(), radius: 0.04 * radius };
+        let dot = canvas.outline(&at).set("fill", ACCENT);
+        canvas.push(dot);
+        let beyond = Pose::new(lidar.mount.x, lidar.mount.y, lidar.mount.heading)
+            .compose(Pose::new(0.0, 0.0, f64::midpoint(lidar.min_angle, lidar.max_angle)))
+            .transform(Point::new(0.66 * reach, 0.0));
+        let label = canvas.label(
+            beyond,
+            (0.0, -4.0),
+            12.0,
+            &format!(
+                "{} beams over {:.1}°",
+                lidar.beams,
+                (lidar.max_angle - lidar.min_angle).to_degrees()
+            ),
+        );
+        canvas.push(label);
+        let label = canvas.label(
+            beyond,
+            (0.0, 12.0),
+            12.0,
+            &format!("to {} m, {} Hz", metres(lidar.max_range), metres(lidar.rate_hz)),
+        );
+        canvas.push(label);
+    }
+    let above = [Point::new(body.min.x, body.max.y), body.max];
+    let width = match &robot.footprint {
+        Outline::Circle { radius, .. } => format!("⌀ {} m", metres(2.0 * radius)),
+        Outline::Polygon(_) => format!("{} m", metres(body.width())),
+    };
+    canvas.dimension(above[0], above[1], 24.0, &width);
+    let left = Point::new(body.min.x, -half);
+    let text = format!("{} m between wheels", metres(robot.drive.wheel_separation));
+    canvas.dimension(left, Point::new(body.min.x, half), 22.0, &text);
+    canvas.axes();
+    let subtitle = format!(
+        "from above; {} kg, body from {} to {} m above ground",
+        metres(robot.mass),
+        metres(robot.body_z[0]),
+        metres(robot.body_z[1])
+    );
+    canvas.heading(&robot.name, &subtitle);
+    let mut legend =
+        vec![("footprint".to_owned(), "#d9d9d9", INK), ("wheels".to_owned(), "#555", "#555")];
+    if robot.lidar.is_some() {
+        legend.push(("field of view".to_owned(), "#e2ecf4", ACCENT));
+    } else {
+        legend.push(("no range scanner".to_owned(), "#fff", FAINT));
+    }
+    canvas.legend(&legend);
+    canvas.finish(&format!("Robot {} from above", robot.name))
+}
+
+/// The arc of `reach` m that the scanner looks along, in the base frame.
+fn wedge(mount: Pose, min_angle: f64, max_angle: f64, reach: f64) -> Vec<Point> {
+    (0..=48)
+        .map(|i| {
+            let (sin, cos) =
+                math::sin_cos(min_angle + (max_angle - min_angle) * f64::from(i) / 48.0);
+            mount.transform(Point::new(reach * cos, reach * sin))
+        })
+        .collect()
+}

@@ -1,0 +1,108 @@
+use super::*;
+use crate::document::mutation::{edits, mutate};
+use proptest::prelude::*;
+
+const KOBUKI: &str = include_str!("../../../robots/kobuki.urdf");
+const BASIC: &str = include_str!("../../../worlds/basic.yaml");
+const MAP: &str = "image: m.pgm\nresolution: 0.1\norigin: [-1.0, 2.0, 0.0]\nnegate: 0\n\
+                   occupied_thresh: 0.65\nfree_thresh: 0.196\n";
+const WORLD: &str = "<!-- a box --><sdf version='1.6'><world name='w'><model name='m'><static>1</static>\
+                     <link name='l'><collision name='c'><geometry><box><size>1 2 3</size></box></geometry>\
+                     </collision></link></model></world></sdf>";
+
+fn drawn(name: &str, text: &str) -> Drawing {
+    draw(name, text.as_bytes(), CUT_HEIGHT, &mut |_| Ok(b"P2 2 2 255\n0 254 205 254".to_vec()))
+        .unwrap()
+}
+
+fn texts(svg: &str) -> Vec<String> {
+    let document = roxmltree::Document::parse(svg).unwrap();
+    let nodes = document.descendants().filter(|node| node.has_tag_name("text"));
+    nodes.filter_map(|node| node.text().map(str::to_owned)).collect()
+}
+
+#[test]
+fn every_kind_is_told_by_its_content() {
+    let robot = drawn("robots/kobuki.urdf", KOBUKI);
+    assert!(
+        robot.text.starts_with("robot: kobuki\nfootprint: circle of radius 0.178 m\n"),
+        "{}",
+        robot.text
+    );
+    assert!(
+        robot.text.contains(
+            "range scanner: laser at (0.1, 0) m, 0.1602 m above ground, heading 0.0 deg\n"
+        )
+    );
+    let said = texts(&robot.svg);
+    for text in
+        ["kobuki", "⌀ 0.356 m", "0.23 m between wheels", "720 beams over 180.0°", "x (m)", "0.2 m"]
+    {
+        assert!(said.iter().any(|t| t == text), "{text}: {said:?}");
+    }
+
+    let world = drawn("worlds/basic.yaml", BASIC);
+    assert!(
+        world
+            .text
+            .starts_with("world: basic\nsize: 18.7 x 9.75 m, x -8.785 to 9.915, y -4.85 to 4.9\n"),
+        "{}",
+        world.text
+    );
+    assert!(
+        world.text.contains("layer furniture: 17 solids, 17 of them at 0.1602 m\n"),
+        "{}",
+        world.text
+    );
+    let said = texts(&world.svg);
+    for text in ["living-room", "start default", "walls", "furniture", "y (m)", "2 m"] {
+        assert!(said.iter().any(|t| t == text), "{text}: {said:?}");
+    }
+
+    let gazebo = drawn("w.world", WORLD);
+    assert!(gazebo.text.contains("layer walls: 1 solids, 1 of them"), "{}", gazebo.text);
+
+    let map = drawn("m.yaml", MAP);
+    assert!(
+        map.text.ends_with(
+            "occupied: 1 cells, 0.0 m2\nfree: 2 cells, 0.0 m2\nunknown: 1 cells, 0.0 m2\n"
+        ),
+        "{}",
+        map.text
+    );
+    let png = map.png.unwrap();
+    let again = map_server::read(
+        &Source::new("m.yaml", MAP),
+        "m.png",
+        &png,
+        map_server::Options::default(),
+    );
+    assert_eq!(grid_png(&again.unwrap()), png, "what is drawn is read again");
+}
+
+#[test]
+fn what_cannot_be_drawn_is_said() {
+    let fault = |name: &str, bytes: &[u8]| {
+        let faults =
+            draw(name, bytes, CUT_HEIGHT, &mut |_| Err("no such file".to_owned())).unwrap_err();
+        faults[0].render(false)
+    };
+    assert_eq!(
+        fault("m.yaml", MAP.as_bytes()),
+        "error: cannot read the image `m.pgm` of `m.yaml`: no such file\n"
+    );
+    assert!(fault("m.png", b"\x89PNG\xff").contains("of a map image name the YAML"));
+}
+
+proptest! {
+    #[test]
+    fn whatever_can_be_read_can_be_drawn(edits in edits()) {
+        for text in [KOBUKI, BASIC, MAP, WORLD] {
+            let bytes = mutate(text.as_bytes(), &edits);
+            let image = |_: &str| Ok(b"P2 2 2 255\n0 254 205 254".to_vec());
+            if let Ok(drawing) = draw("x", &bytes, CUT_HEIGHT, &mut { image }) {
+                prop_assert!(roxmltree::Document::parse(&drawing.svg).is_ok());
+            }
+        }
+    }
+}
