@@ -40,3 +40,5 @@ pub mod studies;
 
 // Layer 8: what people look at.
 pub mod report;
+// Layer 6: running a plan, and sealing what came out.
+pub mod bundle;

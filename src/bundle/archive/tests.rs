@@ -1,0 +1,192 @@
+use super::super::sample;
+use super::*;
+use proptest::prelude::*;
+
+fn faults(zip: &[u8]) -> Vec<String> {
+    read(zip, &Limits::default()).unwrap_err().iter().map(ToString::to_string).collect()
+}
+
+#[test]
+fn all_forms_are_read_back_and_written_alike_every_time() {
+    let sealed = sample::sealed();
+    for form in [Form::Bag, Form::Flat, Form::Crate] {
+        let zip = sealed.zip(form);
+        assert_eq!(zip, sample::sealed().zip(form), "byte-identical");
+        let archive = read(&zip, &Limits::default()).unwrap();
+        assert_eq!(archive.form, form);
+        let expected: Tree = sealed
+            .tree
+            .iter()
+            .filter(|(path, _)| form != Form::Crate || path.starts_with("data/"))
+            .map(|(path, bytes)| (path.clone(), bytes.clone()))
+            .collect();
+        assert_eq!(archive.tree, expected);
+    }
+    let files = sealed.tree.clone().into_iter().collect();
+    assert_eq!(from_files(files).unwrap().tree, sealed.tree);
+}
+
+#[test]
+fn tag_files_come_first_and_nothing_depends_on_the_day() {
+    let zip = sample::sealed().zip(Form::Flat);
+    let names: Vec<_> = {
+        let archive = ZipArchive::new(Cursor::new(&zip)).unwrap();
+        archive.file_names().map(|name| name.unwrap().into_owned()).collect()
+    };
+    let expected = ["bagit.txt", "bag-info.txt", "manifest-sha256.txt", "tagmanifest-sha256.txt"];
+    assert_eq!(names[..4], expected);
+    assert!(names[4..].is_sorted() && names[4..].iter().all(|name| name.starts_with("data/")));
+    let mut archive = ZipArchive::new(Cursor::new(&zip)).unwrap();
+    for i in 0..archive.len() {
+        let entry = archive.by_index(i).unwrap();
+        assert_eq!(entry.last_modified(), Some(DateTime::default()));
+        assert_eq!(entry.unix_mode(), Some(0o100_644));
+        assert_eq!(entry.extra_data().unwrap_or_default(), Vec::<u8>::new());
+    }
+}
+
+#[test]
+fn hostile_names_are_refused() {
+    for (name, fault) in [
+        ("../evil", "../evil: expected a safe relative path, found a path that climbs out of its folder"),
+        ("/etc/evil", "/etc/evil: expected a safe relative path, found an absolute path"),
+        ("C:/evil", "C:/evil: expected a safe relative path, found a drive letter or a colon in its name"),
+        ("b\\evil", "b\\\\evil: expected a safe relative path, found a backslash in its name"),
+        ("b/\u{1}", "b/\\u{1}: expected a safe relative path, found a control character in its name"),
+        ("b//x", "b//x: expected a safe relative path, found an empty part in its path"),
+        ("b/nul.txt", "b/nul.txt: expected a safe relative path, found the name of a Windows device"),
+        ("b/x.", "b/x.: expected a safe relative path, found a name that ends in a dot or a space"),
+        (
+            "b/e\u{301}",
+            "b/e\u{301}: expected a name of A-Z a-z 0-9 . _ - only, found other characters, which systems spell in more \
+             than one way",
+        ),
+        (
+            "b/BAGIT.txt",
+            "b/BAGIT.txt: expected names that differ on every system, found `b/bagit.txt` beside it",
+        ),
+        (
+            "b/bagit.txt/x",
+            "b/bagit.txt/x: expected names that differ on every system, found `b/bagit.txt` beside it",
+        ),
+        ("c/other", "(archive): expected the one folder `b`, found `c` beside it"),
+    ] {
+        let zip = sample::zip_of(&[("b/bagit.txt", b""), (name, b"x")]);
+        assert_eq!(faults(&zip), [fault]);
+    }
+}
+
+#[test]
+fn hostile_structure_is_refused() {
+    let zip = sample::zip_of(&[("b/bagit.txt", b""), ("b/one", b"x"), ("b/two", b"yy")]);
+    // Both names have one length, so the headers can be changed in place.
+    let mut twice = zip.clone();
+    sample::replace(&mut twice, b"b/two", b"b/one");
+    assert_eq!(faults(&twice), ["b/one: expected one entry of this name, found several"]);
+
+    let mut central_only = zip.clone();
+    let last = central_only.windows(5).rposition(|w| w == b"b/two").unwrap();
+    central_only[last..last + 5].copy_from_slice(b"b/twO");
+    let found = faults(&central_only);
+    assert!(
+        found[0].starts_with("(archive): expected local and central headers that agree, found others: "),
+        "{found:?}"
+    );
+
+    let mut link = ZipWriter::new(Cursor::new(Vec::new()));
+    link.add_symlink("b/link", "/etc/passwd", SimpleFileOptions::default()).unwrap();
+    let link = link.finish().unwrap().into_inner();
+    assert_eq!(faults(&link), ["b/link: expected a plain file, found a symbolic link"]);
+
+    let mut encrypted = zip.clone();
+    let at = encrypted.windows(4).rposition(|w| w == b"PK\x01\x02").unwrap();
+    encrypted[at + 8] |= 1;
+    assert!(faults(&encrypted).contains(&"b/two: expected a plain file, found encryption".to_owned()));
+
+    let mut prefixed = b"#!/bin/sh\n".to_vec();
+    prefixed.extend(&zip);
+    assert_eq!(
+        faults(&prefixed)[0],
+        "(archive): expected a zip that begins at the first byte, found 10 bytes before it"
+    );
+    assert!(faults(&zip[..zip.len() / 2])[0].starts_with("(archive): expected a whole zip archive"));
+    assert!(faults(b"")[0].starts_with("(archive): expected a whole zip archive"));
+    assert_eq!(
+        faults(&sample::zip_of(&[("x/readme", b"")])),
+        ["(archive): expected one bag (bagit.txt) or crate (ro-crate-metadata.json), found neither (is it a bundle, and \
+          is it whole?)"]
+    );
+    assert_eq!(
+        faults(&sample::zip_of(&[("x/bagit.txt", b""), ("y/bagit.txt", b"")])),
+        ["(archive): expected one bag (bagit.txt) or crate (ro-crate-metadata.json), found 2 bags: x, y (is it a bundle, \
+          and is it whole?)"]
+    );
+}
+
+#[test]
+fn bombs_and_forged_sizes_are_refused() {
+    let zeros = vec![0_u8; 48 << 20];
+    let bomb = sample::zip_of(&[("b/bagit.txt", b""), ("b/zeros", &zeros)]);
+    let limits = Limits { ratio: 100, ..Limits::default() };
+    let found = read(&bomb, &limits).unwrap_err();
+    assert_eq!(found.len(), 1);
+    assert!(found[0].to_string().ends_with("found 50331648 bytes declared (it may be a zip bomb)"));
+    let many: Vec<String> = (0..30).map(|i| format!("b/{i}")).collect();
+    let many: Vec<(&str, &[u8])> = many.iter().map(|name| (name.as_str(), &b""[..])).collect();
+    let limits = Limits { entries: 20, ..Limits::default() };
+    let found = read(&sample::zip_of(&many), &limits).unwrap_err();
+    assert_eq!(found[0].to_string(), "(archive): expected at most 20 entries, found 30");
+
+    // A size forged in both headers: the entry still unpacks to more than it declares.
+    let honest = sample::zip_of(&[("b/bagit.txt", b""), ("b/text", &[b'x'; 5000])]);
+    let mut forged = honest.clone();
+    sample::replace(&mut forged, &5000_u32.to_le_bytes(), &10_u32.to_le_bytes());
+    assert!(
+        faults(&forged)[0].starts_with("b/text: expected an entry that unpacks to its declared size"),
+        "{:?}",
+        faults(&forged)
+    );
+    let mut flipped = sample::zip_of(&[("b/bagit.txt", b""), ("b/text", b"stored as it is")]);
+    let crc = flipped.windows(4).position(|w| w == b"PK\x01\x02").unwrap() + 16;
+    let old = flipped[crc + 46..].len(); // the second central header follows the first
+    assert!(old > 0);
+    let text = flipped.windows(6).position(|w| w == b"b/text").unwrap() + 6;
+    flipped[text + 2] ^= 1;
+    assert!(
+        faults(&flipped)[0].starts_with("b/text: expected an entry that unpacks to its declared size"),
+        "{:?}",
+        faults(&flipped)
+    );
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    #[test]
+    fn random_bytes_never_panic(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
+        prop_assert!(read(&bytes, &Limits::default()).is_err());
+    }
+
+    #[test]
+    fn mutated_zips_never_panic(changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
+                                cut in any::<prop::sample::Index>(), truncate in any::<bool>()) {
+        let honest = sample::zip();
+        let mut zip = honest.to_vec();
+        for (at, value) in changes {
+            let at = at.index(zip.len());
+            zip[at] = value;
+        }
+        if truncate {
+            zip.truncate(cut.index(zip.len()));
+        }
+        // Whatever is still read must be what was sealed, or fail the checksums (level 1) afterwards.
+        if let Ok(archive) = read(&zip, &Limits::default()) {
+            let _ = super::super::Bundle::open(archive);
+        }
+    }
+
+    #[test]
+    fn any_file_list_is_read_or_refused(files in prop::collection::vec((".{0,12}", prop::collection::vec(any::<u8>(), 0..8)), 0..5)) {
+        let _ = from_files(files);
+    }
+}

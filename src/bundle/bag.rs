@@ -1,0 +1,193 @@
+//! The bag's tag files (RFC 8493): written in one form, read in every harmless one.
+
+use super::{Circumstance, Fault, Moment, Tree, format, names};
+use crate::digest::{ResultsDigest, Sha256Digest, StudyDigest};
+
+/// The declaration.
+pub const DECLARATION: &str = "BagIt-Version: 1.0\nTag-File-Character-Encoding: UTF-8\n";
+
+/// Manifest lines of `files`, in their order.
+pub(super) fn manifest<'a>(files: impl IntoIterator<Item = (&'a String, &'a Vec<u8>)>) -> String {
+    files.into_iter().map(|(path, bytes)| format!("{}  {path}\n", Sha256Digest::of(bytes))).collect()
+}
+
+/// Reads a manifest. Upper-case digits, ` *` before the path and CRLF are other tools' habits, and harmless.
+///
+/// # Errors
+/// Every line that is not a digest and a safe path, and every path named twice.
+pub fn parse_manifest(file: &str, bytes: &[u8]) -> Result<Vec<(String, Sha256Digest)>, Vec<Fault>> {
+    let text = std::str::from_utf8(bytes).map_err(|e| {
+        vec![Fault::new(file, "UTF-8 text", format!("a byte that is not at {}", e.valid_up_to()))]
+    })?;
+    let (mut entries, mut faults) = (Vec::new(), Vec::new());
+    let mut seen = names::Names::default();
+    for (number, line) in text.lines().enumerate().filter(|(_, line)| !line.is_empty()) {
+        let place = format!("{file}:{}", number + 1);
+        let entry = line.split_at_checked(64).and_then(|(digest, rest)| {
+            let path = rest.strip_prefix("  ").or_else(|| rest.strip_prefix(" *"))?;
+            Some((path.to_owned(), Sha256Digest::from_hex(digest)?))
+        });
+        let Some((path, digest)) = entry else {
+            faults.push(Fault::new(place, "64 hex digits, two spaces and a path", excerpt(line)));
+            continue;
+        };
+        if let Some(hazard) = names::hazard(&path) {
+            faults.push(Fault::new(place, "a safe relative path", hazard));
+        } else if let Some(other) = seen.enter(&path) {
+            faults.push(Fault::new(
+                place,
+                "every path once",
+                format!("`{path}` beside `{other}`"),
+            ));
+        } else {
+            entries.push((path, digest));
+        }
+    }
+    if faults.is_empty() { Ok(entries) } else { Err(faults) }
+}
+
+/// The first characters of a line that may be long or hostile, quoted.
+fn excerpt(line: &str) -> String {
+    let start: String = line.chars().take(40).collect();
+    format!("`{}`", start.escape_default())
+}
+
+/// The labels of `bag-info.txt` in the order written; a label may stand several times.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct BagInfo(pub Vec<(String, String)>);
+
+impl BagInfo {
+    /// What this program writes.
+    pub(super) fn of(
+        payload: &Tree,
+        circumstance: &Circumstance,
+        results: ResultsDigest,
+        study: StudyDigest,
+        partial: bool,
+        uuid: &str,
+    ) -> Self {
+        let octets: usize = payload.values().map(Vec::len).sum();
+        let mut labels = vec![
+            ("Bag-Software-Agent", format!("reenact {} <{}>", circumstance.version, format::HOME)),
+            ("Bagging-Date", circumstance.ended.date()),
+            ("Bundle-Format", format::FORMAT.to_string()),
+            ("External-Identifier", format!("urn:uuid:{uuid}")),
+            ("Partial", partial.to_string()),
+            ("Payload-Oxum", format!("{octets}.{}", payload.len())),
+            ("Results-Digest", format!("sha256:{results}")),
+            ("Run-Ended", circumstance.ended.iso()),
+            ("Run-Started", circumstance.started.iso()),
+            ("Study-Digest", format!("sha256:{study}")),
+        ];
+        for (name, value) in &circumstance.environment {
+            labels.push(("Run-Environment", one_line(&format!("{name}={value}"))));
+        }
+        Self(labels.into_iter().map(|(label, value)| (label.to_owned(), value)).collect())
+    }
+
+    pub(super) fn to_text(&self) -> String {
+        self.0.iter().map(|(label, value)| format!("{label}: {value}\n")).collect()
+    }
+
+    /// Reads the file; lines that begin with white space continue the last value.
+    pub fn parse(bytes: &[u8]) -> Self {
+        let mut labels: Vec<(String, String)> = Vec::new();
+        for line in String::from_utf8_lossy(bytes).lines() {
+            match (line.split_once(':'), labels.last_mut()) {
+                (_, Some((_, value))) if line.starts_with([' ', '\t']) => {
+                    value.push(' ');
+                    value.push_str(line.trim());
+                }
+                (Some((label, value)), _) => {
+                    labels.push((label.trim().to_owned(), value.trim().to_owned()));
+                }
+                (None, _) => {}
+            }
+        }
+        Self(labels)
+    }
+
+    /// The first value of `label`.
+    pub fn get(&self, label: &str) -> Option<&str> {
+        self.0.iter().find(|(name, _)| name == label).map(|(_, value)| value.as_str())
+    }
+
+    /// The circumstances that the bag tells; `None` where it does not tell them as this program writes them.
+    pub fn circumstance(&self) -> Option<Circumstance> {
+        let agent = self.get("Bag-Software-Agent")?.strip_prefix("reenact ")?;
+        Some(Circumstance {
+            version: agent.split(' ').next()?.to_owned(),
+            started: Moment::from_iso(self.get("Run-Started")?)?,
+            ended: Moment::from_iso(self.get("Run-Ended")?)?,
+            environment: self
+                .0
+                .iter()
+                .filter(|(label, _)| label == "Run-Environment")
+                .filter_map(|(_, value)| value.split_once('='))
+                .map(|(name, value)| (name.to_owned(), value.to_owned()))
+                .collect(),
+        })
+    }
+}
+
+/// `text` on one line: control characters would begin another label.
+pub(super) fn one_line(text: &str) -> String {
+    let line: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+    line.trim().to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn manifests_of_other_tools_are_read_and_faulty_lines_named() {
+        let hex = "a".repeat(64);
+        let text = format!("{}  data/x\r\n{hex} *data/y\n", hex.to_uppercase());
+        let entries = parse_manifest("m", text.as_bytes()).unwrap();
+        assert_eq!(entries.iter().map(|e| e.0.as_str()).collect::<Vec<_>>(), ["data/x", "data/y"]);
+
+        let text = format!("{hex}  data/x\n{hex}  ../x\nnothing\n{hex}  data/X\n");
+        let faults = parse_manifest("m", text.as_bytes()).unwrap_err();
+        let faults: Vec<_> = faults.iter().map(ToString::to_string).collect();
+        let expected = [
+            "m:2: expected a safe relative path, found a path that climbs out of its folder",
+            "m:3: expected 64 hex digits, two spaces and a path, found `nothing`",
+            "m:4: expected every path once, found `data/X` beside `data/x`",
+        ];
+        assert_eq!(faults, expected);
+    }
+
+    #[test]
+    fn circumstances_survive_the_bag() {
+        let circumstance = Circumstance {
+            version: "0.1.0".into(),
+            started: Moment(5),
+            ended: Moment(9),
+            environment: vec![("host".into(), "a=b\nPartial: true".into())],
+        };
+        let (results, study) = (Sha256Digest::of("r"), Sha256Digest::of("s"));
+        let info = BagInfo::of(
+            &Tree::new(),
+            &circumstance,
+            ResultsDigest(results),
+            StudyDigest(study),
+            false,
+            "u",
+        );
+        let back = BagInfo::parse(info.to_text().as_bytes());
+        assert_eq!(back, info);
+        assert_eq!(back.get("Partial"), Some("false"), "a value cannot smuggle a label in");
+        let expected = [("host".to_owned(), "a=b Partial: true".to_owned())];
+        assert_eq!(back.circumstance().unwrap().environment, expected);
+    }
+
+    proptest! {
+        #[test]
+        fn any_bytes_are_read_or_refused(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
+            let _ = parse_manifest("m", &bytes);
+            let _ = BagInfo::parse(&bytes).circumstance();
+        }
+    }
+}

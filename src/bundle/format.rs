@@ -1,0 +1,78 @@
+//! The format's version and the names of its files (`docs/bundle-format.md`).
+
+/// Version of the layout that this program writes, and the newest it reads.
+pub const FORMAT: u64 = 1;
+
+/// Version of this program.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// Where the program can be found; the root of the identifiers in the crate's metadata.
+pub const HOME: &str = "https://crates.io/crates/reenact";
+
+/// The payload folder, which is the RO-Crate's root.
+pub const PAYLOAD: &str = "data/";
+
+/// The bag's declaration.
+pub const BAGIT: &str = "bagit.txt";
+/// Facts about the bag: format version, digests and the circumstances of the run.
+pub const BAG_INFO: &str = "bag-info.txt";
+/// Digests of the payload.
+pub const MANIFEST: &str = "manifest-sha256.txt";
+/// Digests of the other tag files; its own digest is the bundle's id.
+pub const TAG_MANIFEST: &str = "tagmanifest-sha256.txt";
+/// Detached signatures of [`TAG_MANIFEST`]: the only files a bag may hold unlisted.
+pub const SIGNATURES: [&str; 2] = ["tagmanifest-sha256.txt.sig", "tagmanifest-sha256.txt.minisig"];
+
+/// The crate's metadata. This and what follows is relative to [`PAYLOAD`].
+pub const METADATA: &str = "ro-crate-metadata.json";
+/// The crate's page for people.
+pub const PREVIEW: &str = "ro-crate-preview.html";
+/// How to check the bundle and run it again.
+pub const README: &str = "README.md";
+/// Under which licences the bundle may be shared.
+pub const LICENSE: &str = "LICENSE.txt";
+/// The manifest, byte for byte as its author wrote it.
+pub const STUDY: &str = "study.yaml";
+/// The manifest with everything resolved.
+pub const RESOLVED: &str = "study.resolved.json";
+/// Robots, worlds, priors, scripts.
+pub const INPUTS: &str = "inputs/";
+/// Trial records, one file a condition.
+pub const TRIALS: &str = "trials/";
+/// Tables, figures and verdicts.
+pub const RESULTS: &str = "results/";
+
+/// Path of a condition's records, relative to [`PAYLOAD`].
+pub fn records_path(slug: &str) -> String {
+    format!("{TRIALS}{slug}.jsonl")
+}
+
+/// What to do about a bundle of the newer format `found`.
+pub fn newer_format_hint(found: u64) -> String {
+    format!(
+        "this is reenact {VERSION}, which reads formats 1 to {FORMAT}; install the version named after \
+         `Bag-Software-Agent` in {BAG_INFO} (or any newer one) to read format {found}"
+    )
+}
+
+/// The media type that archives expect for `path`, by its extension.
+pub fn media_type(path: &str) -> &'static str {
+    match path.rsplit('.').next().unwrap_or_default() {
+        "yaml" | "yml" => "application/yaml",
+        "urdf" | "sdf" | "world" | "xml" | "xacro" => "application/xml",
+        "pgm" => "image/x-portable-graymap",
+        "png" => "image/png",
+        "csv" => "text/csv",
+        "svg" => "image/svg+xml",
+        "json" => "application/json",
+        "jsonl" => "application/jsonl",
+        "md" => "text/markdown",
+        "txt" => "text/plain",
+        "html" => "text/html",
+        "stl" => "model/stl",
+        "dae" => "model/vnd.collada+xml",
+        "obj" => "model/obj",
+        "zip" => "application/zip",
+        _ => "application/octet-stream",
+    }
+}

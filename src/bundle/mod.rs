@@ -1,0 +1,62 @@
+//! The sealed study: one zip that holds what was asked, what came out, and the proof that nothing changed since.
+//!
+//! A bundle is a `BagIt` bag (RFC 8493) whose payload `data/` is an RO-Crate 1.1 with the Provenance Run Crate 0.5
+//! profile. `docs/bundle-format.md` is the contract; this module is pure (bytes in, bytes out) and the only door
+//! to the zip crate.
+//!
+//! [`BundleContent`] and a [`Circumstance`] are sealed into a [`Sealed`] tree; [`archive`] turns a tree into a zip
+//! and back, trusting nothing; [`Bundle`] reads an opened tree by meaning.
+
+pub mod archive;
+pub mod bag;
+mod content;
+mod crate_entities;
+mod crate_metadata;
+mod fault;
+pub mod format;
+mod moment;
+pub mod names;
+mod preview;
+mod reader;
+mod readme;
+mod resolved;
+mod writer;
+
+#[cfg(test)]
+pub(crate) mod sample;
+
+pub use archive::{Archive, Form, Limits};
+pub use content::{
+    Author, BundleContent, Circumstance, Citation, SealedCondition, SealedInput, seal_inputs,
+};
+pub use fault::Fault;
+pub use moment::Moment;
+pub use reader::{Bundle, OpenError};
+pub use resolved::{ConditionEntry, InputEntry, Resolved};
+pub use writer::{SealError, Sealed, seal};
+
+use crate::digest::{ResultsDigest, Sha256Digest};
+use std::collections::BTreeMap;
+
+/// Every file of a bundle by its path relative to the bag's root (`bagit.txt`, `data/study.yaml`), sorted bytewise.
+pub type Tree = BTreeMap<String, Vec<u8>>;
+
+/// Whether `path`, relative to `data/`, belongs to the result half: what is byte-identical for everyone.
+pub fn in_result_half(path: &str) -> bool {
+    path == format::STUDY
+        || path == format::RESOLVED
+        || [format::INPUTS, format::TRIALS, format::RESULTS].iter().any(|d| path.starts_with(d))
+}
+
+/// The results digest of a tree: SHA-256 over the sorted lines `<hex>  <path>` of its result half, each ended by
+/// a line feed, paths relative to `data/`.
+pub fn results_digest(tree: &Tree) -> ResultsDigest {
+    let mut lines: Vec<String> = tree
+        .iter()
+        .filter_map(|(path, bytes)| Some((path.strip_prefix(format::PAYLOAD)?, bytes)))
+        .filter(|(path, _)| in_result_half(path))
+        .map(|(path, bytes)| format!("{}  {path}\n", Sha256Digest::of(bytes)))
+        .collect();
+    lines.sort_unstable();
+    ResultsDigest(Sha256Digest::of(lines.concat()))
+}

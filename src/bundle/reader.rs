@@ -1,0 +1,291 @@
+//! A bundle by meaning: what an opened archive says, with every reference inside it resolved.
+
+use super::{
+    Archive, Circumstance, ConditionEntry, Fault, Form, InputEntry, Limits, Resolved, Tree, archive,
+    bag, format, results_digest,
+};
+use crate::digest::{BundleId, ResultsDigest, Sha256Digest, StudyDigest};
+use crate::studies::TrialRecord;
+use thiserror::Error;
+
+/// Why a bundle cannot be read.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum OpenError {
+    /// The archive is broken, hostile or no bundle.
+    #[error("this is no archive to read: {}", list(.0))]
+    Unsafe(Vec<Fault>),
+    /// A newer program wrote it.
+    #[error("{0}")]
+    Newer(Fault),
+    /// Something without which the rest makes no sense is missing or unreadable.
+    #[error("the bundle is damaged: {}", list(.0))]
+    Damaged(Vec<Fault>),
+}
+
+fn list(faults: &[Fault]) -> String {
+    faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
+}
+
+/// A readable bundle. That it is what it says is for `verify` to find out.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bundle {
+    form: Form,
+    tree: Tree,
+    resolved: Resolved,
+}
+
+impl Bundle {
+    /// Reads a zip.
+    ///
+    /// # Errors
+    /// As [`OpenError`] says.
+    pub fn read(bytes: &[u8], limits: &Limits) -> Result<Self, OpenError> {
+        Self::open(archive::read(bytes, limits).map_err(OpenError::Unsafe)?)
+    }
+
+    /// Reads an opened archive or folder.
+    ///
+    /// # Errors
+    /// [`OpenError::Newer`] for a newer format, [`OpenError::Damaged`] where the manifest, the resolved study or a
+    /// file that it names is missing or unreadable.
+    pub fn open(archive: Archive) -> Result<Self, OpenError> {
+        let Archive { form, tree } = archive;
+        check_version(&tree).map_err(OpenError::Newer)?;
+        let missing =
+            |path: &str, of: &str| Fault::new(format!("{}{path}", format::PAYLOAD), of, "no file");
+        let payload = |path: &str| tree.get(&format!("{}{path}", format::PAYLOAD));
+        let mut faults = Vec::new();
+        if payload(format::STUDY).is_none() {
+            faults.push(missing(format::STUDY, "the manifest"));
+        }
+        let resolved = match payload(format::RESOLVED).map(|bytes| Resolved::read(bytes)) {
+            Some(Ok(resolved)) => resolved,
+            Some(Err(fault)) => return Err(OpenError::Damaged(vec![fault])),
+            None => {
+                faults.push(missing(format::RESOLVED, "the resolved study"));
+                return Err(OpenError::Damaged(faults));
+            }
+        };
+        for input in resolved.inputs.iter().filter(|input| payload(&input.path).is_none()) {
+            faults.push(missing(&input.path, &format!("the input `{}`", input.as_written)));
+        }
+        for condition in &resolved.conditions {
+            let path = format::records_path(&condition.slug);
+            match payload(&path).map(|bytes| std::str::from_utf8(bytes)) {
+                Some(Ok(_)) => {}
+                Some(Err(_)) => faults.push(Fault::new(
+                    format!("{}{path}", format::PAYLOAD),
+                    "UTF-8 text",
+                    "other bytes",
+                )),
+                None => faults.push(missing(&path, "the condition's records")),
+            }
+        }
+        if faults.is_empty() {
+            Ok(Self { form, tree, resolved })
+        } else {
+            Err(OpenError::Damaged(faults))
+        }
+    }
+
+    /// How it was laid out.
+    pub fn form(&self) -> Form {
+        self.form
+    }
+
+    /// Every file, by its path in the bag.
+    pub fn tree(&self) -> &Tree {
+        &self.tree
+    }
+
+    /// The study's short name.
+    pub fn name(&self) -> &str {
+        &self.resolved.name
+    }
+
+    /// The engine that ran it.
+    pub fn engine(&self) -> &str {
+        &self.resolved.engine
+    }
+
+    /// Whether only part of the study was run.
+    pub fn is_partial(&self) -> bool {
+        self.resolved.partial
+    }
+
+    /// The manifest, byte for byte.
+    pub fn study_yaml(&self) -> &[u8] {
+        self.payload(format::STUDY).unwrap_or_default()
+    }
+
+    /// The study with everything resolved, as `run` sealed it.
+    pub fn resolved(&self) -> &serde_json::Value {
+        &self.resolved.study
+    }
+
+    /// Every input by every path it is known by.
+    pub fn inputs(&self) -> &[InputEntry] {
+        &self.resolved.inputs
+    }
+
+    /// The bytes of the input that the study calls `as_written`.
+    pub fn input(&self, as_written: &str) -> Option<&[u8]> {
+        let entry = self.resolved.inputs.iter().find(|input| input.as_written == as_written)?;
+        self.payload(&entry.path)
+    }
+
+    /// The conditions in plan order.
+    pub fn conditions(&self) -> &[ConditionEntry] {
+        &self.resolved.conditions
+    }
+
+    /// The record lines of a condition, in plan order; none where there is no such condition.
+    pub fn record_lines(&self, slug: &str) -> impl Iterator<Item = &str> {
+        let bytes = self.payload(&format::records_path(slug)).unwrap_or_default();
+        std::str::from_utf8(bytes).unwrap_or_default().lines()
+    }
+
+    /// All records, in plan order.
+    ///
+    /// # Errors
+    /// Every line that is no record.
+    pub fn records(&self) -> Result<Vec<TrialRecord>, Vec<Fault>> {
+        let (mut records, mut faults) = (Vec::new(), Vec::new());
+        for condition in &self.resolved.conditions {
+            for (i, line) in self.record_lines(&condition.slug).enumerate() {
+                match TrialRecord::from_line(line) {
+                    Ok(record) => records.push(record),
+                    Err(problem) => {
+                        let path = format::records_path(&condition.slug);
+                        let place = format!("{}{path}:{}", format::PAYLOAD, i + 1);
+                        faults.push(Fault::new(place, "a trial record", problem));
+                    }
+                }
+            }
+        }
+        if faults.is_empty() { Ok(records) } else { Err(faults) }
+    }
+
+    /// The file `path` under `results/`.
+    pub fn result(&self, path: &str) -> Option<&[u8]> {
+        self.payload(&format!("{}{path}", format::RESULTS))
+    }
+
+    /// Every file under `results/`, by its path there.
+    pub fn results(&self) -> impl Iterator<Item = (&str, &[u8])> {
+        self.tree.iter().filter_map(|(path, bytes)| {
+            let path = path.strip_prefix(format::PAYLOAD)?.strip_prefix(format::RESULTS)?;
+            Some((path, bytes.as_slice()))
+        })
+    }
+
+    /// What came out, computed from the files themselves.
+    pub fn results_digest(&self) -> ResultsDigest {
+        results_digest(&self.tree)
+    }
+
+    /// What was asked, computed from the resolved study.
+    pub fn study_digest(&self) -> StudyDigest {
+        StudyDigest(Sha256Digest::of(self.payload(format::RESOLVED).unwrap_or_default()))
+    }
+
+    /// This very bundle; a bare crate has no bag to identify.
+    pub fn bundle_id(&self) -> Option<BundleId> {
+        self.tree.get(format::TAG_MANIFEST).map(|bytes| BundleId(Sha256Digest::of(bytes)))
+    }
+
+    /// The circumstances of the run, where the bag tells them.
+    pub fn circumstance(&self) -> Option<Circumstance> {
+        bag::BagInfo::parse(self.tree.get(format::BAG_INFO)?).circumstance()
+    }
+
+    fn payload(&self, path: &str) -> Option<&[u8]> {
+        self.tree.get(&format!("{}{path}", format::PAYLOAD)).map(Vec::as_slice)
+    }
+}
+
+/// The version stands in the bag's facts and in the resolved study; either may ask for a newer program.
+pub(crate) fn check_version(tree: &Tree) -> Result<(), Fault> {
+    #[derive(serde::Deserialize)]
+    #[serde(rename_all = "kebab-case")]
+    struct Version {
+        bundle_format: u64,
+    }
+    let resolved_path = format!("{}{}", format::PAYLOAD, format::RESOLVED);
+    let info = tree.get(format::BAG_INFO).map(|bytes| bag::BagInfo::parse(bytes));
+    let stated = [
+        (format::BAG_INFO, info.as_ref().and_then(|info| info.get("Bundle-Format")?.parse().ok())),
+        (
+            resolved_path.as_str(),
+            tree.get(&resolved_path)
+                .and_then(|bytes| serde_json::from_slice::<Version>(bytes).ok())
+                .map(|version| version.bundle_format),
+        ),
+    ];
+    for (path, version) in stated {
+        if let Some(newer) = version.filter(|version| *version > format::FORMAT) {
+            return Err(Fault::new(
+                path,
+                format!("bundle format {} or older", format::FORMAT),
+                format!("bundle format {newer}"),
+            )
+            .hint(format::newer_format_hint(newer)));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::sample;
+    use super::*;
+
+    #[test]
+    fn what_was_sealed_is_read_back_by_meaning() {
+        let (content, sealed) = (sample::content(), sample::sealed());
+        let bundle = Bundle::read(&sealed.zip(Form::Bag), &Limits::default()).unwrap();
+        assert_eq!(bundle.name(), "corridors");
+        assert_eq!(bundle.study_yaml(), content.study_yaml);
+        assert_eq!(bundle.resolved(), &content.resolved);
+        assert_eq!(bundle.input("../worlds/a.yaml"), Some(&b"walls: [1]\n"[..]));
+        assert_eq!(bundle.input("../worlds/none.yaml"), None);
+        let slugs: Vec<_> = bundle.conditions().iter().map(|c| c.slug.as_str()).collect();
+        assert_eq!(slugs, ["none", "floor-plan"], "plan order, not alphabetical");
+        let lines: Vec<_> = content.conditions.iter().flat_map(|c| c.records.clone()).collect();
+        let back: Vec<_> = bundle.records().unwrap().iter().map(TrialRecord::to_line).collect();
+        assert_eq!(back, lines);
+        assert_eq!(bundle.results().count(), content.results.len());
+        assert_eq!(bundle.result("trials.csv"), Some(content.results[0].1.as_slice()));
+        assert_eq!(bundle.results_digest(), sealed.results_digest);
+        assert_eq!(bundle.study_digest(), sealed.study_digest);
+        assert_eq!(bundle.bundle_id(), Some(sealed.bundle_id));
+        assert_eq!(bundle.circumstance(), Some(sample::circumstance()));
+    }
+
+    #[test]
+    fn a_newer_format_is_not_mistaken_for_damage() {
+        let mut archive = archive::read(sample::zip(), &Limits::default()).unwrap();
+        let info = String::from_utf8(archive.tree["bag-info.txt"].clone()).unwrap();
+        let info = info.replace("Bundle-Format: 1", "Bundle-Format: 2");
+        archive.tree.insert("bag-info.txt".into(), info.into_bytes());
+        let error = Bundle::open(archive).unwrap_err();
+        assert!(matches!(error, OpenError::Newer(_)));
+        assert!(error.to_string().starts_with(
+            "bag-info.txt: expected bundle format 1 or older, found bundle format 2 (this is reenact "
+        ));
+    }
+
+    #[test]
+    fn missing_parts_are_named_all_at_once() {
+        let mut archive = archive::read(sample::zip(), &Limits::default()).unwrap();
+        for path in ["data/study.yaml", "data/inputs/a.yaml", "data/trials/none.jsonl"] {
+            archive.tree.remove(path).unwrap();
+        }
+        assert_eq!(
+            Bundle::open(archive).unwrap_err().to_string(),
+            "the bundle is damaged: data/study.yaml: expected the manifest, found no file; data/inputs/a.yaml: expected \
+             the input `../worlds/a.yaml`, found no file; data/trials/none.jsonl: expected the condition's records, found \
+             no file"
+        );
+    }
+}

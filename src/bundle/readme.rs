@@ -1,0 +1,98 @@
+//! `README.md` and `LICENSE.txt`: what a stranger reads first. They hold no number that the results hold too.
+
+use super::{BundleContent, Circumstance, format};
+use crate::digest::ResultsDigest;
+use std::collections::BTreeSet;
+
+/// How to check the bundle and run it again.
+pub(super) fn readme(
+    content: &BundleContent,
+    circumstance: &Circumstance,
+    digest: ResultsDigest,
+) -> String {
+    let (version, engine) = (&circumstance.version, &content.engine);
+    let stem = format!("{}-{}", content.name, digest.short());
+    let mut text = format!("# {}\n\n{}\n", content.title, content.description);
+    if content.partial {
+        text.push_str("\n**Partial**: only some of the study's trials were run; no claim is judged on them.\n");
+    }
+    if let Some(cite) = &content.cite {
+        text.push_str(&format!("\nReproduces: {}", cite.text));
+        if let Some(url) = &cite.url {
+            text.push_str(&format!(" <{url}>"));
+        }
+        text.push('\n');
+    }
+    text.push_str(&format!(
+        "
+## Check it
+
+With this folder's parent as the working directory and nothing of ours:
+
+```
+sha256sum --check manifest-sha256.txt tagmanifest-sha256.txt
+bagit.py --validate .
+```
+
+With Reenact {version} (engine {engine}), which also derives every table from the trial records and runs trials again:
+
+```
+cargo install reenact --version {version} --locked
+reenact verify {stem}.zip                # levels 0 to 3: seconds
+reenact verify {stem}.zip --level 5      # every trial again, bit for bit
+```
+
+Results digest: `sha256:{digest}`. Whoever runs `study.yaml` with the same engine gets the same digest.
+Checksums show that nothing changed since they were made; who made them, only a signature shows.
+
+## What is in it
+
+| path | holds |
+| --- | --- |
+| `study.yaml` | the manifest, byte for byte as its author wrote it |
+| `study.resolved.json` | the same with every default and override written out, and the digest of every input |
+| `inputs/` | robots, worlds, prior maps and whatever else the manifest names |
+| `trials/` | one line of JSON a trial, one file a condition, in plan order |
+| `results/` | tables, figures and verdicts, all derived from `trials/` |
+| `ro-crate-metadata.json` | the same for machines: RO-Crate 1.1, Provenance Run Crate 0.5 |
+"
+    ));
+    text
+}
+
+/// Which licences hold for what.
+pub(super) fn license(content: &BundleContent) -> String {
+    let mut text = format!(
+        "This bundle is licensed under {}.\n",
+        with_address(&content.license)
+    );
+    let own: BTreeSet<_> = content
+        .inputs
+        .iter()
+        .filter_map(|input| Some((input.name.as_str(), input.license.as_deref()?)))
+        .collect();
+    if !own.is_empty() {
+        text.push_str("\nFiles that came from elsewhere keep their own licences:\n\n");
+        for (name, license) in own {
+            text.push_str(&format!("{}{name}: {}\n", format::INPUTS, with_address(license)));
+        }
+    }
+    text
+}
+
+fn with_address(license: &str) -> String {
+    match license_address(license) {
+        Some(address) if address != license => format!("{license} <{address}>"),
+        _ => license.to_owned(),
+    }
+}
+
+/// Where the text of `license` is: an SPDX identifier's page, or the address itself.
+pub(super) fn license_address(license: &str) -> Option<String> {
+    if license.starts_with("https://") || license.starts_with("http://") {
+        return Some(license.to_owned());
+    }
+    let spdx = !license.is_empty()
+        && license.bytes().all(|b| b.is_ascii_alphanumeric() || b"-.+".contains(&b));
+    spdx.then(|| format!("https://spdx.org/licenses/{license}"))
+}

@@ -1,0 +1,196 @@
+//! A small bundle for tests, and tools to damage it.
+
+use super::{
+    Author, BundleContent, Circumstance, Citation, Form, Moment, SealedCondition, Sealed, Tree, bag,
+    format, seal, seal_inputs,
+};
+use crate::digest::{Sha256Digest, TrialKey};
+use crate::studies::{Outcome, TrialRecord};
+use crate::table::Table;
+use std::io::{Cursor, Write as _};
+use std::sync::OnceLock;
+
+pub(crate) const ENGINE: &str = "test-1";
+pub(crate) const STUDY: &str = "name: corridors\nseed: 7\n";
+
+/// The record that the pretended engine yields for a trial of the condition `prior`: a pure function of its arguments.
+pub(crate) fn record(seed: u64, prior: &str, trial: u32) -> TrialRecord {
+    let key = Sha256Digest::of(format!("{ENGINE}/{seed}/{prior}/{trial}"));
+    let distance = f64::from(key.0[0]) + 0.5;
+    TrialRecord {
+        key: TrialKey(key),
+        condition: vec![("prior".into(), prior.into())],
+        trial,
+        outcome: Outcome::Explored,
+        cause: String::new(),
+        measures: [("distance-m-at-90".to_owned(), Some(distance))].into(),
+        series: Vec::new(),
+        sim_seconds: 20.0,
+        chain: (0..2).map(|i| Sha256Digest::of(format!("{key}/{i}")).hex()[..16].to_owned()).collect(),
+    }
+}
+
+/// Results that follow from records.
+pub(crate) fn results(records: &[TrialRecord]) -> Vec<(String, Vec<u8>)> {
+    let mut trials = Table::new(["key", "prior", "trial", "outcome", "distance-m-at-90"]);
+    let mut sum = 0.0;
+    for record in records {
+        let distance = record.measures["distance-m-at-90"];
+        sum += distance.unwrap_or_default();
+        trials.push(vec![
+            record.key.hex().into(),
+            record.condition[0].1.as_str().into(),
+            i64::from(record.trial).into(),
+            record.outcome.name().into(),
+            distance.into(),
+        ]);
+    }
+    let mut table = Table::new(["coverage", "distance-m"]);
+    table.push(vec!["90%".into(), (sum / f64::from(u32::try_from(records.len()).unwrap())).into()]);
+    vec![
+        ("trials.csv".into(), trials.to_csv().into_bytes()),
+        ("tables/distance.csv".into(), table.to_csv().into_bytes()),
+        ("tables/distance.md".into(), table.to_markdown().into_bytes()),
+        ("claims.json".into(), b"[{\"id\":\"P1\",\"verdict\":\"supported\"}]\n".to_vec()),
+        ("figures/distance.svg".into(), b"<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"9\" height=\"9\"><title>Distance</title></svg>\n".to_vec()),
+    ]
+}
+
+/// The content that sealing the sample study with `records` (by condition) yields.
+pub(crate) fn content_of(
+    study_yaml: &[u8],
+    seed: u64,
+    conditions: &[(&str, Vec<TrialRecord>)],
+) -> BundleContent {
+    let all: Vec<TrialRecord> = conditions.iter().flat_map(|(_, records)| records.clone()).collect();
+    BundleContent {
+        name: "corridors".into(),
+        title: "Corridors with and without a floor plan".into(),
+        description: "A robot explores corridors, with and without a floor plan.".into(),
+        cite: Some(Citation {
+            text: "A. Author, \"On corridors\", 2020".into(),
+            url: Some("https://doi.org/10.1000/182".into()),
+        }),
+        authors: vec![Author {
+            name: "A. Researcher".into(),
+            affiliation: Some("Example Robotics Lab".into()),
+            orcid: None,
+        }],
+        license: "CC-BY-4.0".into(),
+        seed,
+        engine: ENGINE.into(),
+        study_yaml: study_yaml.to_vec(),
+        resolved: serde_json::json!({"seed": seed, "parameters": {"range-m": 8.5}}),
+        inputs: seal_inputs([
+            ("../worlds/a.yaml".into(), b"walls: [1]\n".to_vec(), None),
+            ("../robots/r.urdf".into(), b"<robot name=\"r\"/>\n".to_vec(), Some("BSD-3-Clause".into())),
+        ]),
+        conditions: conditions
+            .iter()
+            .map(|(slug, records)| SealedCondition {
+                slug: (*slug).into(),
+                label: format!("prior={slug}"),
+                records: records.iter().map(TrialRecord::to_line).collect(),
+                failed: 0,
+            })
+            .collect(),
+        results: results(&all),
+        partial: false,
+    }
+}
+
+pub(crate) fn records() -> Vec<(&'static str, Vec<TrialRecord>)> {
+    ["none", "floor-plan"]
+        .map(|prior| (prior, (0..3).map(|trial| record(7, prior, trial)).collect()))
+        .into()
+}
+
+pub(crate) fn content() -> BundleContent {
+    content_of(STUDY.as_bytes(), 7, &records())
+}
+
+pub(crate) fn circumstance() -> Circumstance {
+    Circumstance {
+        version: format::VERSION.into(),
+        started: Moment(1_768_478_400),
+        ended: Moment(1_768_478_460),
+        environment: vec![("os".into(), "linux".into()), ("jobs".into(), "2".into())],
+    }
+}
+
+pub(crate) fn sealed() -> Sealed {
+    seal(&content(), &circumstance()).unwrap()
+}
+
+/// The sample bundle, sealed once.
+pub(crate) fn zip() -> &'static [u8] {
+    static ZIP: OnceLock<Vec<u8>> = OnceLock::new();
+    ZIP.get_or_init(|| sealed().zip(Form::Bag))
+}
+
+/// A zip of just these entries, whatever their names.
+pub(crate) fn zip_of(entries: &[(&str, &[u8])]) -> Vec<u8> {
+    let mut zip = zip::ZipWriter::new(Cursor::new(Vec::new()));
+    for (name, bytes) in entries {
+        zip.start_file(*name, zip::write::SimpleFileOptions::default()).unwrap();
+        zip.write_all(bytes).unwrap();
+    }
+    zip.finish().unwrap().into_inner()
+}
+
+/// Replaces every occurrence of `from` by `to`, of equal length.
+pub(crate) fn replace(bytes: &mut [u8], from: &[u8], to: &[u8]) {
+    assert_eq!(from.len(), to.len());
+    for at in 0..=bytes.len() - from.len() {
+        if bytes[at..].starts_with(from) {
+            bytes[at..at + to.len()].copy_from_slice(to);
+        }
+    }
+}
+
+/// Makes every checksum of a tree right again: what a forger does. Digests and sizes in the crate's metadata, the
+/// results digest wherever it stands, the bag's manifests and its count of bytes.
+pub(crate) fn recompute(tree: &mut Tree) {
+    let text = |tree: &Tree, path: &str| String::from_utf8(tree[path].clone()).unwrap();
+    let mut metadata: serde_json::Value = serde_json::from_slice(&tree["data/ro-crate-metadata.json"]).unwrap();
+    let results = super::results_digest(tree);
+    let study = Sha256Digest::of(&tree["data/study.resolved.json"]);
+    for entity in metadata["@graph"].as_array_mut().unwrap() {
+        let id = entity["@id"].as_str().unwrap().to_owned();
+        if id == "#results-digest" {
+            entity["value"] = format!("sha256:{results}").into();
+        } else if id == "#study-digest" {
+            entity["value"] = format!("sha256:{study}").into();
+        } else if let (Some(bytes), true) = (tree.get(&format!("data/{id}")), entity.get("sha256").is_some()) {
+            entity["sha256"] = Sha256Digest::of(bytes).hex().into();
+            entity["contentSize"] = bytes.len().to_string().into();
+        }
+    }
+    tree.insert("data/ro-crate-metadata.json".into(), format!("{metadata:#}\n").into_bytes());
+    let payload: Tree =
+        tree.iter().filter(|(p, _)| p.starts_with("data/")).map(|(p, b)| (p.clone(), b.clone())).collect();
+    let octets: usize = payload.values().map(Vec::len).sum();
+    let info: String = text(tree, format::BAG_INFO)
+        .lines()
+        .map(|line| match line.split_once(": ").unwrap() {
+            ("Payload-Oxum", _) => format!("Payload-Oxum: {octets}.{}\n", payload.len()),
+            ("Results-Digest", _) => format!("Results-Digest: sha256:{results}\n"),
+            ("Study-Digest", _) => format!("Study-Digest: sha256:{study}\n"),
+            _ => format!("{line}\n"),
+        })
+        .collect();
+    tree.insert(format::BAG_INFO.into(), info.into_bytes());
+    tree.insert(format::MANIFEST.into(), bag::manifest(&payload).into_bytes());
+    let tags: Tree = tree
+        .iter()
+        .filter(|(p, _)| !p.starts_with("data/") && *p != format::TAG_MANIFEST)
+        .map(|(p, b)| (p.clone(), b.clone()))
+        .collect();
+    tree.insert(format::TAG_MANIFEST.into(), bag::manifest(&tags).into_bytes());
+}
+
+#[test]
+fn the_sample_can_be_written_out_for_other_validators() {
+    let zip = zip();
+    assert!(zip.starts_with(b"PK\x03\x04"));
+}

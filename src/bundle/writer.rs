@@ -1,0 +1,260 @@
+//! Sealing: content and circumstances become a tree of files whose every byte something vouches for.
+
+use super::{
+    BundleContent, Circumstance, Form, Resolved, Tree, archive, bag, crate_metadata, format, names,
+    preview, readme, results_digest,
+};
+use crate::digest::{BundleId, ResultsDigest, Sha256Digest, StudyDigest};
+use thiserror::Error;
+
+/// Why content cannot be sealed.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum SealError {
+    /// A name that some system could not unpack or some tool could not read.
+    #[error(
+        "{path}: expected a name of A-Z a-z 0-9 . _ - that every system can unpack, found {found}; rename it"
+    )]
+    Name {
+        /// The path within the payload.
+        path: String,
+        /// What is wrong with it.
+        found: String,
+    },
+    /// Two files under one name.
+    #[error(
+        "{path}: expected every file under its own name, found another of the same name (`{other}`)"
+    )]
+    Clash {
+        /// The later file.
+        path: String,
+        /// The earlier one.
+        other: String,
+    },
+    /// A record that spans lines.
+    #[error("{path}: expected one line for each record, found a line feed in record {record}")]
+    Record {
+        /// The condition's file.
+        path: String,
+        /// Index of the record.
+        record: usize,
+    },
+}
+
+/// A sealed bundle, ready to be written.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sealed {
+    /// File name without extension: `<name>-<first 8 hex of the results digest>`.
+    pub stem: String,
+    /// Every file.
+    pub tree: Tree,
+    /// What came out.
+    pub results_digest: ResultsDigest,
+    /// What was asked.
+    pub study_digest: StudyDigest,
+    /// This very bundle.
+    pub bundle_id: BundleId,
+}
+
+impl Sealed {
+    /// The bundle's file name.
+    pub fn file_name(&self) -> String {
+        format!("{}.zip", self.stem)
+    }
+
+    /// The archive, byte-identical for equal trees.
+    pub fn zip(&self, form: Form) -> Vec<u8> {
+        archive::write(&self.tree, &self.stem, form)
+    }
+}
+
+/// Seals `content`.
+///
+/// # Errors
+/// Where a name is unsafe or taken, or a record is not one line.
+pub fn seal(content: &BundleContent, circumstance: &Circumstance) -> Result<Sealed, SealError> {
+    let mut payload = Payload::default();
+    payload.add(format::STUDY, content.study_yaml.clone())?;
+    let resolved = Resolved::of(content).to_bytes();
+    let study_digest = StudyDigest(Sha256Digest::of(&resolved));
+    payload.add(format::RESOLVED, resolved)?;
+    for input in &content.inputs {
+        payload.add_shared(&format!("{}{}", format::INPUTS, input.name), &input.bytes)?;
+    }
+    for condition in &content.conditions {
+        let path = format::records_path(&condition.slug);
+        let mut lines = String::new();
+        for (record, line) in condition.records.iter().enumerate() {
+            if line.contains('\n') {
+                return Err(SealError::Record { path, record });
+            }
+            lines.push_str(line);
+            lines.push('\n');
+        }
+        payload.add(&path, lines.into_bytes())?;
+    }
+    for (path, bytes) in &content.results {
+        payload.add(&format!("{}{path}", format::RESULTS), bytes.clone())?;
+    }
+    let results_digest = results_digest(&payload.tree);
+    let stem = format!("{}-{}", content.name, results_digest.short());
+    check_name(&stem)?;
+
+    payload.add(format::README, readme::readme(content, circumstance, results_digest).into())?;
+    payload.add(format::LICENSE, readme::license(content).into())?;
+    let metadata = crate_metadata::document(
+        content,
+        circumstance,
+        &payload.tree,
+        results_digest,
+        study_digest,
+    );
+    payload.add(format::METADATA, metadata)?;
+    let page = preview::page(content, circumstance, &payload.tree, results_digest);
+    payload.add(format::PREVIEW, page.into())?;
+
+    let mut tree = payload.tree;
+    let manifest = bag::manifest(&tree);
+    let info = bag::BagInfo::of(
+        &tree,
+        circumstance,
+        results_digest,
+        study_digest,
+        content.partial,
+        &uuid(&Sha256Digest::of(&manifest)),
+    );
+    let mut tags = Tree::new();
+    tags.insert(format::BAGIT.to_owned(), bag::DECLARATION.into());
+    tags.insert(format::BAG_INFO.to_owned(), info.to_text().into_bytes());
+    tags.insert(format::MANIFEST.to_owned(), manifest.into_bytes());
+    let tag_manifest = bag::manifest(&tags).into_bytes();
+    let bundle_id = BundleId(Sha256Digest::of(&tag_manifest));
+    tags.insert(format::TAG_MANIFEST.to_owned(), tag_manifest);
+    tree.append(&mut tags);
+    Ok(Sealed { stem, tree, results_digest, study_digest, bundle_id })
+}
+
+#[derive(Default)]
+struct Payload {
+    tree: Tree,
+    names: names::Names,
+}
+
+impl Payload {
+    fn add(&mut self, path: &str, bytes: Vec<u8>) -> Result<(), SealError> {
+        check_name(path)?;
+        let path = format!("{}{path}", format::PAYLOAD);
+        if let Some(other) = self.names.enter(&path) {
+            return Err(SealError::Clash { path, other });
+        }
+        self.tree.insert(path, bytes);
+        Ok(())
+    }
+
+    /// Adds a file that may be there already, if its bytes are the same.
+    fn add_shared(&mut self, path: &str, bytes: &[u8]) -> Result<(), SealError> {
+        match self.tree.get(&format!("{}{path}", format::PAYLOAD)) {
+            Some(known) if known == bytes => Ok(()),
+            _ => self.add(path, bytes.to_vec()),
+        }
+    }
+}
+
+fn check_name(path: &str) -> Result<(), SealError> {
+    let found = match names::hazard(path) {
+        Some(hazard) => hazard.to_owned(),
+        None if !names::is_portable(path) => format!("`{}`", path.escape_default()),
+        // roc-validator resolves payload paths that hold `data/` against the wrong folder.
+        None if path.contains(format::PAYLOAD) => "a folder whose name ends in `data`".to_owned(),
+        None => return Ok(()),
+    };
+    Err(SealError::Name { path: path.to_owned(), found })
+}
+
+/// A UUID of version 8 made of the first bits of `digest` (RFC 9562, section 5.8 and appendix B.2).
+fn uuid(digest: &Sha256Digest) -> String {
+    let mut bytes = digest.0;
+    bytes[6] = bytes[6] & 0x0f | 0x80;
+    bytes[8] = bytes[8] & 0x3f | 0x80;
+    let hex = Sha256Digest(bytes).hex();
+    format!("{}-{}-{}-{}-{}", &hex[..8], &hex[8..12], &hex[12..16], &hex[16..20], &hex[20..32])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::sample;
+    use super::*;
+
+    #[test]
+    fn the_results_digest_can_be_had_from_the_manifest_alone() {
+        let sealed = sample::sealed();
+        let manifest = String::from_utf8(sealed.tree[format::MANIFEST].clone()).unwrap();
+        let mut lines: Vec<String> = manifest
+            .lines()
+            .map(|line| line.replacen("  data/", "  ", 1))
+            .filter(|line| super::super::in_result_half(&line[66..]))
+            .map(|line| line + "\n")
+            .collect();
+        lines.sort();
+        assert_eq!(Sha256Digest::of(lines.concat()), sealed.results_digest.0);
+        assert_eq!(sealed.stem, format!("corridors-{}", sealed.results_digest.short()));
+    }
+
+    #[test]
+    fn circumstances_do_not_touch_the_result_half() {
+        let content = sample::content();
+        let mut circumstance = sample::circumstance();
+        let first = seal(&content, &circumstance).unwrap();
+        circumstance.ended = super::super::Moment(2_000_000_000);
+        circumstance.environment = vec![("jobs".into(), "64".into())];
+        let second = seal(&content, &circumstance).unwrap();
+        assert_eq!(first.results_digest, second.results_digest);
+        assert_eq!(first.study_digest, second.study_digest);
+        assert_ne!(first.bundle_id, second.bundle_id);
+        let changed: Vec<_> =
+            first.tree.iter().filter(|(p, b)| second.tree[*p] != **b).map(|(p, _)| p).collect();
+        let expected = [
+            "bag-info.txt",
+            "data/ro-crate-metadata.json",
+            "data/ro-crate-preview.html",
+            "manifest-sha256.txt",
+            "tagmanifest-sha256.txt",
+        ];
+        assert_eq!(changed, expected);
+    }
+
+    #[test]
+    fn unsafe_names_are_refused() {
+        let refusal = |path: &str| {
+            let mut content = sample::content();
+            content.results = vec![(path.into(), Vec::new())];
+            seal(&content, &sample::circumstance()).unwrap_err().to_string()
+        };
+        assert_eq!(
+            refusal("../x"),
+            "results/../x: expected a name of A-Z a-z 0-9 . _ - that every system can unpack, found a path that climbs \
+             out of its folder; rename it"
+        );
+        assert_eq!(
+            refusal("table 1.csv"),
+            "results/table 1.csv: expected a name of A-Z a-z 0-9 . _ - that every system can unpack, found `results/table \
+             1.csv`; rename it"
+        );
+        assert_eq!(
+            refusal("metadata/x"),
+            "results/metadata/x: expected a name of A-Z a-z 0-9 . _ - that every system can unpack, found a folder whose \
+             name ends in `data`; rename it"
+        );
+        let mut content = sample::content();
+        content.results = vec![("a".into(), Vec::new()), ("A".into(), Vec::new())];
+        assert_eq!(
+            seal(&content, &sample::circumstance()).unwrap_err().to_string(),
+            "data/results/A: expected every file under its own name, found another of the same name (`data/results/a`)"
+        );
+        let mut content = sample::content();
+        content.conditions[0].records[1].push('\n');
+        assert_eq!(
+            seal(&content, &sample::circumstance()).unwrap_err().to_string(),
+            "trials/none.jsonl: expected one line for each record, found a line feed in record 1"
+        );
+    }
+}
