@@ -42,3 +42,11 @@ pub mod studies;
 pub mod report;
 // Layer 6: running a plan, and sealing what came out.
 pub mod bundle;
+pub mod runner;
+
+// Layer 7: judging what was sealed.
+pub mod verify;
+
+// The shell: files, clock and environment.
+pub mod provenance;
+pub mod store;

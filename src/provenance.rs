@@ -1,0 +1,193 @@
+//! Clock, host and environment: the only user of all three.
+
+use crate::bundle::{Circumstance, Moment, format};
+use std::path::PathBuf;
+use std::time::{Instant, SystemTime, UNIX_EPOCH};
+use thiserror::Error;
+
+/// Why the environment cannot be followed.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum EnvironmentError {
+    /// `SOURCE_DATE_EPOCH` is no number of seconds.
+    #[error("SOURCE_DATE_EPOCH: expected whole seconds since 1970-01-01, found `{0}`")]
+    SourceDateEpoch(String),
+    /// Nothing says where the store should be.
+    #[error("trial store: expected REENACT_STORE, XDG_CACHE_HOME or HOME to say where it is, found none of them set")]
+    NoStore,
+}
+
+/// What the environment asks of the program.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Environment {
+    /// The instant that stands for now in everything sealed, if one is given.
+    pub source_date_epoch: Option<Moment>,
+    /// Where the trial store is: `REENACT_STORE`, else `$XDG_CACHE_HOME/reenact`, else `$HOME/.cache/reenact`.
+    pub store: Option<PathBuf>,
+    /// Whether colours are unwanted (`NO_COLOR` set and not empty).
+    pub no_color: bool,
+    /// Where the original worlds of the studies are, for the tests that compare with them.
+    pub original_worlds: Option<PathBuf>,
+}
+
+impl Environment {
+    /// Reads the process's environment.
+    ///
+    /// # Errors
+    /// Where `SOURCE_DATE_EPOCH` is not a number.
+    pub fn read() -> Result<Self, EnvironmentError> {
+        #[expect(clippy::disallowed_methods, reason = "this is the door to the environment")]
+        Self::from_lookup(|name| std::env::var_os(name).and_then(|value| value.into_string().ok()))
+    }
+
+    /// Reads an environment given as a function; empty values count as unset, as the XDG specification says.
+    ///
+    /// # Errors
+    /// Where `SOURCE_DATE_EPOCH` is not a number.
+    pub fn from_lookup(
+        lookup: impl Fn(&str) -> Option<String>,
+    ) -> Result<Self, EnvironmentError> {
+        let lookup = |name: &str| lookup(name).filter(|value| !value.is_empty());
+        let path = |name: &str| lookup(name).map(PathBuf::from);
+        let source_date_epoch = lookup("SOURCE_DATE_EPOCH")
+            .map(|text| {
+                let seconds = text.parse().ok().filter(|s| (0..253_402_300_800).contains(s));
+                seconds.map(Moment).ok_or(EnvironmentError::SourceDateEpoch(text))
+            })
+            .transpose()?;
+        // Relative XDG paths are invalid and to be ignored.
+        let cache = path("XDG_CACHE_HOME").filter(|path| path.is_absolute());
+        Ok(Self {
+            source_date_epoch,
+            store: path("REENACT_STORE")
+                .or_else(|| cache.map(|cache| cache.join("reenact")))
+                .or_else(|| path("HOME").map(|home| home.join(".cache/reenact"))),
+            no_color: lookup("NO_COLOR").is_some(),
+            original_worlds: path("REENACT_ORIGINAL_WORLDS"),
+        })
+    }
+
+    /// Where the trial store is.
+    ///
+    /// # Errors
+    /// Where nothing says so.
+    pub fn store(&self) -> Result<&PathBuf, EnvironmentError> {
+        self.store.as_ref().ok_or(EnvironmentError::NoStore)
+    }
+}
+
+/// A run's beginning: what its circumstances are told from.
+#[derive(Debug, Clone, Copy)]
+pub struct RunClock {
+    started: Moment,
+    instant: Instant,
+}
+
+impl RunClock {
+    /// Starts the clock.
+    #[expect(clippy::disallowed_methods, reason = "this is the door to the clock")]
+    pub fn start() -> Self {
+        Self { started: now(), instant: Instant::now() }
+    }
+
+    /// Seconds since the start, whatever the calendar did meanwhile.
+    pub fn elapsed_seconds(&self) -> f64 {
+        self.instant.elapsed().as_secs_f64()
+    }
+
+    /// The circumstances of a run that ends now with `jobs` threads; under `SOURCE_DATE_EPOCH` nothing but that instant.
+    pub fn circumstance(&self, environment: &Environment, jobs: usize) -> Circumstance {
+        if let Some(epoch) = environment.source_date_epoch {
+            return Circumstance::reproducible(epoch);
+        }
+        let elapsed = i64::try_from(self.instant.elapsed().as_secs()).unwrap_or(i64::MAX);
+        let mut facts = host();
+        facts.push(("jobs".to_owned(), jobs.to_string()));
+        Circumstance {
+            version: format::VERSION.to_owned(),
+            started: self.started,
+            // Not the calendar's end: a clock that was set back must not end a run before it began.
+            ended: Moment(self.started.0.saturating_add(elapsed)),
+            environment: facts,
+        }
+    }
+}
+
+/// Now; a clock before 1970 reads as 1970.
+#[expect(clippy::disallowed_methods, reason = "this is the door to the clock")]
+fn now() -> Moment {
+    let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |d| d.as_secs());
+    Moment(i64::try_from(seconds).unwrap_or(0))
+}
+
+/// Facts about the host that matter and say nothing of who owns it: no names of users, hosts or folders.
+pub fn host() -> Vec<(String, String)> {
+    let mut facts = vec![
+        ("os".to_owned(), std::env::consts::OS.to_owned()),
+        ("architecture".to_owned(), std::env::consts::ARCH.to_owned()),
+        ("build".to_owned(), if cfg!(debug_assertions) { "debug" } else { "release" }.to_owned()),
+    ];
+    facts.push(("processors".to_owned(), processors().to_string()));
+    facts
+}
+
+/// Processors at our disposal: the default of `--jobs`.
+pub fn processors() -> usize {
+    std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
+}
+
+/// A seed nobody could foresee, for the reviewer's sample where none is given.
+pub fn unforeseen_seed() -> u64 {
+    use std::hash::{BuildHasher as _, Hasher as _};
+    // The standard library keys its hashers from the system's randomness.
+    std::hash::RandomState::new().build_hasher().finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn environment(pairs: &[(&str, &str)]) -> Result<Environment, EnvironmentError> {
+        Environment::from_lookup(|name| {
+            pairs.iter().find(|(key, _)| *key == name).map(|(_, value)| (*value).to_owned())
+        })
+    }
+
+    #[test]
+    fn the_store_is_where_the_nearest_variable_says() {
+        let store = |pairs: &[(&str, &str)]| environment(pairs).unwrap().store;
+        let all = [("REENACT_STORE", "/r"), ("XDG_CACHE_HOME", "/x"), ("HOME", "/h")];
+        assert_eq!(store(&all), Some("/r".into()));
+        assert_eq!(store(&all[1..]), Some("/x/reenact".into()));
+        assert_eq!(store(&all[2..]), Some("/h/.cache/reenact".into()));
+        assert_eq!(store(&[("XDG_CACHE_HOME", "relative"), ("HOME", "/h")]), Some("/h/.cache/reenact".into()));
+        assert_eq!(
+            environment(&[("HOME", "")]).unwrap().store().unwrap_err().to_string(),
+            "trial store: expected REENACT_STORE, XDG_CACHE_HOME or HOME to say where it is, found none of them set"
+        );
+    }
+
+    #[test]
+    fn source_date_epoch_replaces_every_circumstance() {
+        let pinned =
+            environment(&[("SOURCE_DATE_EPOCH", "1768478400"), ("NO_COLOR", "1")]).unwrap();
+        assert!(pinned.no_color);
+        let circumstance = RunClock::start().circumstance(&pinned, 8);
+        assert_eq!(circumstance, Circumstance::reproducible(Moment(1_768_478_400)));
+        for bad in ["tomorrow", "-1", "1e9"] {
+            let error = environment(&[("SOURCE_DATE_EPOCH", bad)]).unwrap_err();
+            assert_eq!(
+                error.to_string(),
+                format!("SOURCE_DATE_EPOCH: expected whole seconds since 1970-01-01, found `{bad}`")
+            );
+        }
+    }
+
+    #[test]
+    fn a_run_ends_after_it_began_and_names_nobody() {
+        let circumstance = RunClock::start().circumstance(&environment(&[]).unwrap(), 3);
+        assert!(circumstance.started <= circumstance.ended && circumstance.started > Moment(1_700_000_000));
+        let names: Vec<_> = circumstance.environment.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(names, ["os", "architecture", "build", "processors", "jobs"]);
+        assert_ne!(unforeseen_seed(), unforeseen_seed());
+    }
+}

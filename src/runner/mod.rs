@@ -1,0 +1,16 @@
+//! Running a plan: trials on all cores, finished ones kept, records back in plan order.
+//!
+//! The runner knows neither files nor terminals: a [`TrialStore`] keeps records, an [`Observer`] hears of progress.
+
+mod event;
+mod executor;
+mod scheduler;
+mod trial_store;
+
+pub use event::{Observer, RunEvent, Silent};
+pub use executor::{Executor, Mock};
+pub use scheduler::{RunError, Scheduler};
+pub use trial_store::{StoreError, TrialStore};
+
+#[cfg(test)]
+mod tests;

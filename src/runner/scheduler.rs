@@ -1,0 +1,106 @@
+//! Trials on all cores. The only file that names the thread pool.
+
+use super::{Executor, Observer, RunEvent, StoreError, TrialStore};
+use crate::studies::{Outcome, TrialRecord, TrialSpec};
+use rayon::prelude::*;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use thiserror::Error;
+
+/// Why a run ended early. Trials that had finished are in the store.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum RunError {
+    /// The threads could not be had.
+    #[error("could not start {jobs} threads: {problem}; try fewer --jobs")]
+    Threads {
+        /// How many were asked for.
+        jobs: usize,
+        /// What the system said.
+        problem: String,
+    },
+    /// The store refused.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+}
+
+/// A pool of its own, so that neither the environment nor other users of the thread pool matter.
+#[derive(Debug)]
+pub struct Scheduler {
+    pool: rayon::ThreadPool,
+}
+
+impl Scheduler {
+    /// A scheduler of `jobs` threads, at least one.
+    ///
+    /// # Errors
+    /// Where the system does not give them.
+    pub fn new(jobs: usize) -> Result<Self, RunError> {
+        let jobs = jobs.max(1);
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(jobs)
+            .thread_name(|i| format!("trial-{i}"))
+            .build()
+            .map_err(|e| RunError::Threads { jobs, problem: e.to_string() })?;
+        Ok(Self { pool })
+    }
+
+    /// Threads at work.
+    pub fn jobs(&self) -> usize {
+        self.pool.current_num_threads()
+    }
+
+    /// The record of every trial of `plan`, in its order, whatever the order they finish in.
+    ///
+    /// Records that `store` has are taken from it; every other goes there as soon as it is finished, so a killed run
+    /// loses nothing but the trials it was at. A panic becomes a record ([`TrialRecord::panicked`]) and is not stored.
+    ///
+    /// # Errors
+    /// The store's first refusal in plan order; trials not yet begun are then left out.
+    pub fn run(
+        &self,
+        plan: &[TrialSpec],
+        executor: &dyn Executor,
+        store: Option<&dyn TrialStore>,
+        observer: &dyn Observer,
+    ) -> Result<Vec<TrialRecord>, RunError> {
+        self.pool.install(|| {
+            let cached: Vec<Option<TrialRecord>> = plan
+                .par_iter()
+                .map(|spec| store.map_or(Ok(None), |store| recall(store, spec)))
+                .collect::<Result<_, _>>()?;
+            let known = cached.iter().flatten().count();
+            observer.notice(&RunEvent::Started { trials: plan.len(), cached: known, jobs: self.jobs() });
+            let finished = cached.into_par_iter().enumerate().with_max_len(1).map(|(index, cached)| {
+                let is_cached = cached.is_some();
+                let record = cached.unwrap_or_else(|| execute(executor, &plan[index]));
+                if let (Some(store), false, true) =
+                    (store, is_cached, record.outcome != Outcome::Panicked)
+                {
+                    store.put(&record)?;
+                }
+                observer.notice(&RunEvent::Finished { index, record: &record, cached: is_cached });
+                Ok(record)
+            });
+            finished.collect()
+        })
+    }
+}
+
+/// The stored record of `spec`.
+fn recall(store: &dyn TrialStore, spec: &TrialSpec) -> Result<Option<TrialRecord>, StoreError> {
+    let Some(mut record) = store.get(&spec.key)? else { return Ok(None) };
+    // A key does not depend on the order in which a manifest writes its factors; the record's bytes do.
+    record.condition.clone_from(&spec.condition.0);
+    record.trial = spec.trial;
+    Ok(Some(record))
+}
+
+fn execute(executor: &dyn Executor, spec: &TrialSpec) -> TrialRecord {
+    catch_unwind(AssertUnwindSafe(|| executor.execute(spec))).unwrap_or_else(|payload| {
+        let cause = payload
+            .downcast_ref::<String>()
+            .map(String::as_str)
+            .or_else(|| payload.downcast_ref::<&str>().copied())
+            .unwrap_or("a panic without a message");
+        TrialRecord::panicked(spec, cause.to_owned())
+    })
+}

@@ -1,0 +1,151 @@
+use super::*;
+use crate::digest::{Sha256Digest, TrialKey};
+use crate::geometry::{Outline, Point, Pose};
+use crate::rng::Seeds;
+use crate::robot::{Drive, DriveKind, Robot};
+use crate::studies::{Condition, Outcome, Setup, TrialRecord, TrialSpec, prior_map};
+use crate::world::World;
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
+
+/// A plan of `trials` trials of which nothing but the identity matters here.
+fn plan(trials: u32) -> Vec<TrialSpec> {
+    let robot = Robot {
+        name: "r".into(),
+        footprint: Outline::Circle { center: Point { x: 0.0, y: 0.0 }, radius: 0.2 },
+        body_z: [0.0, 0.3],
+        mass: 1.0,
+        drive: Drive {
+            kind: DriveKind::Differential,
+            wheel_separation: 0.2,
+            wheel_diameter: 0.1,
+            max_linear: None,
+            max_angular: None,
+        },
+        lidar: None,
+    };
+    let world = World {
+        name: "w".into(),
+        solids: Vec::new(),
+        regions: Vec::new(),
+        tags: Vec::new(),
+        starts: BTreeMap::new(),
+        goals: BTreeMap::new(),
+        warnings: Vec::new(),
+    };
+    let setup = Arc::new(prior_map::Setup {
+        world: Arc::new(world),
+        robot: Arc::new(robot),
+        prior: None,
+        start: Pose::new(0.0, 0.0, 0.0),
+        parameters: prior_map::Parameters::default(),
+    });
+    (0..trials)
+        .map(|trial| TrialSpec {
+            key: TrialKey(Sha256Digest::of(trial.to_le_bytes())),
+            condition: Condition(vec![("prior".into(), "none".into())]),
+            trial,
+            seeds: Seeds::new(1, Vec::new()),
+            setup: Setup::PriorMap(setup.clone()),
+        })
+        .collect()
+}
+
+/// A store in memory, which may be full.
+#[derive(Default)]
+struct Memory {
+    records: Mutex<BTreeMap<TrialKey, TrialRecord>>,
+    capacity: Option<usize>,
+}
+
+impl TrialStore for Memory {
+    fn get(&self, key: &TrialKey) -> Result<Option<TrialRecord>, StoreError> {
+        Ok(self.records.lock().unwrap().get(key).cloned())
+    }
+
+    fn put(&self, record: &TrialRecord) -> Result<(), StoreError> {
+        let mut records = self.records.lock().unwrap();
+        if self.capacity.is_some_and(|capacity| records.len() >= capacity) {
+            return Err(StoreError::Io("disk full".into()));
+        }
+        records.insert(record.key, record.clone());
+        Ok(())
+    }
+}
+
+fn run(jobs: usize, plan: &[TrialSpec], executor: &dyn Executor) -> Vec<TrialRecord> {
+    Scheduler::new(jobs).unwrap().run(plan, executor, None, &Silent).unwrap()
+}
+
+#[test]
+fn neither_threads_nor_order_touch_the_records() {
+    let plan = plan(50);
+    let one = run(1, &plan, &Mock::default());
+    assert_eq!(run(4, &plan, &Mock::default()), one);
+    // Slow trials first: completion order is far from plan order.
+    let uneven = |spec: &TrialSpec| {
+        std::thread::sleep(std::time::Duration::from_micros(u64::from(50 - spec.trial) * 20));
+        Mock::default().execute(spec)
+    };
+    assert_eq!(run(4, &plan, &uneven), one);
+    let mut shuffled = plan.clone();
+    shuffled.sort_by_key(|spec| spec.key);
+    let mut records = run(3, &shuffled, &Mock::default());
+    records.sort_by_key(|record| record.trial);
+    assert_eq!(records, one);
+}
+
+#[test]
+fn a_panic_is_a_record_with_its_cause_and_is_never_stored() {
+    let (plan, store) = (plan(6), Memory::default());
+    let scheduler = Scheduler::new(2).unwrap();
+    let failing = Mock { panicking: vec![2, 4] };
+    let records = scheduler.run(&plan, &failing, Some(&store), &Silent).unwrap();
+    assert_eq!(records[2].outcome, Outcome::Panicked);
+    assert_eq!(records[2].cause, "trial 2 was told to fail");
+    assert_eq!(store.records.lock().unwrap().len(), 4);
+    // Next time only those two run.
+    let executed = AtomicUsize::new(0);
+    let counting = |spec: &TrialSpec| {
+        executed.fetch_add(1, Ordering::Relaxed);
+        Mock::default().execute(spec)
+    };
+    let resumed = scheduler.run(&plan, &counting, Some(&store), &Silent).unwrap();
+    assert_eq!(executed.load(Ordering::Relaxed), 2);
+    assert_eq!(resumed, run(1, &plan, &Mock::default()), "resumed equals uninterrupted");
+}
+
+#[test]
+fn events_tell_every_trial_once() {
+    let (plan, store) = (plan(5), Memory::default());
+    let scheduler = Scheduler::new(2).unwrap();
+    scheduler.run(&plan[..2], &Mock::default(), Some(&store), &Silent).unwrap();
+    let events = Mutex::new(Vec::new());
+    let observer = |event: &RunEvent<'_>| {
+        events.lock().unwrap().push(match *event {
+            RunEvent::Started { trials, cached, jobs } => format!("{trials} trials, {cached} cached, {jobs} jobs"),
+            RunEvent::Finished { index, record, cached } => {
+                assert_eq!(record.trial as usize, index);
+                format!("{index} {cached}")
+            }
+        });
+    };
+    scheduler.run(&plan, &Mock::default(), Some(&store), &observer).unwrap();
+    let mut events = events.into_inner().unwrap();
+    assert_eq!(events.remove(0), "5 trials, 2 cached, 2 jobs");
+    events.sort();
+    assert_eq!(events, ["0 true", "1 true", "2 false", "3 false", "4 false"]);
+}
+
+#[test]
+fn a_full_disk_ends_the_run_and_keeps_what_was_stored() {
+    let store = Memory { capacity: Some(3), ..Memory::default() };
+    let error =
+        Scheduler::new(2).unwrap().run(&plan(20), &Mock::default(), Some(&store), &Silent).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "trial store: disk full; free some space, allow writing, or choose another place with REENACT_STORE"
+    );
+    assert_eq!(store.records.lock().unwrap().len(), 3);
+}

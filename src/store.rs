@@ -1,0 +1,309 @@
+//! Files: the only user of the file system besides the command line. Everything is written whole or not at all.
+
+use crate::bundle::{Archive, Fault, archive};
+use crate::digest::{Sha256Digest, TrialKey};
+use crate::runner::{StoreError, TrialStore};
+use crate::studies::{Outcome, TrialRecord};
+use fs_err as fs;
+use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
+
+/// Finished trials in a directory: `ab/<key>.json`, one file each, safe to share between processes.
+///
+/// A file is `{"sha256":"<of the record's line>","record":<the line>}`. One that a crash or a failing disk left
+/// damaged does not match its digest, counts as absent and is replaced.
+#[derive(Debug, Clone)]
+pub struct DirectoryStore {
+    root: PathBuf,
+}
+
+impl DirectoryStore {
+    /// The store at `root`, created when first written to.
+    pub fn new(root: impl Into<PathBuf>) -> Self {
+        Self { root: root.into() }
+    }
+
+    /// Where it is.
+    pub fn root(&self) -> &Path {
+        &self.root
+    }
+
+    fn path(&self, key: &TrialKey) -> PathBuf {
+        let hex = key.hex();
+        self.root.join(&hex[..2]).join(format!("{hex}.json"))
+    }
+
+    /// Number of records and their bytes.
+    ///
+    /// # Errors
+    /// Where the directory cannot be read; an absent one is empty.
+    pub fn size(&self) -> io::Result<(usize, u64)> {
+        let (mut records, mut bytes) = (0, 0);
+        if !self.root.exists() {
+            return Ok((0, 0));
+        }
+        for folder in fs::read_dir(&self.root)? {
+            let folder = folder?.path();
+            if !folder.is_dir() {
+                continue;
+            }
+            for file in fs::read_dir(&folder)? {
+                let file = file?;
+                if file.path().extension().is_some_and(|e| e == "json") {
+                    records += 1;
+                    bytes += file.metadata()?.len();
+                }
+            }
+        }
+        Ok((records, bytes))
+    }
+}
+
+impl TrialStore for DirectoryStore {
+    fn get(&self, key: &TrialKey) -> Result<Option<TrialRecord>, StoreError> {
+        match fs::read(self.path(key)) {
+            Ok(bytes) => Ok(decode(&bytes).filter(|record| record.key == *key)),
+            Err(e) if e.kind() == io::ErrorKind::NotFound => Ok(None),
+            Err(e) => Err(StoreError::Io(e.to_string())),
+        }
+    }
+
+    fn put(&self, record: &TrialRecord) -> Result<(), StoreError> {
+        let key = record.key;
+        if record.outcome == Outcome::Panicked {
+            return Err(StoreError::Panicked { key, cause: record.cause.clone() });
+        }
+        let refused = |e: io::Error| StoreError::Io(e.to_string());
+        let path = self.path(&key);
+        let folder = path.parent().unwrap_or(&self.root);
+        fs::create_dir_all(folder).map_err(refused)?;
+        let mut file = temporary(folder).map_err(refused)?;
+        file.write_all(&encode(record)).and_then(|()| file.as_file().sync_all()).map_err(refused)?;
+        // Whoever comes second compares: two processes may finish the same trial at once.
+        match file.persist_noclobber(&path) {
+            Ok(_) => sync_folder(folder).map_err(refused),
+            Err(e) if e.error.kind() == io::ErrorKind::AlreadyExists => match self.get(&key)? {
+                Some(stored) if stored.to_line() == record.to_line() => Ok(()),
+                Some(stored) => Err(StoreError::conflict(&stored, record)),
+                None => {
+                    // Damaged: the fresh record takes its place.
+                    e.file.persist(&path).map_err(|e| refused(e.error))?;
+                    sync_folder(folder).map_err(refused)
+                }
+            },
+            Err(e) => Err(refused(e.error)),
+        }
+    }
+}
+
+fn encode(record: &TrialRecord) -> Vec<u8> {
+    let line = record.to_line();
+    format!("{{\"sha256\":\"{}\",\"record\":{line}}}\n", Sha256Digest::of(&line)).into_bytes()
+}
+
+fn decode(bytes: &[u8]) -> Option<TrialRecord> {
+    let text = std::str::from_utf8(bytes).ok()?;
+    let (digest, rest) = text.strip_prefix("{\"sha256\":\"")?.split_at_checked(64)?;
+    let line = rest.strip_prefix("\",\"record\":")?.strip_suffix("}\n")?;
+    let whole = Sha256Digest::from_hex(digest)? == Sha256Digest::of(line);
+    whole.then(|| TrialRecord::from_line(line).ok())?
+}
+
+/// Publishes `bytes` as `directory/name`: written beside it, made durable, renamed. A reader sees the old file or the
+/// new one, never a part.
+///
+/// # Errors
+/// Where the file system refuses.
+pub fn publish(directory: &Path, name: &str, bytes: &[u8]) -> io::Result<PathBuf> {
+    fs::create_dir_all(directory)?;
+    let path = directory.join(name);
+    let mut file = temporary(directory)?;
+    file.write_all(bytes)?;
+    file.as_file().sync_all()?;
+    file.persist(&path).map_err(|e| e.error)?;
+    sync_folder(directory)?;
+    Ok(path)
+}
+
+/// A file that is renamed into place, or vanishes.
+fn temporary(directory: &Path) -> io::Result<tempfile::NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".partial-");
+    // Others may read bundles and share stores: the temporary file's own mode would be for its owner only.
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt as _;
+        builder.permissions(std::fs::Permissions::from_mode(0o644));
+    }
+    builder.tempfile_in(directory)
+}
+
+/// Makes a rename last through a power cut. Windows has no such call and needs none.
+fn sync_folder(directory: &Path) -> io::Result<()> {
+    if cfg!(unix) { fs::File::open(directory)?.sync_all() } else { Ok(()) }
+}
+
+/// Reads an input file.
+///
+/// # Errors
+/// Where it cannot be read, naming it.
+pub fn read(path: &Path) -> io::Result<Vec<u8>> {
+    fs::read(path)
+}
+
+/// Opens a bundle: a zip, or a folder that holds a bag or a crate. What is wrong with it is data, not an error.
+///
+/// # Errors
+/// Where the path cannot be read at all.
+pub fn open_bundle(
+    path: &Path,
+    limits: &archive::Limits,
+) -> io::Result<Result<Archive, Vec<Fault>>> {
+    let too_big = |bytes: u64| {
+        let expected = format!("at most {} bytes", limits.bytes);
+        Ok(Err(vec![Fault::new("(archive)", expected, format!("{bytes} bytes"))]))
+    };
+    let metadata = fs::metadata(path)?;
+    if !metadata.is_dir() {
+        if metadata.len() > limits.bytes {
+            return too_big(metadata.len());
+        }
+        return Ok(archive::read(&fs::read(path)?, limits));
+    }
+    let (mut files, mut faults, mut total) = (Vec::new(), Vec::new(), 0);
+    let mut folders = vec![(path.to_owned(), String::new())];
+    while let Some((folder, prefix)) = folders.pop() {
+        for entry in fs::read_dir(&folder)? {
+            let entry = entry?;
+            let name = format!("{prefix}{}", entry.file_name().to_string_lossy());
+            let kind = entry.file_type()?;
+            if kind.is_dir() {
+                folders.push((entry.path(), format!("{name}/")));
+            } else if kind.is_file() {
+                total += entry.metadata()?.len();
+                if total > limits.bytes {
+                    return too_big(total);
+                }
+                if files.len() >= limits.entries {
+                    let expected = format!("at most {} files", limits.entries);
+                    return Ok(Err(vec![Fault::new("(archive)", expected, "more")]));
+                }
+                files.push((name, fs::read(entry.path())?));
+            } else {
+                let found = if kind.is_symlink() { "a symbolic link" } else { "a special file" };
+                faults.push(Fault::new(name, "a plain file", found));
+            }
+        }
+    }
+    if faults.is_empty() {
+        Ok(archive::from_files(files))
+    } else {
+        faults.sort();
+        Ok(Err(faults))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bundle::{Form, Limits, sample};
+
+    #[test]
+    fn records_survive_and_damage_is_replaced() {
+        let directory = tempfile::tempdir().unwrap();
+        let store = DirectoryStore::new(directory.path().join("new/store"));
+        let record = sample::record(7, "none", 0);
+        assert_eq!(store.size().unwrap(), (0, 0));
+        assert_eq!(store.get(&record.key).unwrap(), None);
+        store.put(&record).unwrap();
+        store.put(&record).unwrap();
+        assert_eq!(store.get(&record.key).unwrap().as_ref(), Some(&record));
+        assert_eq!(store.size().unwrap().0, 1);
+        let path = store.path(&record.key);
+        assert!(path.ends_with(format!("{}/{}.json", &record.key.hex()[..2], record.key)));
+        let whole = fs::read(&path).unwrap();
+        for cut in [0, 1, whole.len() / 2, whole.len() - 1] {
+            fs::write(&path, &whole[..cut]).unwrap();
+            assert_eq!(store.get(&record.key).unwrap(), None, "a torn file is no record");
+        }
+        store.put(&record).unwrap();
+        assert_eq!(fs::read(&path).unwrap(), whole);
+        let left: Vec<_> = fs::read_dir(path.parent().unwrap()).unwrap().collect();
+        assert_eq!(left.len(), 1, "no temporary file stays");
+    }
+
+    #[test]
+    fn two_results_for_one_key_are_a_hard_error() {
+        let directory = tempfile::tempdir().unwrap();
+        let store = DirectoryStore::new(directory.path());
+        let stored = sample::record(7, "none", 0);
+        store.put(&stored).unwrap();
+        let mut fresh = stored.clone();
+        fresh.chain[1] = "0".repeat(16);
+        let expected = format!(
+            "trial {}: expected the record in the store (sha256:{}), found another (sha256:{}) whose states first differ \
+             between 10 s and 20 s of simulated time; equal keys must give equal bytes, so please report it, with both \
+             records",
+            stored.key,
+            Sha256Digest::of(stored.to_line()),
+            Sha256Digest::of(fresh.to_line())
+        );
+        assert_eq!(store.put(&fresh).unwrap_err().to_string(), expected);
+        assert_eq!(store.get(&stored.key).unwrap(), Some(stored.clone()), "the first stays");
+        fresh.outcome = Outcome::Panicked;
+        fresh.cause = "index out of bounds".into();
+        assert_eq!(
+            store.put(&fresh).unwrap_err().to_string(),
+            format!(
+                "trial {}: expected a result to store, found a panic (index out of bounds); panics are never stored",
+                stored.key
+            )
+        );
+    }
+
+    #[test]
+    fn many_writers_agree() {
+        let directory = tempfile::tempdir().unwrap();
+        let store = DirectoryStore::new(directory.path());
+        std::thread::scope(|scope| {
+            for _ in 0..4 {
+                scope.spawn(|| {
+                    for trial in 0..20 {
+                        store.put(&sample::record(7, "none", trial)).unwrap();
+                    }
+                });
+            }
+        });
+        assert_eq!(store.size().unwrap().0, 20);
+    }
+
+    #[test]
+    fn bundles_are_published_whole_and_opened_as_zip_or_folder() {
+        let directory = tempfile::tempdir().unwrap();
+        let sealed = sample::sealed();
+        let zip = sealed.zip(Form::Bag);
+        let path = publish(&directory.path().join("out"), &sealed.file_name(), &zip).unwrap();
+        publish(&directory.path().join("out"), &sealed.file_name(), &zip).unwrap();
+        assert_eq!(fs::read_dir(directory.path().join("out")).unwrap().count(), 1);
+        let opened = open_bundle(&path, &Limits::default()).unwrap().unwrap();
+        assert_eq!(opened.tree, sealed.tree);
+
+        let folder = directory.path().join("folder");
+        for (path, bytes) in &sealed.tree {
+            fs::create_dir_all(folder.join(path).parent().unwrap()).unwrap();
+            fs::write(folder.join(path), bytes).unwrap();
+        }
+        let opened = open_bundle(&folder, &Limits::default()).unwrap().unwrap();
+        assert_eq!(opened.tree, sealed.tree);
+        let small = Limits { bytes: 1000, ..Limits::default() };
+        let faults = open_bundle(&path, &small).unwrap().unwrap_err();
+        assert!(faults[0].to_string().starts_with("(archive): expected at most 1000 bytes, found "));
+        #[cfg(unix)]
+        {
+            std::os::unix::fs::symlink("/etc/passwd", folder.join("data/link")).unwrap();
+            let faults = open_bundle(&folder, &Limits::default()).unwrap().unwrap_err();
+            assert_eq!(faults[0].to_string(), "data/link: expected a plain file, found a symbolic link");
+        }
+        assert!(open_bundle(&directory.path().join("absent"), &Limits::default()).is_err());
+    }
+}

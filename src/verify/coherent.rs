@@ -1,0 +1,174 @@
+//! Level 2: the crate's metadata, the bag's facts, the resolved study, the inputs and the records agree.
+
+use crate::bundle::{Bundle, Fault, Tree, bag, format, results_digest};
+use crate::digest::{FileDigest, Sha256Digest, TrialKey};
+use crate::studies::TrialRecord;
+use serde_json::Value;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// What the bag says of its payload against the payload.
+pub(super) fn bag_facts(tree: &Tree) -> Vec<Fault> {
+    let Some(info) = tree.get(format::BAG_INFO).map(|bytes| bag::BagInfo::parse(bytes)) else {
+        return Vec::new();
+    };
+    let payload = tree.iter().filter(|(path, _)| path.starts_with(format::PAYLOAD));
+    let (files, octets) = payload.fold((0, 0), |(n, sum), (_, bytes)| (n + 1, sum + bytes.len()));
+    let mut stated = vec![
+        ("Payload-Oxum", format!("{octets}.{files}")),
+        ("Results-Digest", format!("sha256:{}", results_digest(tree))),
+    ];
+    if let Some(resolved) = tree.get(&payload_path(format::RESOLVED)) {
+        stated.push(("Study-Digest", format!("sha256:{}", Sha256Digest::of(resolved))));
+    }
+    stated
+        .into_iter()
+        .filter(|(label, value)| info.get(label) != Some(value))
+        .map(|(label, value)| {
+            let found = info.get(label).unwrap_or("nothing");
+            Fault::new(format::BAG_INFO, format!("{label}: {value}"), found)
+        })
+        .collect()
+}
+
+/// Digests and sizes in the crate's metadata against the files, in both directions.
+pub(super) fn crate_metadata(tree: &Tree) -> Vec<Fault> {
+    let metadata = payload_path(format::METADATA);
+    let graph = tree
+        .get(&metadata)
+        .ok_or_else(|| "no file".to_owned())
+        .and_then(|bytes| serde_json::from_slice::<Value>(bytes).map_err(|e| e.to_string()))
+        .and_then(|document| match document.get("@graph") {
+            Some(Value::Array(entities)) => Ok(entities.clone()),
+            _ => Err("no graph".to_owned()),
+        });
+    let graph = match graph {
+        Ok(graph) => graph,
+        Err(found) => return vec![Fault::new(metadata, "an RO-Crate's metadata", found)],
+    };
+    let mut faults = Vec::new();
+    let mut described = BTreeSet::new();
+    for entity in &graph {
+        let text = |key: &str| entity.get(key).and_then(Value::as_str).unwrap_or_default();
+        let id = text("@id");
+        if id == "#results-digest" {
+            let expected = format!("sha256:{}", results_digest(tree));
+            if text("value") != expected {
+                faults.push(Fault::new(&metadata, format!("results digest {expected}"), text("value")));
+            }
+        }
+        let is_file = match entity.get("@type") {
+            Some(Value::Array(kinds)) => kinds.iter().any(|kind| kind == "File"),
+            kind => kind.is_some_and(|kind| kind == "File"),
+        };
+        if !is_file {
+            continue;
+        }
+        described.insert(payload_path(id));
+        match tree.get(&payload_path(id)) {
+            None => faults.push(Fault::new(payload_path(id), "a file, as the crate describes it", "none")),
+            Some(bytes) => {
+                let (digest, size) = (Sha256Digest::of(bytes).hex(), bytes.len().to_string());
+                for (key, truth) in [("sha256", digest), ("contentSize", size)] {
+                    if text(key) != truth {
+                        let said = if text(key).is_empty() { "nothing" } else { text(key) };
+                        let expected = format!("{key} {truth} for `{id}`, as the file is");
+                        faults.push(Fault::new(&metadata, expected, said));
+                    }
+                }
+            }
+        }
+    }
+    for path in tree.keys().filter(|path| path.starts_with(format::PAYLOAD)) {
+        let own = [payload_path(format::METADATA), payload_path(format::PREVIEW)].contains(path);
+        if !own && !described.contains(path) {
+            faults.push(Fault::new(path, "a file that the crate describes", "one that it does not"));
+        }
+    }
+    faults
+}
+
+/// The resolved study against inputs and records.
+pub(super) fn contents(bundle: &Bundle) -> Vec<Fault> {
+    let mut faults = Vec::new();
+    let mut known = BTreeSet::new();
+    for input in bundle.inputs() {
+        known.insert(payload_path(&input.path));
+        let digest = bundle.tree().get(&payload_path(&input.path)).map(|b| FileDigest(Sha256Digest::of(b)));
+        if digest != Some(input.sha256) {
+            faults.push(Fault::new(
+                payload_path(&input.path),
+                format!("sha256:{}, as the resolved study says of `{}`", input.sha256, input.as_written),
+                digest.map_or("no file".to_owned(), |digest| format!("sha256:{digest}")),
+            ));
+        }
+    }
+    let mut keys = BTreeMap::new();
+    for condition in bundle.conditions() {
+        let path = payload_path(&format::records_path(&condition.slug));
+        if !known.insert(path.clone()) {
+            faults.push(Fault::new(payload_path(format::RESOLVED), "every condition once", condition.slug.as_str()));
+            continue;
+        }
+        let count = bundle.record_lines(&condition.slug).count();
+        if count != condition.trials {
+            let expected = format!("{} records, as the resolved study says", condition.trials);
+            faults.push(Fault::new(&path, expected, count.to_string()));
+        }
+        let whole = bundle.tree().get(&path).is_none_or(|b| b.is_empty() || b.ends_with(b"\n"));
+        if !whole {
+            let hint = "the file may have been cut short";
+            faults.push(Fault::new(&path, "a line feed at its end", "none").hint(hint));
+        }
+        faults.extend(records(bundle, &condition.slug, &path, &mut keys));
+    }
+    for path in bundle.tree().keys() {
+        let claimed = [format::INPUTS, format::TRIALS].iter().any(|d| path.starts_with(&payload_path(d)));
+        if claimed && !known.contains(path) {
+            faults.push(Fault::new(path, "a file that the resolved study names", "one that it does not"));
+        }
+    }
+    faults
+}
+
+/// The records of one condition: each whole, in its place, and under a key of its own.
+fn records(
+    bundle: &Bundle,
+    slug: &str,
+    path: &str,
+    keys: &mut BTreeMap<TrialKey, String>,
+) -> Vec<Fault> {
+    let mut faults = Vec::new();
+    let mut next = 0;
+    for (i, line) in bundle.record_lines(slug).enumerate() {
+        let place = format!("{path}:{}", i + 1);
+        let record = match TrialRecord::from_line(line) {
+            Ok(record) => record,
+            Err(problem) => {
+                faults.push(Fault::new(place, "a trial record", problem));
+                next += 1;
+                continue;
+            }
+        };
+        if record.to_line() != line {
+            faults.push(Fault::new(&place, "canonical JSON", "the same record spelt otherwise"));
+        }
+        if record.condition().slug() != slug {
+            let expected = format!("a record of the condition `{slug}`");
+            faults.push(Fault::new(&place, expected, format!("one of `{}`", record.condition().slug())));
+        }
+        // A shard or a selection may leave trials out, never change their order.
+        let in_order = if bundle.is_partial() { record.trial >= next } else { record.trial == next };
+        if !in_order {
+            faults.push(Fault::new(&place, format!("trial {next}"), format!("trial {}", record.trial)));
+        }
+        next = record.trial.saturating_add(1);
+        if let Some(other) = keys.insert(record.key, place.clone()) {
+            faults.push(Fault::new(&place, "a key of its own", format!("that of {other}")));
+        }
+    }
+    faults
+}
+
+fn payload_path(path: &str) -> String {
+    format!("{}{path}", format::PAYLOAD)
+}

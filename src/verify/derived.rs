@@ -1,0 +1,116 @@
+//! Level 3: the trials are those of the manifest, and sealing its records again gives the same bundle.
+
+use super::{PlannedTrial, Replanned, difference};
+use crate::bundle::{Bundle, Circumstance, Fault, Form, Moment, Tree, format, in_result_half, seal};
+use crate::studies::TrialRecord;
+
+/// Everything that does not follow from the manifest, the inputs and the records; and what could not be judged.
+pub(super) fn check(bundle: &Bundle, replanned: &dyn Replanned) -> (Vec<Fault>, Option<Fault>) {
+    let mut faults = trials(bundle, &replanned.trials());
+    let content = match replanned.content() {
+        Ok(content) => content,
+        // Records of other trials need not make results.
+        Err(_) if !faults.is_empty() => return (faults, None),
+        Err(problem) => {
+            let path = format!("{}{}", format::PAYLOAD, format::TRIALS);
+            faults.push(Fault::new(path, "records that make results", problem));
+            return (faults, None);
+        }
+    };
+    // The circumstance half is derived as well where the bag tells the circumstances and this version wrote it.
+    let told = bundle.circumstance().filter(|c| c.version == format::VERSION);
+    let circumstance = told.clone().unwrap_or(Circumstance::reproducible(Moment(0)));
+    let derived = match seal(&content, &circumstance) {
+        Ok(sealed) => sealed.tree,
+        Err(problem) => {
+            faults.push(Fault::new(format::PAYLOAD, "content that can be sealed", problem.to_string()));
+            return (faults, None);
+        }
+    };
+    let mut differing = files(bundle.tree(), &derived, in_result_half);
+    if differing.is_empty() && told.is_some() {
+        // Digests of differing results stand in these: only without such differences do they say anything new.
+        differing = files(bundle.tree(), &derived, |path| !in_result_half(path));
+    }
+    faults.extend(differing);
+    let note = told.is_none().then(|| {
+        let found = match bundle.form() {
+            Form::Crate => "a crate without its bag".to_owned(),
+            _ => bundle.circumstance().map_or("none".to_owned(), |c| format!("those of reenact {}", c.version)),
+        };
+        Fault::new(format::BAG_INFO, format!("circumstances as reenact {} writes them", format::VERSION), found)
+            .hint("metadata, preview and README were not derived again; the results were")
+    });
+    (faults, note)
+}
+
+/// Planned trials against records: one fault a condition, however many of its trials differ.
+fn trials(bundle: &Bundle, planned: &[PlannedTrial]) -> Vec<Fault> {
+    let mut faults = Vec::new();
+    let mut slugs: Vec<&str> = Vec::new();
+    for trial in planned {
+        if slugs.last() != Some(&trial.slug.as_str()) {
+            slugs.push(&trial.slug);
+        }
+    }
+    let sealed: Vec<&str> = bundle.conditions().iter().map(|c| c.slug.as_str()).collect();
+    if slugs != sealed {
+        faults.push(Fault::new(
+            format!("{}{}", format::PAYLOAD, format::RESOLVED),
+            format!("the conditions that the manifest plans: {}", slugs.join(", ")),
+            sealed.join(", "),
+        ));
+    }
+    for slug in sealed {
+        let planned: Vec<_> = planned.iter().filter(|trial| trial.slug == slug).collect();
+        let records: Vec<_> =
+            bundle.record_lines(slug).map(|line| TrialRecord::from_line(line).ok()).collect();
+        let path = format!("{}{}", format::PAYLOAD, format::records_path(slug));
+        if planned.len() != records.len() {
+            let expected = format!("{} trials, as the manifest plans", planned.len());
+            faults.push(Fault::new(&path, expected, records.len().to_string()));
+        }
+        let wrong: Vec<usize> = planned
+            .iter()
+            .zip(&records)
+            .enumerate()
+            .filter(|(_, (planned, record))| {
+                record.as_ref().map(|r| (r.key, r.trial)) != Some((planned.key, planned.trial))
+            })
+            .map(|(i, _)| i)
+            .collect();
+        if let Some(&first) = wrong.first() {
+            let found = records[first].as_ref().map_or("no record".to_owned(), |r| format!("trial {} with key {}", r.trial, r.key.short()));
+            let more = if wrong.len() > 1 { format!(", and {} more", wrong.len() - 1) } else { String::new() };
+            faults.push(
+                Fault::new(
+                    format!("{path}:{}", first + 1),
+                    format!("trial {} with key {}, as the manifest plans", planned[first].trial, planned[first].key.short()),
+                    format!("{found}{more}"),
+                )
+                .hint("the manifest, an input, the seed or the record was changed after the run"),
+            );
+        }
+    }
+    faults
+}
+
+/// Payload files of `found` that differ from those of `derived`, among those whose path within the payload `counts`.
+fn files(found: &Tree, derived: &Tree, counts: impl Fn(&str) -> bool) -> Vec<Fault> {
+    let counts = |path: &str| path.strip_prefix(format::PAYLOAD).is_some_and(&counts);
+    let mut faults = Vec::new();
+    for (path, expected) in derived.iter().filter(|(path, _)| counts(path)) {
+        match found.get(path) {
+            None => faults.push(Fault::new(path, "a file that follows from the records", "none")),
+            Some(bytes) if bytes != expected => {
+                let (expected, found) = difference::first(path, expected, bytes);
+                faults.push(Fault::new(path, format!("{expected}, as the records give"), found));
+            }
+            Some(_) => {}
+        }
+    }
+    for path in found.keys().filter(|path| counts(path) && !derived.contains_key(*path)) {
+        faults.push(Fault::new(path, "only files that follow from the records", "one that does not"));
+    }
+    faults
+}

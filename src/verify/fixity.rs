@@ -1,0 +1,62 @@
+//! Level 1: every listed file is there unchanged, and nothing else is.
+
+use crate::bundle::{Archive, Fault, Form, bag, format};
+use crate::digest::Sha256Digest;
+use std::collections::BTreeMap;
+
+/// Everything that breaks fixity.
+pub(super) fn check(archive: &Archive) -> Vec<Fault> {
+    let tree = &archive.tree;
+    // A crate without its bag has no list but its own metadata, which level 2 holds against the files.
+    if archive.form == Form::Crate {
+        return Vec::new();
+    }
+    let mut faults = Vec::new();
+    match tree.get(format::BAGIT).map(|bytes| String::from_utf8_lossy(bytes)) {
+        Some(text) if text.lines().eq(bag::DECLARATION.lines()) => {}
+        _ => faults.push(Fault::new(format::BAGIT, "the declaration of BagIt 1.0 in UTF-8", "another")),
+    }
+    let mut listed = BTreeMap::new();
+    for file in [format::MANIFEST, format::TAG_MANIFEST] {
+        let Some(bytes) = tree.get(file) else {
+            faults.push(Fault::new(file, "a list of digests", "no file"));
+            continue;
+        };
+        match bag::parse_manifest(file, bytes) {
+            Ok(entries) => {
+                for (path, digest) in entries {
+                    let payload = path.starts_with(format::PAYLOAD);
+                    if payload == (file == format::MANIFEST) {
+                        listed.insert(path, (digest, file));
+                    } else {
+                        let expected = if payload { "tag files only" } else { "payload files only" };
+                        faults.push(Fault::new(file, expected, format!("`{path}`")));
+                    }
+                }
+            }
+            Err(problems) => faults.extend(problems),
+        }
+    }
+    for (path, (digest, file)) in &listed {
+        match tree.get(path) {
+            None => faults.push(Fault::new(path, format!("a file, as {file} lists it"), "none")),
+            Some(bytes) if Sha256Digest::of(bytes) != *digest => faults.push(Fault::new(
+                path,
+                format!("sha256:{digest}, as {file} says"),
+                format!("sha256:{}", Sha256Digest::of(bytes)),
+            )),
+            Some(_) => {}
+        }
+    }
+    for path in tree.keys() {
+        let exempt = path == format::TAG_MANIFEST || format::SIGNATURES.contains(&path.as_str());
+        if !exempt && !listed.contains_key(path) {
+            let list = if path.starts_with(format::PAYLOAD) { format::MANIFEST } else { format::TAG_MANIFEST };
+            faults.push(Fault::new(path, format!("only files that {list} lists"), "an unlisted file"));
+        }
+    }
+    if tree.contains_key("fetch.txt") {
+        faults.push(Fault::new("fetch.txt", "a bundle that holds all its files", "a list of files to fetch"));
+    }
+    faults
+}

@@ -1,0 +1,22 @@
+//! Is this bundle what it says? A ladder from "safe to open" to "every trial again, bit for bit".
+//!
+//! [`climb`] collects every [`Finding`] of the levels asked for and reports the rung reached. Checksums (level 1) only
+//! show that nothing changed since they were computed; from level 3 on, a forger would have to make the engine agree.
+
+mod coherent;
+mod derived;
+mod difference;
+mod finding;
+mod fixity;
+mod ladder;
+mod pipeline;
+mod reexecution;
+mod report;
+
+#[cfg(test)]
+mod tests;
+
+pub use finding::{Finding, Level, Severity};
+pub use ladder::{Options, Report, Verdict, climb};
+pub use pipeline::{Pipeline, PlannedTrial, Replanned};
+pub use reexecution::Sample;

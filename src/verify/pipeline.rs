@@ -1,0 +1,43 @@
+//! What verification asks of the program that ran the study, kept to what levels 3 to 5 need.
+
+use crate::bundle::{Bundle, BundleContent};
+use crate::digest::TrialKey;
+
+/// The way from a manifest to trials, as `run` goes it.
+pub trait Pipeline {
+    /// The engine of this program: bundles of another can be judged up to level 2.
+    fn engine(&self) -> &str;
+
+    /// Plans the study again from the bundle's manifest, inputs and overrides alone.
+    ///
+    /// # Errors
+    /// Where they do not make a plan, in words.
+    fn replan<'a>(&'a self, bundle: &'a Bundle) -> Result<Box<dyn Replanned + 'a>, String>;
+}
+
+/// A study planned again from a bundle.
+pub trait Replanned {
+    /// Every trial, in plan order.
+    fn trials(&self) -> Vec<PlannedTrial>;
+
+    /// What `run` would seal, given the bundle's records: the very function that `run` calls, so that whatever is not a
+    /// record, an input or the manifest is derived anew.
+    ///
+    /// # Errors
+    /// Where the records do not make results, in words.
+    fn content(&self) -> Result<BundleContent, String>;
+
+    /// Executes the trials at `indices` of the plan again, never from a store; their record lines in that order.
+    fn execute(&self, indices: &[usize]) -> Vec<String>;
+}
+
+/// One trial as the plan has it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PlannedTrial {
+    /// Its identity.
+    pub key: TrialKey,
+    /// The slug of its condition.
+    pub slug: String,
+    /// Its number within the condition.
+    pub trial: u32,
+}
