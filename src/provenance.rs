@@ -12,7 +12,9 @@ pub enum EnvironmentError {
     #[error("SOURCE_DATE_EPOCH: expected whole seconds since 1970-01-01, found `{0}`")]
     SourceDateEpoch(String),
     /// Nothing says where the store should be.
-    #[error("trial store: expected REENACT_STORE, XDG_CACHE_HOME or HOME to say where it is, found none of them set")]
+    #[error(
+        "trial store: expected REENACT_STORE, XDG_CACHE_HOME or HOME to say where it is, found none of them set"
+    )]
     NoStore,
 }
 
@@ -43,9 +45,7 @@ impl Environment {
     ///
     /// # Errors
     /// Where `SOURCE_DATE_EPOCH` is not a number.
-    pub fn from_lookup(
-        lookup: impl Fn(&str) -> Option<String>,
-    ) -> Result<Self, EnvironmentError> {
+    pub fn from_lookup(lookup: impl Fn(&str) -> Option<String>) -> Result<Self, EnvironmentError> {
         let lookup = |name: &str| lookup(name).filter(|value| !value.is_empty());
         let path = |name: &str| lookup(name).map(PathBuf::from);
         let source_date_epoch = lookup("SOURCE_DATE_EPOCH")
@@ -159,7 +159,10 @@ mod tests {
         assert_eq!(store(&all), Some("/r".into()));
         assert_eq!(store(&all[1..]), Some("/x/reenact".into()));
         assert_eq!(store(&all[2..]), Some("/h/.cache/reenact".into()));
-        assert_eq!(store(&[("XDG_CACHE_HOME", "relative"), ("HOME", "/h")]), Some("/h/.cache/reenact".into()));
+        assert_eq!(
+            store(&[("XDG_CACHE_HOME", "relative"), ("HOME", "/h")]),
+            Some("/h/.cache/reenact".into())
+        );
         assert_eq!(
             environment(&[("HOME", "")]).unwrap().store().unwrap_err().to_string(),
             "trial store: expected REENACT_STORE, XDG_CACHE_HOME or HOME to say where it is, found none of them set"
@@ -177,7 +180,9 @@ mod tests {
             let error = environment(&[("SOURCE_DATE_EPOCH", bad)]).unwrap_err();
             assert_eq!(
                 error.to_string(),
-                format!("SOURCE_DATE_EPOCH: expected whole seconds since 1970-01-01, found `{bad}`")
+                format!(
+                    "SOURCE_DATE_EPOCH: expected whole seconds since 1970-01-01, found `{bad}`"
+                )
             );
         }
     }
@@ -185,8 +190,12 @@ mod tests {
     #[test]
     fn a_run_ends_after_it_began_and_names_nobody() {
         let circumstance = RunClock::start().circumstance(&environment(&[]).unwrap(), 3);
-        assert!(circumstance.started <= circumstance.ended && circumstance.started > Moment(1_700_000_000));
-        let names: Vec<_> = circumstance.environment.iter().map(|(name, _)| name.as_str()).collect();
+        assert!(
+            circumstance.started <= circumstance.ended
+                && circumstance.started > Moment(1_700_000_000)
+        );
+        let names: Vec<_> =
+            circumstance.environment.iter().map(|(name, _)| name.as_str()).collect();
         assert_eq!(names, ["os", "architecture", "build", "processors", "jobs"]);
         assert_ne!(unforeseen_seed(), unforeseen_seed());
     }

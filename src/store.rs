@@ -78,7 +78,9 @@ impl TrialStore for DirectoryStore {
         let folder = path.parent().unwrap_or(&self.root);
         fs::create_dir_all(folder).map_err(refused)?;
         let mut file = temporary(folder).map_err(refused)?;
-        file.write_all(&encode(record)).and_then(|()| file.as_file().sync_all()).map_err(refused)?;
+        file.write_all(&encode(record))
+            .and_then(|()| file.as_file().sync_all())
+            .map_err(refused)?;
         // Whoever comes second compares: two processes may finish the same trial at once.
         match file.persist_noclobber(&path) {
             Ok(_) => sync_folder(folder).map_err(refused),
@@ -297,12 +299,17 @@ mod tests {
         assert_eq!(opened.tree, sealed.tree);
         let small = Limits { bytes: 1000, ..Limits::default() };
         let faults = open_bundle(&path, &small).unwrap().unwrap_err();
-        assert!(faults[0].to_string().starts_with("(archive): expected at most 1000 bytes, found "));
+        assert!(
+            faults[0].to_string().starts_with("(archive): expected at most 1000 bytes, found ")
+        );
         #[cfg(unix)]
         {
             std::os::unix::fs::symlink("/etc/passwd", folder.join("data/link")).unwrap();
             let faults = open_bundle(&folder, &Limits::default()).unwrap().unwrap_err();
-            assert_eq!(faults[0].to_string(), "data/link: expected a plain file, found a symbolic link");
+            assert_eq!(
+                faults[0].to_string(),
+                "data/link: expected a plain file, found a symbolic link"
+            );
         }
         assert!(open_bundle(&directory.path().join("absent"), &Limits::default()).is_err());
     }

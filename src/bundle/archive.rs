@@ -172,7 +172,11 @@ pub fn read(bytes: &[u8], limits: &Limits) -> Result<Archive, Vec<Fault>> {
         match unpack(&mut zip, index) {
             Ok(content) => contents.push((name, content)),
             Err(found) => {
-                faults.push(Fault::new(name, "an entry that unpacks to its declared size and checksum", found));
+                faults.push(Fault::new(
+                    name,
+                    "an entry that unpacks to its declared size and checksum",
+                    found,
+                ));
             }
         }
     }
@@ -244,7 +248,8 @@ fn locate(files: Vec<(String, Vec<u8>)>) -> Result<Archive, Vec<Fault>> {
         (Form::Crate, String::new(), format::PAYLOAD)
     } else if let [bag] = bags[..] {
         if tops.len() > 1 {
-            let others: Vec<_> = tops.iter().filter(|top| **top != bag).map(|t| format!("`{t}`")).collect();
+            let others: Vec<_> =
+                tops.iter().filter(|top| **top != bag).map(|t| format!("`{t}`")).collect();
             return Err(vec![Fault::new(
                 "(archive)",
                 format!("the one folder `{bag}`"),

@@ -8,7 +8,10 @@ pub const DECLARATION: &str = "BagIt-Version: 1.0\nTag-File-Character-Encoding: 
 
 /// Manifest lines of `files`, in their order.
 pub(super) fn manifest<'a>(files: impl IntoIterator<Item = (&'a String, &'a Vec<u8>)>) -> String {
-    files.into_iter().map(|(path, bytes)| format!("{}  {path}\n", Sha256Digest::of(bytes))).collect()
+    files
+        .into_iter()
+        .map(|(path, bytes)| format!("{}  {path}\n", Sha256Digest::of(bytes)))
+        .collect()
 }
 
 /// Reads a manifest. Upper-case digits, ` *` before the path and CRLF are other tools' habits, and harmless.
@@ -34,11 +37,7 @@ pub fn parse_manifest(file: &str, bytes: &[u8]) -> Result<Vec<(String, Sha256Dig
         if let Some(hazard) = names::hazard(&path) {
             faults.push(Fault::new(place, "a safe relative path", hazard));
         } else if let Some(other) = seen.enter(&path) {
-            faults.push(Fault::new(
-                place,
-                "every path once",
-                format!("`{path}` beside `{other}`"),
-            ));
+            faults.push(Fault::new(place, "every path once", format!("`{path}` beside `{other}`")));
         } else {
             entries.push((path, digest));
         }

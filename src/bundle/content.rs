@@ -45,6 +45,8 @@ pub struct Author {
     pub name: String,
     /// Institution.
     pub affiliation: Option<String>,
+    /// Its web address, such as `https://ror.org/00wjc7c48`; a search for its name stands in where none is given.
+    pub affiliation_url: Option<String>,
     /// Address such as `https://orcid.org/0000-0000-0000-0000`.
     pub orcid: Option<String>,
 }
@@ -155,14 +157,8 @@ mod tests {
             ("x/LICENSE".into(), b"e".to_vec(), None),
         ]);
         let names: Vec<_> = inputs.iter().map(|i| i.name.as_str()).collect();
-        let expected = [
-            "kobuki.urdf",
-            "Kobuki-2.urdf",
-            "kobuki.urdf",
-            "d-p-t-1.pgm",
-            "LICENSE",
-            "LICENSE-2",
-        ];
+        let expected =
+            ["kobuki.urdf", "Kobuki-2.urdf", "kobuki.urdf", "d-p-t-1.pgm", "LICENSE", "LICENSE-2"];
         assert_eq!(names, expected);
     }
 }

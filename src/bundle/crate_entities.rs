@@ -28,7 +28,11 @@ impl Entity {
 
     /// With references. One-element arrays are flagged by the validator (ro-crate-1.1_24.1), empty ones say nothing.
     #[must_use]
-    pub(super) fn to_all<S: AsRef<str>>(mut self, key: &str, ids: impl IntoIterator<Item = S>) -> Self {
+    pub(super) fn to_all<S: AsRef<str>>(
+        mut self,
+        key: &str,
+        ids: impl IntoIterator<Item = S>,
+    ) -> Self {
         let references: Vec<_> = ids.into_iter().map(|id| json!({"@id": id.as_ref()})).collect();
         if !references.is_empty() {
             self.0.insert(key.into(), collapse(references));

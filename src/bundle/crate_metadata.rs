@@ -6,7 +6,7 @@
 
 use super::crate_entities::Entity;
 use super::readme::license_address;
-use super::{BundleContent, Circumstance, Tree, bag, format};
+use super::{Author, BundleContent, Circumstance, Tree, bag, format};
 use crate::digest::{ResultsDigest, Sha256Digest, StudyDigest};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
@@ -58,23 +58,34 @@ pub(super) fn document(
 /// Identifiers of authors and of the organisations they belong to.
 struct People {
     authors: Vec<String>,
-    organizations: BTreeMap<String, String>,
+    /// Name to identifier and web address.
+    organizations: BTreeMap<String, (String, String)>,
 }
+
+/// The validator recommends an affiliation for every person; a manifest need not give one.
+const UNAFFILIATED: &str = "No affiliation stated";
 
 impl People {
     fn of(content: &BundleContent) -> Self {
+        let mut organizations = BTreeMap::new();
+        for author in &content.authors {
+            let name = affiliation(author);
+            let url = match (&author.affiliation_url, &author.affiliation) {
+                (Some(url), _) => url.clone(),
+                // The validator recommends an address for every organisation.
+                (None, Some(name)) => {
+                    format!("https://ror.org/search?query={}", percent_encoded(name))
+                }
+                (None, None) => format::HOME.to_owned(),
+            };
+            let id = format!("#organization-{}", organizations.len() + 1);
+            organizations.entry(name.to_owned()).or_insert((id, url));
+        }
         let authors: Vec<String> = content
             .authors
             .iter()
             .enumerate()
             .map(|(i, a)| a.orcid.clone().unwrap_or_else(|| format!("#author-{}", i + 1)))
-            .collect();
-        let names: BTreeSet<&String> =
-            content.authors.iter().filter_map(|a| a.affiliation.as_ref()).collect();
-        let organizations = names
-            .into_iter()
-            .enumerate()
-            .map(|(i, name)| (name.clone(), format!("#organization-{}", i + 1)))
             .collect();
         // A crate needs an author; a manifest may name none.
         let authors = if authors.is_empty() { vec!["#authors".to_owned()] } else { authors };
@@ -83,28 +94,38 @@ impl People {
 
     /// Who answers for the bundle.
     fn publisher(&self, content: &BundleContent) -> &str {
-        let affiliation = content.authors.first().and_then(|a| a.affiliation.as_ref());
-        affiliation.map_or(&self.authors[0], |name| &self.organizations[name])
+        let first = content.authors.first();
+        first.map_or(&self.authors[0], |author| &self.organizations[affiliation(author)].0)
     }
 
     fn entities(&self, content: &BundleContent) -> Vec<Entity> {
         let mut entities = Vec::new();
         for (author, id) in content.authors.iter().zip(&self.authors) {
+            let organization = &self.organizations[affiliation(author)].0;
             let person = Entity::new(id, &["Person"]).text("name", &author.name);
-            entities.push(person.with(author.affiliation.as_ref(), |person, name| {
-                person.to("affiliation", &self.organizations[name])
-            }));
+            entities.push(person.to("affiliation", organization));
         }
         if content.authors.is_empty() {
             let name = format!("The authors of {}", content.name);
             let nobody = Entity::new("#authors", &["Organization"]).text("name", name);
             entities.push(nobody.text("url", format::HOME));
         }
-        for (name, id) in &self.organizations {
-            entities.push(Entity::new(id, &["Organization"]).text("name", name));
+        for (name, (id, url)) in &self.organizations {
+            entities.push(Entity::new(id, &["Organization"]).text("name", name).text("url", url));
         }
         entities
     }
+}
+
+fn affiliation(author: &Author) -> &str {
+    author.affiliation.as_deref().unwrap_or(UNAFFILIATED)
+}
+
+fn percent_encoded(text: &str) -> String {
+    let encode = |b: u8| {
+        if b.is_ascii_alphanumeric() { char::from(b).to_string() } else { format!("%{b:02X}") }
+    };
+    text.bytes().map(encode).collect()
 }
 
 struct Graph<'a> {
@@ -150,7 +171,10 @@ impl Graph<'_> {
         let mut entities = vec![
             Entity::new(format::METADATA, &["CreativeWork"]).to("about", "./").to_all(
                 "conformsTo",
-                ["https://w3id.org/ro/crate/1.1", "https://w3id.org/workflowhub/workflow-ro-crate/1.0"],
+                [
+                    "https://w3id.org/ro/crate/1.1",
+                    "https://w3id.org/workflowhub/workflow-ro-crate/1.0",
+                ],
             ),
             root,
             digest("#results-digest", "results digest", format!("sha256:{results}")),
@@ -164,7 +188,9 @@ impl Graph<'_> {
                 .text("version", "1.0-RELEASE"),
         ];
         entities.extend(PROFILES.map(|(id, name, version)| {
-            Entity::new(id, &["CreativeWork", "Profile"]).text("name", name).text("version", version)
+            Entity::new(id, &["CreativeWork", "Profile"])
+                .text("name", name)
+                .text("version", version)
         }));
         if let Some(cite) = &content.cite {
             let work = Entity::new(&cite_id(cite), &["ScholarlyArticle"]).text("name", &cite.text);
@@ -209,17 +235,23 @@ impl Graph<'_> {
             &["File", "SoftwareSourceCode", "ComputationalWorkflow", "HowTo"],
         );
         vec![
-            described(study, format::STUDY, bytes, "Study manifest", "The manifest, byte for byte as written; it determines every trial")
-                .text("version", "1")
-                .text("url", format::HOME)
-                .to_all("author", &self.people.authors)
-                .to("license", &license_id(&self.content.license))
-                .to("conformsTo", BIOSCHEMAS)
-                .to("programmingLanguage", &language)
-                .to_all("input", inputs.iter().cloned().chain(seed))
-                .to_all("output", &outputs)
-                .to_all("hasPart", [&simulate, &analyze])
-                .to_all("step", ["#step-trials", "#step-analysis"]),
+            described(
+                study,
+                format::STUDY,
+                bytes,
+                "Study manifest",
+                "The manifest, byte for byte as written; it determines every trial",
+            )
+            .text("version", "1")
+            .text("url", format::HOME)
+            .to_all("author", &self.people.authors)
+            .to("license", &license_id(&self.content.license))
+            .to("conformsTo", BIOSCHEMAS)
+            .to("programmingLanguage", &language)
+            .to_all("input", inputs.iter().cloned().chain(seed))
+            .to_all("output", &outputs)
+            .to_all("hasPart", [&simulate, &analyze])
+            .to_all("step", ["#step-trials", "#step-analysis"]),
             Entity::new(&language, &["ComputerLanguage"])
                 .text("name", "Reenact manifest")
                 .text("alternateName", "reenact")
@@ -283,9 +315,8 @@ impl Graph<'_> {
         let outputs: Vec<String> = self.outputs().into_iter().map(|o| o.path).collect();
         let records: Vec<String> =
             content.conditions.iter().map(|c| format::records_path(&c.slug)).collect();
-        let environment: Vec<String> = (1..=circumstance.environment.len())
-            .map(|i| format!("#environment-{i}"))
-            .collect();
+        let environment: Vec<String> =
+            (1..=circumstance.environment.len()).map(|i| format!("#environment-{i}")).collect();
         let timed = |entity: Entity| {
             entity
                 .to("agent", &self.people.authors[0])
@@ -299,7 +330,10 @@ impl Graph<'_> {
                 .text("description", description)
                 .text("actionStatus", format!("http://schema.org/{status}ActionStatus"));
             action.with((failed > 0).then_some(failed), |action, failed| {
-                action.text("error", format!("{failed} of {all} trials failed; their records say how"))
+                action.text(
+                    "error",
+                    format!("{failed} of {all} trials failed; their records say how"),
+                )
             })
         };
         let failed: usize = content.conditions.iter().map(|c| c.failed).sum();
@@ -308,11 +342,17 @@ impl Graph<'_> {
             content.conditions.iter().map(|c| format!("#condition-{}", c.slug)).collect();
 
         let mut entities = vec![
-            action("#run", format!("Run of {}", content.name), "reenact run study.yaml".into(), failed, all)
-                .to("instrument", format::STUDY)
-                .to_all("object", inputs.iter().map(String::as_str).chain(["#seed"]))
-                .to_all("result", &outputs)
-                .to_all("environment", &environment),
+            action(
+                "#run",
+                format!("Run of {}", content.name),
+                "reenact run study.yaml".into(),
+                failed,
+                all,
+            )
+            .to("instrument", format::STUDY)
+            .to_all("object", inputs.iter().map(String::as_str).chain(["#seed"]))
+            .to_all("result", &outputs)
+            .to_all("environment", &environment),
         ];
         for (condition, id) in content.conditions.iter().zip(&trials) {
             let count = condition.records.len();
@@ -327,10 +367,16 @@ impl Graph<'_> {
             );
         }
         entities.push(
-            action("#analysis", "Analysis of all trials".into(), "Tables, figures and verdicts from the records".into(), 0, 0)
-                .to("instrument", &analyze)
-                .to_all("object", &records)
-                .to_all("result", &outputs),
+            action(
+                "#analysis",
+                "Analysis of all trials".into(),
+                "Tables, figures and verdicts from the records".into(),
+                0,
+                0,
+            )
+            .to("instrument", &analyze)
+            .to_all("object", &records)
+            .to_all("result", &outputs),
         );
         entities.push(
             Entity::new("#control-trials", &["ControlAction"])
@@ -367,11 +413,18 @@ impl Graph<'_> {
         let mut entities = vec![
             Entity::new(format::TRIALS, &["Dataset"])
                 .text("name", "Trial records")
-                .text("description", "One file a condition, one line of JSON a trial, in plan order")
+                .text(
+                    "description",
+                    "One file a condition, one line of JSON a trial, in plan order",
+                )
                 .to_all("hasPart", records),
         ];
-        let parameters: BTreeMap<String, String> =
-            self.inputs().into_iter().chain(self.outputs()).map(|f| (f.path, f.parameter)).collect();
+        let parameters: BTreeMap<String, String> = self
+            .inputs()
+            .into_iter()
+            .chain(self.outputs())
+            .map(|f| (f.path, f.parameter))
+            .collect();
         let licenses: BTreeMap<String, &String> = self
             .content
             .inputs
@@ -380,11 +433,12 @@ impl Graph<'_> {
             .collect();
         for (&path, &bytes) in self.files.iter().filter(|(path, _)| **path != format::STUDY) {
             let (name, description) = title(path);
-            let entity =
-                described(Entity::new(path, &["File"]), path, bytes, &name, &description)
-                    .with(parameters.get(path), |file, parameter| file.to("exampleOfWork", parameter))
-                    .with(licenses.get(path), |file, name| file.to("license", &license_id(name)))
-                    .with((path == format::README).then_some("./"), |file, root| file.to("about", root));
+            let entity = described(Entity::new(path, &["File"]), path, bytes, &name, &description)
+                .with(parameters.get(path), |file, parameter| file.to("exampleOfWork", parameter))
+                .with(licenses.get(path), |file, name| file.to("license", &license_id(name)))
+                .with((path == format::README).then_some("./"), |file, root| {
+                    file.to("about", root)
+                });
             entities.push(entity);
         }
         entities
@@ -446,8 +500,12 @@ fn title(path: &str) -> (String, String) {
         ),
         format::README => ("Read me".into(), "How to check this bundle and run it again".into()),
         format::LICENSE => ("Licences".into(), "Which licence holds for what".into()),
-        "results/trials.csv" => ("Trials".into(), "One row a trial: factors, outcome, measures".into()),
-        "results/series.csv" => ("Curves".into(), "The trials' curves over coverage and time".into()),
+        "results/trials.csv" => {
+            ("Trials".into(), "One row a trial: factors, outcome, measures".into())
+        }
+        "results/series.csv" => {
+            ("Curves".into(), "The trials' curves over coverage and time".into())
+        }
         "results/claims.json" => {
             ("Claims".into(), "The verdict on every claim and the numbers that decided it".into())
         }

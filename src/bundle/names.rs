@@ -22,7 +22,8 @@ pub fn hazard(path: &str) -> Option<&'static str> {
     path.split('/').find_map(|part| {
         let stem = part.split('.').next().unwrap_or_default().to_ascii_lowercase();
         let numbered = |prefix: &str| {
-            stem.strip_prefix(prefix).is_some_and(|n| n.len() == 1 && n.as_bytes()[0].is_ascii_digit())
+            stem.strip_prefix(prefix)
+                .is_some_and(|n| n.len() == 1 && n.as_bytes()[0].is_ascii_digit())
         };
         match part {
             "" => Some("an empty part in its path"),

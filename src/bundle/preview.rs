@@ -48,8 +48,11 @@ pub(super) fn page(
     if !figures.is_empty() {
         figures.insert_str(0, "<h2>Figures</h2>\n");
     }
-    let partial =
-        if content.partial { "<p><strong>Partial run</strong>: no claim is judged on it.</p>\n" } else { "" };
+    let partial = if content.partial {
+        "<p><strong>Partial run</strong>: no claim is judged on it.</p>\n"
+    } else {
+        ""
+    };
     let (title, description) = (escape(&content.title), escape(&content.description));
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\

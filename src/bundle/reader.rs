@@ -1,8 +1,8 @@
 //! A bundle by meaning: what an opened archive says, with every reference inside it resolved.
 
 use super::{
-    Archive, Circumstance, ConditionEntry, Fault, Form, InputEntry, Limits, Resolved, Tree, archive,
-    bag, format, results_digest,
+    Archive, Circumstance, ConditionEntry, Fault, Form, InputEntry, Limits, Resolved, Tree,
+    archive, bag, format, results_digest,
 };
 use crate::digest::{BundleId, ResultsDigest, Sha256Digest, StudyDigest};
 use crate::studies::TrialRecord;

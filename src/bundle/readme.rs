@@ -62,10 +62,7 @@ Checksums show that nothing changed since they were made; who made them, only a 
 
 /// Which licences hold for what.
 pub(super) fn license(content: &BundleContent) -> String {
-    let mut text = format!(
-        "This bundle is licensed under {}.\n",
-        with_address(&content.license)
-    );
+    let mut text = format!("This bundle is licensed under {}.\n", with_address(&content.license));
     let own: BTreeSet<_> = content
         .inputs
         .iter()

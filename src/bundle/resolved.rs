@@ -91,7 +91,11 @@ impl Resolved {
         }
         let path = format!("{}{}", format::PAYLOAD, format::RESOLVED);
         let fault = |e: serde_json::Error| {
-            Fault::new(&path, "the resolved study of format 1 (docs/bundle-format.md)", e.to_string())
+            Fault::new(
+                &path,
+                "the resolved study of format 1 (docs/bundle-format.md)",
+                e.to_string(),
+            )
         };
         let version: Version = serde_json::from_slice(bytes).map_err(fault)?;
         if version.bundle_format > format::FORMAT {

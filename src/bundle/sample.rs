@@ -1,8 +1,8 @@
 //! A small bundle for tests, and tools to damage it.
 
 use super::{
-    Author, BundleContent, Circumstance, Citation, Form, Moment, SealedCondition, Sealed, Tree, bag,
-    format, seal, seal_inputs,
+    Author, BundleContent, Circumstance, Citation, Form, Moment, Sealed, SealedCondition, Tree,
+    bag, format, seal, seal_inputs,
 };
 use crate::digest::{Sha256Digest, TrialKey};
 use crate::studies::{Outcome, TrialRecord};
@@ -26,7 +26,9 @@ pub(crate) fn record(seed: u64, prior: &str, trial: u32) -> TrialRecord {
         measures: [("distance-m-at-90".to_owned(), Some(distance))].into(),
         series: Vec::new(),
         sim_seconds: 20.0,
-        chain: (0..2).map(|i| Sha256Digest::of(format!("{key}/{i}")).hex()[..16].to_owned()).collect(),
+        chain: (0..2)
+            .map(|i| Sha256Digest::of(format!("{key}/{i}")).hex()[..16].to_owned())
+            .collect(),
     }
 }
 
@@ -62,7 +64,8 @@ pub(crate) fn content_of(
     seed: u64,
     conditions: &[(&str, Vec<TrialRecord>)],
 ) -> BundleContent {
-    let all: Vec<TrialRecord> = conditions.iter().flat_map(|(_, records)| records.clone()).collect();
+    let all: Vec<TrialRecord> =
+        conditions.iter().flat_map(|(_, records)| records.clone()).collect();
     BundleContent {
         name: "corridors".into(),
         title: "Corridors with and without a floor plan".into(),
@@ -74,7 +77,7 @@ pub(crate) fn content_of(
         authors: vec![Author {
             name: "A. Researcher".into(),
             affiliation: Some("Example Robotics Lab".into()),
-            orcid: None,
+            ..Author::default()
         }],
         license: "CC-BY-4.0".into(),
         seed,
@@ -83,7 +86,11 @@ pub(crate) fn content_of(
         resolved: serde_json::json!({"seed": seed, "parameters": {"range-m": 8.5}}),
         inputs: seal_inputs([
             ("../worlds/a.yaml".into(), b"walls: [1]\n".to_vec(), None),
-            ("../robots/r.urdf".into(), b"<robot name=\"r\"/>\n".to_vec(), Some("BSD-3-Clause".into())),
+            (
+                "../robots/r.urdf".into(),
+                b"<robot name=\"r\"/>\n".to_vec(),
+                Some("BSD-3-Clause".into()),
+            ),
         ]),
         conditions: conditions
             .iter()
@@ -152,7 +159,8 @@ pub(crate) fn replace(bytes: &mut [u8], from: &[u8], to: &[u8]) {
 /// results digest wherever it stands, the bag's manifests and its count of bytes.
 pub(crate) fn recompute(tree: &mut Tree) {
     let text = |tree: &Tree, path: &str| String::from_utf8(tree[path].clone()).unwrap();
-    let mut metadata: serde_json::Value = serde_json::from_slice(&tree["data/ro-crate-metadata.json"]).unwrap();
+    let mut metadata: serde_json::Value =
+        serde_json::from_slice(&tree["data/ro-crate-metadata.json"]).unwrap();
     let results = super::results_digest(tree);
     let study = Sha256Digest::of(&tree["data/study.resolved.json"]);
     for entity in metadata["@graph"].as_array_mut().unwrap() {
@@ -161,14 +169,19 @@ pub(crate) fn recompute(tree: &mut Tree) {
             entity["value"] = format!("sha256:{results}").into();
         } else if id == "#study-digest" {
             entity["value"] = format!("sha256:{study}").into();
-        } else if let (Some(bytes), true) = (tree.get(&format!("data/{id}")), entity.get("sha256").is_some()) {
+        } else if let (Some(bytes), true) =
+            (tree.get(&format!("data/{id}")), entity.get("sha256").is_some())
+        {
             entity["sha256"] = Sha256Digest::of(bytes).hex().into();
             entity["contentSize"] = bytes.len().to_string().into();
         }
     }
     tree.insert("data/ro-crate-metadata.json".into(), format!("{metadata:#}\n").into_bytes());
-    let payload: Tree =
-        tree.iter().filter(|(p, _)| p.starts_with("data/")).map(|(p, b)| (p.clone(), b.clone())).collect();
+    let payload: Tree = tree
+        .iter()
+        .filter(|(p, _)| p.starts_with("data/"))
+        .map(|(p, b)| (p.clone(), b.clone()))
+        .collect();
     let octets: usize = payload.values().map(Vec::len).sum();
     let info: String = text(tree, format::BAG_INFO)
         .lines()
@@ -187,18 +200,4 @@ pub(crate) fn recompute(tree: &mut Tree) {
         .map(|(p, b)| (p.clone(), b.clone()))
         .collect();
     tree.insert(format::TAG_MANIFEST.into(), bag::manifest(&tags).into_bytes());
-}
-
-#[test]
-fn temporary_dump() {
-    std::fs::write("/tmp/bundle-validators/sample.zip", zip()).unwrap();
-    let mut content = content();
-    content.authors.clear();
-    content.cite = None;
-    content.partial = true;
-    content.license = "all rights reserved".into();
-    content.conditions[0].failed = 1;
-    content.inputs.clear();
-    let bare = seal(&content, &Circumstance::reproducible(Moment(1_768_478_400))).unwrap();
-    std::fs::write("/tmp/bundle-validators/bare.zip", bare.zip(Form::Bag)).unwrap();
 }

@@ -25,7 +25,8 @@ pub struct Mock {
 impl Executor for Mock {
     fn execute(&self, spec: &TrialSpec) -> TrialRecord {
         assert!(!self.panicking.contains(&spec.trial), "trial {} was told to fail", spec.trial);
-        let state = |step: u8| Sha256Digest::of(format!("{}/{step}", spec.key)).hex()[..16].to_owned();
+        let state =
+            |step: u8| Sha256Digest::of(format!("{}/{step}", spec.key)).hex()[..16].to_owned();
         TrialRecord {
             key: spec.key,
             condition: spec.condition.0.clone(),

@@ -68,18 +68,27 @@ impl Scheduler {
                 .map(|spec| store.map_or(Ok(None), |store| recall(store, spec)))
                 .collect::<Result<_, _>>()?;
             let known = cached.iter().flatten().count();
-            observer.notice(&RunEvent::Started { trials: plan.len(), cached: known, jobs: self.jobs() });
-            let finished = cached.into_par_iter().enumerate().with_max_len(1).map(|(index, cached)| {
-                let is_cached = cached.is_some();
-                let record = cached.unwrap_or_else(|| execute(executor, &plan[index]));
-                if let (Some(store), false, true) =
-                    (store, is_cached, record.outcome != Outcome::Panicked)
-                {
-                    store.put(&record)?;
-                }
-                observer.notice(&RunEvent::Finished { index, record: &record, cached: is_cached });
-                Ok(record)
+            observer.notice(&RunEvent::Started {
+                trials: plan.len(),
+                cached: known,
+                jobs: self.jobs(),
             });
+            let finished =
+                cached.into_par_iter().enumerate().with_max_len(1).map(|(index, cached)| {
+                    let is_cached = cached.is_some();
+                    let record = cached.unwrap_or_else(|| execute(executor, &plan[index]));
+                    if let (Some(store), false, true) =
+                        (store, is_cached, record.outcome != Outcome::Panicked)
+                    {
+                        store.put(&record)?;
+                    }
+                    observer.notice(&RunEvent::Finished {
+                        index,
+                        record: &record,
+                        cached: is_cached,
+                    });
+                    Ok(record)
+                });
             finished.collect()
         })
     }

@@ -124,7 +124,9 @@ fn events_tell_every_trial_once() {
     let events = Mutex::new(Vec::new());
     let observer = |event: &RunEvent<'_>| {
         events.lock().unwrap().push(match *event {
-            RunEvent::Started { trials, cached, jobs } => format!("{trials} trials, {cached} cached, {jobs} jobs"),
+            RunEvent::Started { trials, cached, jobs } => {
+                format!("{trials} trials, {cached} cached, {jobs} jobs")
+            }
             RunEvent::Finished { index, record, cached } => {
                 assert_eq!(record.trial as usize, index);
                 format!("{index} {cached}")
@@ -141,8 +143,10 @@ fn events_tell_every_trial_once() {
 #[test]
 fn a_full_disk_ends_the_run_and_keeps_what_was_stored() {
     let store = Memory { capacity: Some(3), ..Memory::default() };
-    let error =
-        Scheduler::new(2).unwrap().run(&plan(20), &Mock::default(), Some(&store), &Silent).unwrap_err();
+    let error = Scheduler::new(2)
+        .unwrap()
+        .run(&plan(20), &Mock::default(), Some(&store), &Silent)
+        .unwrap_err();
     assert_eq!(
         error.to_string(),
         "trial store: disk full; free some space, allow writing, or choose another place with REENACT_STORE"

@@ -38,7 +38,9 @@ pub enum StoreError {
         divergence: String,
     },
     /// A panic is not a result.
-    #[error("trial {key}: expected a result to store, found a panic ({cause}); panics are never stored")]
+    #[error(
+        "trial {key}: expected a result to store, found a panic ({cause}); panics are never stored"
+    )]
     Panicked {
         /// The trial.
         key: TrialKey,
@@ -46,7 +48,9 @@ pub enum StoreError {
         cause: String,
     },
     /// The file system refuses.
-    #[error("trial store: {0}; free some space, allow writing, or choose another place with REENACT_STORE")]
+    #[error(
+        "trial store: {0}; free some space, allow writing, or choose another place with REENACT_STORE"
+    )]
     Io(String),
 }
 

@@ -53,7 +53,11 @@ pub(super) fn crate_metadata(tree: &Tree) -> Vec<Fault> {
         if id == "#results-digest" {
             let expected = format!("sha256:{}", results_digest(tree));
             if text("value") != expected {
-                faults.push(Fault::new(&metadata, format!("results digest {expected}"), text("value")));
+                faults.push(Fault::new(
+                    &metadata,
+                    format!("results digest {expected}"),
+                    text("value"),
+                ));
             }
         }
         let is_file = match entity.get("@type") {
@@ -65,7 +69,11 @@ pub(super) fn crate_metadata(tree: &Tree) -> Vec<Fault> {
         }
         described.insert(payload_path(id));
         match tree.get(&payload_path(id)) {
-            None => faults.push(Fault::new(payload_path(id), "a file, as the crate describes it", "none")),
+            None => faults.push(Fault::new(
+                payload_path(id),
+                "a file, as the crate describes it",
+                "none",
+            )),
             Some(bytes) => {
                 let (digest, size) = (Sha256Digest::of(bytes).hex(), bytes.len().to_string());
                 for (key, truth) in [("sha256", digest), ("contentSize", size)] {
@@ -81,7 +89,11 @@ pub(super) fn crate_metadata(tree: &Tree) -> Vec<Fault> {
     for path in tree.keys().filter(|path| path.starts_with(format::PAYLOAD)) {
         let own = [payload_path(format::METADATA), payload_path(format::PREVIEW)].contains(path);
         if !own && !described.contains(path) {
-            faults.push(Fault::new(path, "a file that the crate describes", "one that it does not"));
+            faults.push(Fault::new(
+                path,
+                "a file that the crate describes",
+                "one that it does not",
+            ));
         }
     }
     faults
@@ -93,11 +105,15 @@ pub(super) fn contents(bundle: &Bundle) -> Vec<Fault> {
     let mut known = BTreeSet::new();
     for input in bundle.inputs() {
         known.insert(payload_path(&input.path));
-        let digest = bundle.tree().get(&payload_path(&input.path)).map(|b| FileDigest(Sha256Digest::of(b)));
+        let digest =
+            bundle.tree().get(&payload_path(&input.path)).map(|b| FileDigest(Sha256Digest::of(b)));
         if digest != Some(input.sha256) {
             faults.push(Fault::new(
                 payload_path(&input.path),
-                format!("sha256:{}, as the resolved study says of `{}`", input.sha256, input.as_written),
+                format!(
+                    "sha256:{}, as the resolved study says of `{}`",
+                    input.sha256, input.as_written
+                ),
                 digest.map_or("no file".to_owned(), |digest| format!("sha256:{digest}")),
             ));
         }
@@ -106,7 +122,11 @@ pub(super) fn contents(bundle: &Bundle) -> Vec<Fault> {
     for condition in bundle.conditions() {
         let path = payload_path(&format::records_path(&condition.slug));
         if !known.insert(path.clone()) {
-            faults.push(Fault::new(payload_path(format::RESOLVED), "every condition once", condition.slug.as_str()));
+            faults.push(Fault::new(
+                payload_path(format::RESOLVED),
+                "every condition once",
+                condition.slug.as_str(),
+            ));
             continue;
         }
         let count = bundle.record_lines(&condition.slug).count();
@@ -122,9 +142,14 @@ pub(super) fn contents(bundle: &Bundle) -> Vec<Fault> {
         faults.extend(records(bundle, &condition.slug, &path, &mut keys));
     }
     for path in bundle.tree().keys() {
-        let claimed = [format::INPUTS, format::TRIALS].iter().any(|d| path.starts_with(&payload_path(d)));
+        let claimed =
+            [format::INPUTS, format::TRIALS].iter().any(|d| path.starts_with(&payload_path(d)));
         if claimed && !known.contains(path) {
-            faults.push(Fault::new(path, "a file that the resolved study names", "one that it does not"));
+            faults.push(Fault::new(
+                path,
+                "a file that the resolved study names",
+                "one that it does not",
+            ));
         }
     }
     faults
@@ -154,12 +179,21 @@ fn records(
         }
         if record.condition().slug() != slug {
             let expected = format!("a record of the condition `{slug}`");
-            faults.push(Fault::new(&place, expected, format!("one of `{}`", record.condition().slug())));
+            faults.push(Fault::new(
+                &place,
+                expected,
+                format!("one of `{}`", record.condition().slug()),
+            ));
         }
         // A shard or a selection may leave trials out, never change their order.
-        let in_order = if bundle.is_partial() { record.trial >= next } else { record.trial == next };
+        let in_order =
+            if bundle.is_partial() { record.trial >= next } else { record.trial == next };
         if !in_order {
-            faults.push(Fault::new(&place, format!("trial {next}"), format!("trial {}", record.trial)));
+            faults.push(Fault::new(
+                &place,
+                format!("trial {next}"),
+                format!("trial {}", record.trial),
+            ));
         }
         next = record.trial.saturating_add(1);
         if let Some(other) = keys.insert(record.key, place.clone()) {

@@ -1,7 +1,9 @@
 //! Level 3: the trials are those of the manifest, and sealing its records again gives the same bundle.
 
 use super::{PlannedTrial, Replanned, difference};
-use crate::bundle::{Bundle, Circumstance, Fault, Form, Moment, Tree, format, in_result_half, seal};
+use crate::bundle::{
+    Bundle, Circumstance, Fault, Form, Moment, Tree, format, in_result_half, seal,
+};
 use crate::studies::TrialRecord;
 
 /// Everything that does not follow from the manifest, the inputs and the records; and what could not be judged.
@@ -23,23 +25,35 @@ pub(super) fn check(bundle: &Bundle, replanned: &dyn Replanned) -> (Vec<Fault>, 
     let derived = match seal(&content, &circumstance) {
         Ok(sealed) => sealed.tree,
         Err(problem) => {
-            faults.push(Fault::new(format::PAYLOAD, "content that can be sealed", problem.to_string()));
+            faults.push(Fault::new(
+                format::PAYLOAD,
+                "content that can be sealed",
+                problem.to_string(),
+            ));
             return (faults, None);
         }
     };
     let mut differing = files(bundle.tree(), &derived, in_result_half);
-    if differing.is_empty() && told.is_some() {
-        // Digests of differing results stand in these: only without such differences do they say anything new.
-        differing = files(bundle.tree(), &derived, |path| !in_result_half(path));
+    // Each holds digests or sizes of those before it, and says something new only where those are as they should be.
+    for part in [&[format::README, format::LICENSE][..], &[format::METADATA, format::PREVIEW]] {
+        if differing.is_empty() && told.is_some() {
+            differing = files(bundle.tree(), &derived, |path| part.contains(&path));
+        }
     }
     faults.extend(differing);
     let note = told.is_none().then(|| {
         let found = match bundle.form() {
             Form::Crate => "a crate without its bag".to_owned(),
-            _ => bundle.circumstance().map_or("none".to_owned(), |c| format!("those of reenact {}", c.version)),
+            _ => bundle
+                .circumstance()
+                .map_or("none".to_owned(), |c| format!("those of reenact {}", c.version)),
         };
-        Fault::new(format::BAG_INFO, format!("circumstances as reenact {} writes them", format::VERSION), found)
-            .hint("metadata, preview and README were not derived again; the results were")
+        Fault::new(
+            format::BAG_INFO,
+            format!("circumstances as reenact {} writes them", format::VERSION),
+            found,
+        )
+        .hint("metadata, preview and README were not derived again; the results were")
     });
     (faults, note)
 }
@@ -80,12 +94,22 @@ fn trials(bundle: &Bundle, planned: &[PlannedTrial]) -> Vec<Fault> {
             .map(|(i, _)| i)
             .collect();
         if let Some(&first) = wrong.first() {
-            let found = records[first].as_ref().map_or("no record".to_owned(), |r| format!("trial {} with key {}", r.trial, r.key.short()));
-            let more = if wrong.len() > 1 { format!(", and {} more", wrong.len() - 1) } else { String::new() };
+            let found = records[first].as_ref().map_or("no record".to_owned(), |r| {
+                format!("trial {} with key {}", r.trial, r.key.short())
+            });
+            let more = if wrong.len() > 1 {
+                format!(", and {} more", wrong.len() - 1)
+            } else {
+                String::new()
+            };
             faults.push(
                 Fault::new(
                     format!("{path}:{}", first + 1),
-                    format!("trial {} with key {}, as the manifest plans", planned[first].trial, planned[first].key.short()),
+                    format!(
+                        "trial {} with key {}, as the manifest plans",
+                        planned[first].trial,
+                        planned[first].key.short()
+                    ),
                     format!("{found}{more}"),
                 )
                 .hint("the manifest, an input, the seed or the record was changed after the run"),
@@ -110,7 +134,11 @@ fn files(found: &Tree, derived: &Tree, counts: impl Fn(&str) -> bool) -> Vec<Fau
         }
     }
     for path in found.keys().filter(|path| counts(path) && !derived.contains_key(*path)) {
-        faults.push(Fault::new(path, "only files that follow from the records", "one that does not"));
+        faults.push(Fault::new(
+            path,
+            "only files that follow from the records",
+            "one that does not",
+        ));
     }
     faults
 }

@@ -23,7 +23,10 @@ fn cell(expected: &str, found: &str) -> Option<(String, String)> {
     for (row, (a, b)) in expected.rows.iter().zip(&found.rows).enumerate() {
         for (column, (a, b)) in expected.columns.iter().zip(a.iter().zip(b)) {
             if a.to_string() != b.to_string() {
-                return Some((format!("`{a}` in row {}, column `{column}`", row + 1), format!("`{b}`")));
+                return Some((
+                    format!("`{a}` in row {}, column `{column}`", row + 1),
+                    format!("`{b}`"),
+                ));
             }
         }
     }
@@ -32,9 +35,11 @@ fn cell(expected: &str, found: &str) -> Option<(String, String)> {
 }
 
 fn value(expected: &str, found: &str) -> Option<(String, String)> {
-    let (expected, found) = (serde_json::from_str(expected).ok()?, serde_json::from_str(found).ok()?);
+    let (expected, found) =
+        (serde_json::from_str(expected).ok()?, serde_json::from_str(found).ok()?);
     let (pointer, expected, found) = value_at(String::new(), Some(&expected), Some(&found))?;
-    let shown = |value: Option<&Value>| value.map_or("nothing".to_owned(), |v| excerpt(&v.to_string()));
+    let shown =
+        |value: Option<&Value>| value.map_or("nothing".to_owned(), |v| excerpt(&v.to_string()));
     Some((format!("{} at {pointer}", shown(expected)), shown(found)))
 }
 
@@ -78,7 +83,11 @@ fn line(expected: &[u8], found: &[u8]) -> (String, String) {
 fn excerpt(text: &str) -> String {
     let start: String = text.chars().take(60).collect();
     let more = if start.len() < text.len() { "..." } else { "" };
-    format!("`{}{more}`", start.escape_debug())
+    let visible: String = start
+        .chars()
+        .map(|c| if c.is_control() { c.escape_debug().to_string() } else { c.to_string() })
+        .collect();
+    format!("`{visible}{more}`")
 }
 
 #[cfg(test)]
@@ -91,7 +100,10 @@ mod tests {
             let (expected, found) = first(path, a.as_bytes(), b.as_bytes());
             format!("{expected} / {found}")
         };
-        assert_eq!(say("t.csv", "a,b\n1,2\n3,4\n", "a,b\n1,2\n3,5\n"), "`4` in row 2, column `b` / `5`");
+        assert_eq!(
+            say("t.csv", "a,b\n1,2\n3,4\n", "a,b\n1,2\n3,5\n"),
+            "`4` in row 2, column `b` / `5`"
+        );
         assert_eq!(say("t.csv", "a\n1\n", "a\n1\n2\n"), "1 rows / 2 rows");
         assert_eq!(say("t.csv", "a\n1\n", "b\n1\n"), "the columns a / the columns b");
         assert_eq!(say("t.csv", "a\n1\n", "a\r\n1\r\n"), "`a` in line 1 / `a\\r`");

@@ -14,7 +14,11 @@ pub(super) fn check(archive: &Archive) -> Vec<Fault> {
     let mut faults = Vec::new();
     match tree.get(format::BAGIT).map(|bytes| String::from_utf8_lossy(bytes)) {
         Some(text) if text.lines().eq(bag::DECLARATION.lines()) => {}
-        _ => faults.push(Fault::new(format::BAGIT, "the declaration of BagIt 1.0 in UTF-8", "another")),
+        _ => faults.push(Fault::new(
+            format::BAGIT,
+            "the declaration of BagIt 1.0 in UTF-8",
+            "another",
+        )),
     }
     let mut listed = BTreeMap::new();
     for file in [format::MANIFEST, format::TAG_MANIFEST] {
@@ -29,7 +33,8 @@ pub(super) fn check(archive: &Archive) -> Vec<Fault> {
                     if payload == (file == format::MANIFEST) {
                         listed.insert(path, (digest, file));
                     } else {
-                        let expected = if payload { "tag files only" } else { "payload files only" };
+                        let expected =
+                            if payload { "tag files only" } else { "payload files only" };
                         faults.push(Fault::new(file, expected, format!("`{path}`")));
                     }
                 }
@@ -51,12 +56,24 @@ pub(super) fn check(archive: &Archive) -> Vec<Fault> {
     for path in tree.keys() {
         let exempt = path == format::TAG_MANIFEST || format::SIGNATURES.contains(&path.as_str());
         if !exempt && !listed.contains_key(path) {
-            let list = if path.starts_with(format::PAYLOAD) { format::MANIFEST } else { format::TAG_MANIFEST };
-            faults.push(Fault::new(path, format!("only files that {list} lists"), "an unlisted file"));
+            let list = if path.starts_with(format::PAYLOAD) {
+                format::MANIFEST
+            } else {
+                format::TAG_MANIFEST
+            };
+            faults.push(Fault::new(
+                path,
+                format!("only files that {list} lists"),
+                "an unlisted file",
+            ));
         }
     }
     if tree.contains_key("fetch.txt") {
-        faults.push(Fault::new("fetch.txt", "a bundle that holds all its files", "a list of files to fetch"));
+        faults.push(Fault::new(
+            "fetch.txt",
+            "a bundle that holds all its files",
+            "a list of files to fetch",
+        ));
     }
     faults
 }

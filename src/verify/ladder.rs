@@ -161,7 +161,11 @@ pub fn climb(
 fn climb_on(report: &mut Report, bundle: &Bundle, options: &Options, pipeline: &dyn Pipeline) {
     if bundle.engine() != pipeline.engine() {
         let path = format!("{}{}", format::PAYLOAD, format::RESOLVED);
-        let fault = Fault::new(path, format!("engine {}", pipeline.engine()), format!("engine {}", bundle.engine()));
+        let fault = Fault::new(
+            path,
+            format!("engine {}", pipeline.engine()),
+            format!("engine {}", bundle.engine()),
+        );
         let hint = "only the engine that ran a study can derive or execute it again; the bundle's README.md has the line \
                     that installs it";
         report.note(Level::Derived, Severity::Obstacle, [fault.hint(hint)]);

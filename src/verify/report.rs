@@ -19,7 +19,12 @@ impl Report {
         fact("results", self.results_digest.map(|digest| format!("sha256:{digest}")));
         fact("bundle", self.bundle_id.map(|id| format!("sha256:{id}")));
         for level in Level::ALL.into_iter().filter(|level| *level <= self.asked) {
-            text.push_str(&format!("  {} {:<9} {}\n", level.number(), level.name(), self.state(level)));
+            text.push_str(&format!(
+                "  {} {:<9} {}\n",
+                level.number(),
+                level.name(),
+                self.state(level)
+            ));
         }
         for finding in &self.findings {
             text.push_str(&format!("{finding}\n"));
@@ -27,8 +32,7 @@ impl Report {
         if let Some(sample) = &self.sample {
             text.push_str(&format!("{}\n", sample.in_words()));
         }
-        let reached =
-            self.reached.map_or("no level".to_owned(), |level| format!("level {level}"));
+        let reached = self.reached.map_or("no level".to_owned(), |level| format!("level {level}"));
         text.push_str(&format!("reached {reached} of level {}: {}\n", self.asked, self.answer()));
         text
     }
@@ -61,7 +65,8 @@ impl Report {
 
     /// For CI: JUnit XML, one test case a level.
     pub fn to_junit(&self) -> String {
-        let levels: Vec<Level> = Level::ALL.into_iter().filter(|level| *level <= self.asked).collect();
+        let levels: Vec<Level> =
+            Level::ALL.into_iter().filter(|level| *level <= self.asked).collect();
         let of = |level: Level| self.findings.iter().filter(move |finding| finding.level == level);
         let mut cases = String::new();
         let (mut failures, mut skipped) = (0, 0);
@@ -85,9 +90,12 @@ impl Report {
                 let why = of(*level).next().map_or("not judged".to_owned(), Finding::to_string);
                 format!("<skipped message=\"{}\"/>", printable(&why))
             };
-            cases.push_str(&format!("    <testcase classname=\"reenact.verify\" name=\"{name}\">{body}</testcase>\n"));
+            cases.push_str(&format!(
+                "    <testcase classname=\"reenact.verify\" name=\"{name}\">{body}</testcase>\n"
+            ));
         }
-        let counts = format!("tests=\"{}\" failures=\"{failures}\" skipped=\"{skipped}\"", levels.len());
+        let counts =
+            format!("tests=\"{}\" failures=\"{failures}\" skipped=\"{skipped}\"", levels.len());
         let name = printable(self.name.as_deref().unwrap_or("bundle"));
         format!(
             "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites {counts}>\n  <testsuite name=\"{name}\" {counts} \
@@ -96,7 +104,8 @@ impl Report {
     }
 
     fn state(&self, level: Level) -> &'static str {
-        let weighs = |severity| self.findings.iter().any(|f| f.level == level && f.severity == severity);
+        let weighs =
+            |severity| self.findings.iter().any(|f| f.level == level && f.severity == severity);
         if weighs(Severity::Error) {
             "failed"
         } else if weighs(Severity::Obstacle) || !self.judged.contains(&level) {

@@ -48,13 +48,25 @@ fn tag_files_come_first_and_nothing_depends_on_the_day() {
 #[test]
 fn hostile_names_are_refused() {
     for (name, fault) in [
-        ("../evil", "../evil: expected a safe relative path, found a path that climbs out of its folder"),
+        (
+            "../evil",
+            "../evil: expected a safe relative path, found a path that climbs out of its folder",
+        ),
         ("/etc/evil", "/etc/evil: expected a safe relative path, found an absolute path"),
-        ("C:/evil", "C:/evil: expected a safe relative path, found a drive letter or a colon in its name"),
+        (
+            "C:/evil",
+            "C:/evil: expected a safe relative path, found a drive letter or a colon in its name",
+        ),
         ("b\\evil", "b\\\\evil: expected a safe relative path, found a backslash in its name"),
-        ("b/\u{1}", "b/\\u{1}: expected a safe relative path, found a control character in its name"),
+        (
+            "b/\u{1}",
+            "b/\\u{1}: expected a safe relative path, found a control character in its name",
+        ),
         ("b//x", "b//x: expected a safe relative path, found an empty part in its path"),
-        ("b/nul.txt", "b/nul.txt: expected a safe relative path, found the name of a Windows device"),
+        (
+            "b/nul.txt",
+            "b/nul.txt: expected a safe relative path, found the name of a Windows device",
+        ),
         ("b/x.", "b/x.: expected a safe relative path, found a name that ends in a dot or a space"),
         (
             "b/e\u{301}",
@@ -89,7 +101,9 @@ fn hostile_structure_is_refused() {
     central_only[last..last + 5].copy_from_slice(b"b/twO");
     let found = faults(&central_only);
     assert!(
-        found[0].starts_with("(archive): expected local and central headers that agree, found others: "),
+        found[0].starts_with(
+            "(archive): expected local and central headers that agree, found others: "
+        ),
         "{found:?}"
     );
 
@@ -101,7 +115,9 @@ fn hostile_structure_is_refused() {
     let mut encrypted = zip.clone();
     let at = encrypted.windows(4).rposition(|w| w == b"PK\x01\x02").unwrap();
     encrypted[at + 8] |= 1;
-    assert!(faults(&encrypted).contains(&"b/two: expected a plain file, found encryption".to_owned()));
+    assert!(
+        faults(&encrypted).contains(&"b/two: expected a plain file, found encryption".to_owned())
+    );
 
     let mut prefixed = b"#!/bin/sh\n".to_vec();
     prefixed.extend(&zip);
@@ -109,17 +125,23 @@ fn hostile_structure_is_refused() {
         faults(&prefixed)[0],
         "(archive): expected a zip that begins at the first byte, found 10 bytes before it"
     );
-    assert!(faults(&zip[..zip.len() / 2])[0].starts_with("(archive): expected a whole zip archive"));
+    assert!(
+        faults(&zip[..zip.len() / 2])[0].starts_with("(archive): expected a whole zip archive")
+    );
     assert!(faults(b"")[0].starts_with("(archive): expected a whole zip archive"));
     assert_eq!(
         faults(&sample::zip_of(&[("x/readme", b"")])),
-        ["(archive): expected one bag (bagit.txt) or crate (ro-crate-metadata.json), found neither (is it a bundle, and \
-          is it whole?)"]
+        [
+            "(archive): expected one bag (bagit.txt) or crate (ro-crate-metadata.json), found neither (is it a bundle, and \
+          is it whole?)"
+        ]
     );
     assert_eq!(
         faults(&sample::zip_of(&[("x/bagit.txt", b""), ("y/bagit.txt", b"")])),
-        ["(archive): expected one bag (bagit.txt) or crate (ro-crate-metadata.json), found 2 bags: x, y (is it a bundle, \
-          and is it whole?)"]
+        [
+            "(archive): expected one bag (bagit.txt) or crate (ro-crate-metadata.json), found 2 bags: x, y (is it a bundle, \
+          and is it whole?)"
+        ]
     );
 }
 
@@ -142,7 +164,8 @@ fn bombs_and_forged_sizes_are_refused() {
     let mut forged = honest.clone();
     sample::replace(&mut forged, &5000_u32.to_le_bytes(), &10_u32.to_le_bytes());
     assert!(
-        faults(&forged)[0].starts_with("b/text: expected an entry that unpacks to its declared size"),
+        faults(&forged)[0]
+            .starts_with("b/text: expected an entry that unpacks to its declared size"),
         "{:?}",
         faults(&forged)
     );
@@ -153,7 +176,8 @@ fn bombs_and_forged_sizes_are_refused() {
     let text = flipped.windows(6).position(|w| w == b"b/text").unwrap() + 6;
     flipped[text + 2] ^= 1;
     assert!(
-        faults(&flipped)[0].starts_with("b/text: expected an entry that unpacks to its declared size"),
+        faults(&flipped)[0]
+            .starts_with("b/text: expected an entry that unpacks to its declared size"),
         "{:?}",
         faults(&flipped)
     );
