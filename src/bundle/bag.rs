@@ -8,10 +8,11 @@ pub const DECLARATION: &str = "BagIt-Version: 1.0\nTag-File-Character-Encoding: 
 
 /// Manifest lines of `files`, in their order.
 pub(super) fn manifest<'a>(files: impl IntoIterator<Item = (&'a String, &'a Vec<u8>)>) -> String {
-    files
-        .into_iter()
-        .map(|(path, bytes)| format!("{}  {path}\n", Sha256Digest::of(bytes)))
-        .collect()
+    let mut text = String::new();
+    for (path, bytes) in files {
+        text.push_str(&format!("{}  {path}\n", Sha256Digest::of(bytes)));
+    }
+    text
 }
 
 /// Reads a manifest. Upper-case digits, ` *` before the path and CRLF are other tools' habits, and harmless.
@@ -85,7 +86,11 @@ impl BagInfo {
     }
 
     pub(super) fn to_text(&self) -> String {
-        self.0.iter().map(|(label, value)| format!("{label}: {value}\n")).collect()
+        let mut text = String::new();
+        for (label, value) in &self.0 {
+            text.push_str(&format!("{label}: {value}\n"));
+        }
+        text
     }
 
     /// Reads the file; lines that begin with white space continue the last value.

@@ -102,14 +102,13 @@ pub fn seal_inputs(
                 let wanted = names::portable(&as_written);
                 let (stem, extension) = wanted.rsplit_once('.').unwrap_or((&wanted, ""));
                 let dot = if extension.is_empty() { "" } else { "." };
-                let numbered = |n: usize| match n {
-                    1 => wanted.clone(),
-                    n => format!("{stem}-{n}{dot}{extension}"),
-                };
-                (1..)
-                    .map(numbered)
-                    .find(|name| taken.insert(name.to_ascii_lowercase()))
-                    .unwrap_or_default()
+                let mut name = wanted.clone();
+                let mut number = 2;
+                while !taken.insert(name.to_ascii_lowercase()) {
+                    name = format!("{stem}-{number}{dot}{extension}");
+                    number += 1;
+                }
+                name
             })
             .clone();
         inputs.push(SealedInput { name, as_written, bytes, license });

@@ -22,13 +22,13 @@ impl Entity {
 
     /// With a reference to another entity.
     #[must_use]
-    pub(super) fn to(self, key: &str, id: &str) -> Self {
-        self.to_all(key, [id])
+    pub(super) fn refer(self, key: &str, id: &str) -> Self {
+        self.refer_all(key, [id])
     }
 
     /// With references. One-element arrays are flagged by the validator (ro-crate-1.1_24.1), empty ones say nothing.
     #[must_use]
-    pub(super) fn to_all<S: AsRef<str>>(
+    pub(super) fn refer_all<S: AsRef<str>>(
         mut self,
         key: &str,
         ids: impl IntoIterator<Item = S>,

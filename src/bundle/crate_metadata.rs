@@ -103,7 +103,7 @@ impl People {
         for (author, id) in content.authors.iter().zip(&self.authors) {
             let organization = &self.organizations[affiliation(author)].0;
             let person = Entity::new(id, &["Person"]).text("name", &author.name);
-            entities.push(person.to("affiliation", organization));
+            entities.push(person.refer("affiliation", organization));
         }
         if content.authors.is_empty() {
             let name = format!("The authors of {}", content.name);
@@ -153,15 +153,15 @@ impl Graph<'_> {
             .text("name", &content.title)
             .text("description", description)
             .text("datePublished", self.circumstance.ended.date())
-            .to("license", &license_id(&content.license))
-            .to_all("author", &self.people.authors)
-            .to("publisher", self.people.publisher(content))
-            .to_all("conformsTo", PROFILES.map(|(id, ..)| id))
-            .to("mainEntity", format::STUDY)
-            .to_all("identifier", ["#results-digest", "#study-digest"])
-            .to_all("hasPart", parts)
-            .to_all("mentions", actions)
-            .with(content.cite.as_ref(), |root, cite| root.to("citation", &cite_id(cite)));
+            .refer("license", &license_id(&content.license))
+            .refer_all("author", &self.people.authors)
+            .refer("publisher", self.people.publisher(content))
+            .refer_all("conformsTo", PROFILES.map(|(id, ..)| id))
+            .refer("mainEntity", format::STUDY)
+            .refer_all("identifier", ["#results-digest", "#study-digest"])
+            .refer_all("hasPart", parts)
+            .refer_all("mentions", actions)
+            .with(content.cite.as_ref(), |root, cite| root.refer("citation", &cite_id(cite)));
         let digest = |id: &str, name: &str, value: String| {
             Entity::new(id, &["PropertyValue"])
                 .text("propertyID", format!("{}{id}", format::HOME))
@@ -169,7 +169,7 @@ impl Graph<'_> {
                 .text("value", value)
         };
         let mut entities = vec![
-            Entity::new(format::METADATA, &["CreativeWork"]).to("about", "./").to_all(
+            Entity::new(format::METADATA, &["CreativeWork"]).refer("about", "./").refer_all(
                 "conformsTo",
                 [
                     "https://w3id.org/ro/crate/1.1",
@@ -181,7 +181,7 @@ impl Graph<'_> {
             digest("#study-digest", "study digest", format!("sha256:{study}")),
             Entity::new(format::PREVIEW, &["CreativeWork"])
                 .text("name", "Page about this bundle")
-                .to("about", "./")
+                .refer("about", "./")
                 .text("encodingFormat", "text/html"),
             Entity::new(BIOSCHEMAS, &["CreativeWork"])
                 .text("name", "Bioschemas ComputationalWorkflow profile")
@@ -244,35 +244,35 @@ impl Graph<'_> {
             )
             .text("version", "1")
             .text("url", format::HOME)
-            .to_all("author", &self.people.authors)
-            .to("license", &license_id(&self.content.license))
-            .to("conformsTo", BIOSCHEMAS)
-            .to("programmingLanguage", &language)
-            .to_all("input", inputs.iter().cloned().chain(seed))
-            .to_all("output", &outputs)
-            .to_all("hasPart", [&simulate, &analyze])
-            .to_all("step", ["#step-trials", "#step-analysis"]),
+            .refer_all("author", &self.people.authors)
+            .refer("license", &license_id(&self.content.license))
+            .refer("conformsTo", BIOSCHEMAS)
+            .refer("programmingLanguage", &language)
+            .refer_all("input", inputs.iter().cloned().chain(seed))
+            .refer_all("output", &outputs)
+            .refer_all("hasPart", [&simulate, &analyze])
+            .refer_all("step", ["#step-trials", "#step-analysis"]),
             Entity::new(&language, &["ComputerLanguage"])
                 .text("name", "Reenact manifest")
                 .text("alternateName", "reenact")
                 .text("version", "1")
                 .text("url", format::HOME)
-                .to("identifier", &language),
+                .refer("identifier", &language),
             tool(&runner, "reenact", "Runs every trial of a manifest and seals what came out"),
             tool(&simulate, "reenact simulate", "Simulates one trial")
-                .to("softwareRequirements", &runner)
-                .to_all("input", &inputs),
+                .refer("softwareRequirements", &runner)
+                .refer_all("input", &inputs),
             tool(&analyze, "reenact analyse", "Tabulates records, judges claims, draws figures")
-                .to("softwareRequirements", &runner)
-                .to_all("output", &outputs),
+                .refer("softwareRequirements", &runner)
+                .refer_all("output", &outputs),
             Entity::new("#step-trials", &["HowToStep"])
                 .text("name", "Run every trial")
                 .text("position", "1")
-                .to("workExample", &simulate),
+                .refer("workExample", &simulate),
             Entity::new("#step-analysis", &["HowToStep"])
                 .text("name", "Tabulate, judge and draw")
                 .text("position", "2")
-                .to("workExample", &analyze),
+                .refer("workExample", &analyze),
         ]
     }
 
@@ -287,7 +287,7 @@ impl Graph<'_> {
                     .text("name", file.parameter.trim_start_matches('#'))
                     .text("description", title(&file.path).1)
                     .text("encodingFormat", format::media_type(&file.path))
-                    .to("workExample", &file.path)
+                    .refer("workExample", &file.path)
             })
             .collect();
         entities.push(
@@ -296,13 +296,13 @@ impl Graph<'_> {
                 .text("name", "seed")
                 .text("description", "Seed of the experiment: every random stream derives from it")
                 .text("valueRequired", "True")
-                .to("workExample", "#seed"),
+                .refer("workExample", "#seed"),
         );
         entities.push(
             Entity::new("#seed", &["PropertyValue"])
                 .text("name", "seed")
                 .text("value", self.content.seed.to_string())
-                .to("exampleOfWork", "#parameter-seed"),
+                .refer("exampleOfWork", "#parameter-seed"),
         );
         entities
     }
@@ -319,7 +319,7 @@ impl Graph<'_> {
             (1..=circumstance.environment.len()).map(|i| format!("#environment-{i}")).collect();
         let timed = |entity: Entity| {
             entity
-                .to("agent", &self.people.authors[0])
+                .refer("agent", &self.people.authors[0])
                 .text("startTime", circumstance.started.iso())
                 .text("endTime", circumstance.ended.iso())
         };
@@ -349,10 +349,10 @@ impl Graph<'_> {
                 failed,
                 all,
             )
-            .to("instrument", format::STUDY)
-            .to_all("object", inputs.iter().map(String::as_str).chain(["#seed"]))
-            .to_all("result", &outputs)
-            .to_all("environment", &environment),
+            .refer("instrument", format::STUDY)
+            .refer_all("object", inputs.iter().map(String::as_str).chain(["#seed"]))
+            .refer_all("result", &outputs)
+            .refer_all("environment", &environment),
         ];
         for (condition, id) in content.conditions.iter().zip(&trials) {
             let count = condition.records.len();
@@ -361,9 +361,9 @@ impl Graph<'_> {
             let name = format!("Condition {}", condition.label);
             entities.push(
                 action(id, name, description, condition.failed, count)
-                    .to("instrument", &simulate)
-                    .to_all("object", inputs.iter().map(String::as_str).chain(["#seed"]))
-                    .to("result", &format::records_path(&condition.slug)),
+                    .refer("instrument", &simulate)
+                    .refer_all("object", inputs.iter().map(String::as_str).chain(["#seed"]))
+                    .refer("result", &format::records_path(&condition.slug)),
             );
         }
         entities.push(
@@ -374,28 +374,28 @@ impl Graph<'_> {
                 0,
                 0,
             )
-            .to("instrument", &analyze)
-            .to_all("object", &records)
-            .to_all("result", &outputs),
+            .refer("instrument", &analyze)
+            .refer_all("object", &records)
+            .refer_all("result", &outputs),
         );
         entities.push(
             Entity::new("#control-trials", &["ControlAction"])
                 .text("name", "Orchestrate the trials")
-                .to("instrument", "#step-trials")
-                .to_all("object", &trials),
+                .refer("instrument", "#step-trials")
+                .refer_all("object", &trials),
         );
         entities.push(
             Entity::new("#control-analysis", &["ControlAction"])
                 .text("name", "Orchestrate the analysis")
-                .to("instrument", "#step-analysis")
-                .to("object", "#analysis"),
+                .refer("instrument", "#step-analysis")
+                .refer("object", "#analysis"),
         );
         entities.push(
             timed(Entity::new("#engine-run", &["OrganizeAction"]))
                 .text("name", format!("Run of reenact {}", circumstance.version))
-                .to("instrument", &runner)
-                .to_all("object", ["#control-trials", "#control-analysis"])
-                .to("result", "#run"),
+                .refer("instrument", &runner)
+                .refer_all("object", ["#control-trials", "#control-analysis"])
+                .refer("result", "#run"),
         );
         for ((name, value), id) in circumstance.environment.iter().zip(&environment) {
             entities.push(
@@ -417,7 +417,7 @@ impl Graph<'_> {
                     "description",
                     "One file a condition, one line of JSON a trial, in plan order",
                 )
-                .to_all("hasPart", records),
+                .refer_all("hasPart", records),
         ];
         let parameters: BTreeMap<String, String> = self
             .inputs()
@@ -434,10 +434,12 @@ impl Graph<'_> {
         for (&path, &bytes) in self.files.iter().filter(|(path, _)| **path != format::STUDY) {
             let (name, description) = title(path);
             let entity = described(Entity::new(path, &["File"]), path, bytes, &name, &description)
-                .with(parameters.get(path), |file, parameter| file.to("exampleOfWork", parameter))
-                .with(licenses.get(path), |file, name| file.to("license", &license_id(name)))
+                .with(parameters.get(path), |file, parameter| {
+                    file.refer("exampleOfWork", parameter)
+                })
+                .with(licenses.get(path), |file, name| file.refer("license", &license_id(name)))
                 .with((path == format::README).then_some("./"), |file, root| {
-                    file.to("about", root)
+                    file.refer("about", root)
                 });
             entities.push(entity);
         }

@@ -35,7 +35,7 @@ pub(super) fn page(
     let (mut figures, mut files) = (String::new(), String::new());
     for (path, bytes) in payload {
         let path = escape(path.strip_prefix(format::PAYLOAD).unwrap_or(path));
-        if path.ends_with(".svg") && path.starts_with(format::RESULTS) {
+        if format::media_type(&path) == "image/svg+xml" && path.starts_with(format::RESULTS) {
             figures.push_str(&format!(
                 "<figure><img src=\"{path}\" alt=\"{path}\"><figcaption>{path}</figcaption></figure>\n"
             ));

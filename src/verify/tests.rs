@@ -334,7 +334,7 @@ fn truncated_and_misplaced_records_are_found() {
         ],
         |tree| {
             edit(tree, "data/trials/none.jsonl", |text| {
-                text.lines().take(2).map(|line| format!("{line}\n")).collect()
+                text.split_inclusive('\n').take(2).collect()
             });
             sample::recompute(tree);
         },
