@@ -38,14 +38,15 @@ pub mod sim;
 // Layer 3: the studies.
 pub mod studies;
 
-// Layer 8: what people look at.
-pub mod report;
 // Layer 6: running a plan, and sealing what came out.
 pub mod bundle;
 pub mod runner;
 
-// Layer 7: judging what was sealed.
+// Layer 7: checking a sealed bundle.
 pub mod verify;
+
+// Layer 8: what people look at.
+pub mod report;
 
 // The shell: files, clock and environment.
 pub mod provenance;
