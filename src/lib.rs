@@ -31,6 +31,7 @@ pub mod robot;
 pub mod world;
 
 // Layer 2: the truth in motion, and the parts of a mind.
+pub mod cmdp;
 pub mod mapping;
 pub mod navigation;
 pub mod sim;

@@ -1,0 +1,308 @@
+//! `BuildCMDP(M, v, t_d, P_f)` of the deadline study (Algorithm 2, line 2): the model of navigating from the
+//! current vertex of a toposemantic map to a target vertex.
+//!
+//! What the study fixes: states are vertices, actions are maneuvers, each with one expected time and one
+//! failure probability; the primary cost is 1 outside the target; failure and time are bounded by `P_f` and
+//! `t_d`. What it leaves open, and how it is settled here:
+//!
+//! - Maneuvers are relative to the heading and X = V has none. An action is therefore an outgoing edge at a
+//!   speed. Its maneuver follows from the edge: through a door if either end is a room, on the side of the
+//!   edge's label S(e), else through a corridor.
+//! - The failure bound is on a *sum* of probabilities ([`Reading::Additive`]) or on the probability itself
+//!   ([`Reading::Reach`]).
+//! - Ties go by failure, then by time; a failure bound that cannot be met is dropped; a deadline that cannot
+//!   be met becomes the least time that can ([`Navigation::plan`]).
+
+use super::lexicographic::{Outcome, SolveError, Unmeetable, solve_with};
+use super::model::{Cmdp, CmdpBuilder};
+use thiserror::Error;
+
+/// What a vertex is: its semantic label's kind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// A room.
+    Room,
+    /// A corridor, intersection or dead end of one.
+    Corridor,
+}
+
+/// S(e): on which side of the vertex it comes from an edge is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// To the left of it.
+    Left,
+    /// To the right of it.
+    Right,
+}
+
+/// One explored, oriented edge (unexplored ones lead nowhere yet and are left out).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct OrientedEdge {
+    /// Index of the vertex that it leaves.
+    pub from: usize,
+    /// Index of the vertex that it enters.
+    pub to: usize,
+    /// S(e).
+    pub side: Side,
+}
+
+/// As much of a toposemantic map as a plan needs.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Topology {
+    /// V, by index.
+    pub vertices: Vec<Place>,
+    /// E, by index.
+    pub edges: Vec<OrientedEdge>,
+}
+
+/// The study's three elementary motions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Motion {
+    /// Go through a corridor.
+    Corridor,
+    /// Go through the door on the left.
+    DoorLeft,
+    /// Go through the door on the right.
+    DoorRight,
+}
+
+/// How a motion is executed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Speed {
+    /// Slowly.
+    Slow,
+    /// Fast.
+    Fast,
+}
+
+/// What a motion at a speed is expected to take.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Expectation {
+    /// Expected duration (s), at least 0.
+    pub time_s: f64,
+    /// Probability of failing, in [0, 1].
+    pub failure: f64,
+}
+
+/// The six (time, failure) pairs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Maneuvers {
+    /// Through a corridor: slow, fast.
+    pub corridor: [Expectation; 2],
+    /// Through a door on the left: slow, fast.
+    pub door_left: [Expectation; 2],
+    /// Through a door on the right: slow, fast.
+    pub door_right: [Expectation; 2],
+}
+
+impl Maneuvers {
+    /// What `motion` at `speed` is expected to take.
+    pub fn expect(&self, motion: Motion, speed: Speed) -> Expectation {
+        let both = match motion {
+            Motion::Corridor => &self.corridor,
+            Motion::DoorLeft => &self.door_left,
+            Motion::DoorRight => &self.door_right,
+        };
+        match speed {
+            Speed::Slow => both[0],
+            Speed::Fast => both[1],
+        }
+    }
+}
+
+/// What the study's costs are taken to mean.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Reading {
+    /// Literally (reading L): every step costs 1 until the target; failure probabilities are a cost that
+    /// adds up, by the union bound no less than the probability of failing.
+    #[default]
+    Additive,
+    /// As in the papers it builds on (reading R; Chow, Pavone, Sadler and Carpin 2015): failing is an
+    /// absorbing state, and the probability of ending there is minimised. Time counts while alive.
+    Reach,
+}
+
+/// What a navigation task is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Task {
+    /// `v_c`, where the robot is.
+    pub from: usize,
+    /// v, where it should go.
+    pub to: usize,
+    /// `t_d`, the local temporal deadline (s).
+    pub deadline_s: f64,
+    /// `P_f`, the bound on failure.
+    pub failure: f64,
+    /// What the costs mean.
+    pub reading: Reading,
+}
+
+/// An action of the model: follow an edge by a motion at a speed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Maneuver {
+    /// Index of the edge in the topology.
+    pub edge: usize,
+    /// The motion that the edge asks for.
+    pub motion: Motion,
+    /// The speed.
+    pub speed: Speed,
+}
+
+/// A navigation task as a constrained MDP. States are the vertices in order (then, by [`Reading::Reach`], the
+/// failure state); secondary costs are `failure`, then `time-s`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Navigation {
+    /// The model.
+    pub cmdp: Cmdp,
+    /// What its actions are, by index.
+    pub maneuvers: Vec<Maneuver>,
+}
+
+/// Index of the secondary cost `failure` in a [`Navigation`].
+pub const FAILURE: usize = 0;
+/// Index of the secondary cost `time-s` in a [`Navigation`].
+pub const TIME: usize = 1;
+
+/// Why no model can be built.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum BuildError {
+    /// An edge or the task names a vertex that is not in the map.
+    #[error("{what}: vertex {index} does not exist; expected an index below {count}")]
+    Vertex {
+        /// Who names it.
+        what: String,
+        /// The index.
+        index: usize,
+        /// How many vertices there are.
+        count: usize,
+    },
+    /// A time, probability or bound out of its range.
+    #[error("{what} is {value}; expected {expected}")]
+    Number {
+        /// Which.
+        what: String,
+        /// As given.
+        value: f64,
+        /// The range.
+        expected: &'static str,
+    },
+}
+
+/// Which motion following `edge` is.
+pub fn motion(topology: &Topology, edge: &OrientedEdge) -> Motion {
+    let door = [edge.from, edge.to].iter().any(|v| topology.vertices[*v] == Place::Room);
+    match (door, edge.side) {
+        (false, _) => Motion::Corridor,
+        (true, Side::Left) => Motion::DoorLeft,
+        (true, Side::Right) => Motion::DoorRight,
+    }
+}
+
+/// The model of `task` on `topology`.
+///
+/// # Errors
+/// A vertex that does not exist, or a number out of range.
+pub fn build_cmdp(
+    topology: &Topology,
+    task: &Task,
+    expectations: &Maneuvers,
+) -> Result<Navigation, BuildError> {
+    check(topology, task, expectations)?;
+    let vertices = topology.vertices.len();
+    let failed = vertices;
+    let reach = task.reading == Reading::Reach;
+    let maneuvers: Vec<Maneuver> = topology
+        .edges
+        .iter()
+        .enumerate()
+        .flat_map(|(index, edge)| {
+            let motion = motion(topology, edge);
+            [Speed::Slow, Speed::Fast].map(|speed| Maneuver { edge: index, motion, speed })
+        })
+        .collect();
+    let mut builder = CmdpBuilder::new(vertices + usize::from(reach), maneuvers.len());
+    let valid = "every entry was checked above";
+    builder.absorb(task.to).expect(valid);
+    if reach {
+        builder.absorb(failed).expect(valid);
+    }
+    builder.initial(task.from, 1.0).expect(valid);
+    for (action, maneuver) in maneuvers.iter().enumerate() {
+        let edge = topology.edges[maneuver.edge];
+        let failure = expectations.expect(maneuver.motion, maneuver.speed).failure;
+        if reach {
+            builder.transition(edge.from, action, failed, failure).expect(valid);
+            builder.transition(edge.from, action, edge.to, 1.0 - failure).expect(valid);
+        } else {
+            builder.transition(edge.from, action, edge.to, 1.0).expect(valid);
+        }
+    }
+    let failure = builder.secondary("failure", task.failure).expect(valid);
+    let time = builder.secondary("time-s", task.deadline_s).expect(valid);
+    for (action, maneuver) in maneuvers.iter().enumerate() {
+        let state = topology.edges[maneuver.edge].from;
+        let expected = expectations.expect(maneuver.motion, maneuver.speed);
+        let primary = if reach { expected.failure } else { 1.0 };
+        builder.primary(state, action, primary).expect(valid);
+        builder.secondary_cost(failure, state, action, expected.failure).expect(valid);
+        builder.secondary_cost(time, state, action, expected.time_s).expect(valid);
+    }
+    let cmdp = builder.build().expect("probabilities are p and 1 - p");
+    Ok(Navigation { cmdp, maneuvers })
+}
+
+impl Navigation {
+    /// `Solve(CMDP)` of Algorithm 2, always with a policy if the target can be reached at all. A failure bound
+    /// that cannot be met is dropped; then a deadline that cannot be met becomes the least expected time,
+    /// which is what "as the deadline nears the robot should speed up" asks. Both are flagged in
+    /// [`Solution::relaxed`](super::Solution::relaxed).
+    ///
+    /// # Errors
+    /// A model too large or too badly scaled.
+    pub fn plan(&self) -> Result<Outcome, SolveError> {
+        solve_with(&self.cmdp, &[Unmeetable::Drop, Unmeetable::AchieveLeast])
+    }
+}
+
+fn check(topology: &Topology, task: &Task, expectations: &Maneuvers) -> Result<(), BuildError> {
+    let count = topology.vertices.len();
+    let vertex = |what: String, index: usize| {
+        if index < count { Ok(()) } else { Err(BuildError::Vertex { what, index, count }) }
+    };
+    for (i, edge) in topology.edges.iter().enumerate() {
+        vertex(format!("start of edge {i}"), edge.from)?;
+        vertex(format!("end of edge {i}"), edge.to)?;
+    }
+    vertex("start of the task".to_owned(), task.from)?;
+    vertex("target of the task".to_owned(), task.to)?;
+    let amount = |what: String, value: f64| {
+        if value.is_finite() && value >= 0.0 {
+            Ok(())
+        } else {
+            Err(BuildError::Number { what, value, expected: "a finite number >= 0" })
+        }
+    };
+    amount("the deadline (s)".to_owned(), task.deadline_s)?;
+    amount("the failure bound".to_owned(), task.failure)?;
+    for (name, both) in [
+        ("corridor", expectations.corridor),
+        ("door left", expectations.door_left),
+        ("door right", expectations.door_right),
+    ] {
+        for (speed, expected) in ["slow", "fast"].iter().zip(both) {
+            amount(format!("the time (s) of {name}, {speed}"), expected.time_s)?;
+            if !(0.0..=1.0).contains(&expected.failure) {
+                return Err(BuildError::Number {
+                    what: format!("the failure probability of {name}, {speed}"),
+                    value: expected.failure,
+                    expected: "a probability in [0, 1]",
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+#[path = "tests/build.rs"]
+mod tests;

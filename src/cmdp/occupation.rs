@@ -1,0 +1,131 @@
+//! The occupation-measure linear programme of a constrained MDP (Altman 1999, chapter 8; Dufour and Piunovskiy
+//! 2013 for models in which some policies never arrive).
+//!
+//! ```text
+//! variables      rho(x,a) >= 0                                                      every sure pair
+//! minimise       sum rho(x,a) c(x,a)
+//! flow rows      sum_a rho(x,a) - sum_(y,b) P(y,b,x) rho(y,b) = beta(x)             every reachable x outside M
+//! bound rows     sum rho(x,a) c_i(x,a) + slack_i = D_i                              i = 1..L
+//! ```
+//!
+//! Two scalings make it well behaved. A column stands for the expected number of *departures* by (x, a), not
+//! of attempts: self-loops are folded by dividing the column by the exit probability, so that its own flow
+//! entry is exactly 1 and the others sum to at least -1. And a bound row is divided by its bound.
+
+use super::model::Cmdp;
+use super::prune::Sure;
+
+/// The programme in columns: first the pairs, then one slack per bound.
+#[derive(Debug)]
+pub(super) struct Programme {
+    /// How many flow rows there are; bound row i is row `flow_rows + i`.
+    pub(super) flow_rows: usize,
+    /// Per column its nonzero entries, by ascending row.
+    pub(super) columns: Vec<Vec<(usize, f64)>>,
+    /// Per pair column, which pair of the model it is.
+    pub(super) pairs: Vec<usize>,
+    /// Right-hand sides.
+    pub(super) rhs: Vec<f64>,
+    /// Per criterion (primary, then secondaries) the scaled cost of each column.
+    pub(super) objectives: Vec<Vec<f64>>,
+    /// What each criterion was divided by in `objectives`.
+    pub(super) objective_scale: Vec<f64>,
+    /// What each bound row was divided by.
+    pub(super) bound_scale: Vec<f64>,
+}
+
+/// A cost or a probability so extreme that the programme cannot be written in floating point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Overflow;
+
+impl Programme {
+    /// The programme over the `reachable` states and `sure` pairs of `cmdp`.
+    pub(super) fn new(cmdp: &Cmdp, sure: &Sure, reachable: &[bool]) -> Result<Self, Overflow> {
+        let mut row_of = vec![None; cmdp.states()];
+        let mut flow_rows = 0;
+        for x in (0..cmdp.states()).filter(|x| reachable[*x]) {
+            row_of[x] = Some(flow_rows);
+            flow_rows += 1;
+        }
+        let bounds = cmdp.secondary().len();
+        let mut rhs = vec![0.0; flow_rows + bounds];
+        for &(x, p) in cmdp.initial() {
+            if let Some(row) = row_of[x] {
+                rhs[row] = p;
+            }
+        }
+        // A pair that only stays where it is belongs to no policy that arrives.
+        let pairs: Vec<usize> = (0..cmdp.pairs().len())
+            .filter(|i| sure.pairs[*i] && reachable[cmdp.pairs()[*i].state])
+            .filter(|i| cmdp.pairs()[*i].exit() > 0.0)
+            .collect();
+        let folded: Vec<Vec<f64>> = pairs
+            .iter()
+            .map(|i| {
+                let pair = &cmdp.pairs()[*i];
+                let exit = pair.exit();
+                pair.costs.iter().map(|c| c / exit).collect()
+            })
+            .collect();
+        let largest = |k: usize| folded.iter().map(|c| c[k]).fold(0.0, f64::max);
+        let positive_or_one = |x: f64| if x > 0.0 { x } else { 1.0 };
+        let objective_scale: Vec<f64> = (0..=bounds).map(|k| positive_or_one(largest(k))).collect();
+        let bound_scale: Vec<f64> = cmdp
+            .secondary()
+            .iter()
+            .zip(&objective_scale[1..])
+            .map(
+                |(secondary, largest)| {
+                    if secondary.bound > 0.0 { secondary.bound } else { *largest }
+                },
+            )
+            .collect();
+        for (i, secondary) in cmdp.secondary().iter().enumerate() {
+            rhs[flow_rows + i] = secondary.bound / bound_scale[i];
+        }
+
+        let mut columns = Vec::with_capacity(pairs.len() + bounds);
+        for (i, costs) in pairs.iter().zip(&folded) {
+            let pair = &cmdp.pairs()[*i];
+            let exit = pair.exit();
+            let mut column: Vec<(usize, f64)> = pair
+                .elsewhere()
+                .filter_map(|(y, p)| row_of[y].map(|row| (row, -p / exit)))
+                .chain(row_of[pair.state].map(|row| (row, 1.0)))
+                .collect();
+            column.sort_unstable_by_key(|(row, _)| *row);
+            for (k, scale) in bound_scale.iter().enumerate() {
+                if costs[k + 1] > 0.0 {
+                    column.push((flow_rows + k, costs[k + 1] / scale));
+                }
+            }
+            columns.push(column);
+        }
+        columns.extend((0..bounds).map(|i| vec![(flow_rows + i, 1.0)]));
+        let objectives: Vec<Vec<f64>> = objective_scale
+            .iter()
+            .enumerate()
+            .map(|(k, scale)| {
+                let slacks = std::iter::repeat_n(0.0, bounds);
+                folded.iter().map(|c| c[k] / scale).chain(slacks).collect()
+            })
+            .collect();
+        let finite = columns.iter().flatten().all(|(_, value)| value.is_finite())
+            && objectives.iter().flatten().all(|value| value.is_finite())
+            && objective_scale.iter().chain(&bound_scale).all(|scale| scale.is_finite());
+        if !finite {
+            return Err(Overflow);
+        }
+        Ok(Self { flow_rows, columns, pairs, rhs, objectives, objective_scale, bound_scale })
+    }
+
+    /// How many rows there are.
+    pub(super) fn rows(&self) -> usize {
+        self.rhs.len()
+    }
+
+    /// The column of the slack of bound `i`.
+    pub(super) fn slack(&self, i: usize) -> usize {
+        self.pairs.len() + i
+    }
+}
