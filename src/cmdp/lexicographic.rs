@@ -12,7 +12,7 @@
 //! 5. Read the policy off, and evaluate it exactly. The values reported are these.
 
 use super::improvement::lexicographic_best;
-use super::model::Cmdp;
+use super::model::{Cmdp, Pair};
 use super::occupation::{Overflow, Programme};
 use super::policy::{Policy, evaluate, of_vertex};
 use super::prune::Sure;
@@ -50,6 +50,8 @@ pub enum Outcome {
 pub enum Infeasible {
     /// No policy reaches the absorbing set with certainty.
     NoSureArrival,
+    /// None does so without ever paying a cost whose bound is zero.
+    ZeroBounds,
     /// A bound cannot be met together with those before it.
     Bound {
         /// Which secondary cost.
@@ -160,16 +162,25 @@ pub fn solve(cmdp: &Cmdp) -> Result<Outcome, SolveError> {
 /// Where `handling` does not have one entry per secondary cost.
 pub fn solve_with(cmdp: &Cmdp, handling: &[Unmeetable]) -> Result<Outcome, SolveError> {
     assert_eq!(handling.len(), cmdp.secondary().len(), "one handling per secondary cost");
-    let sure = Sure::of(cmdp);
-    let Some(reachable) = sure.reachable(cmdp) else {
+    let sure = Sure::of(cmdp, |_| true);
+    if sure.reachable(cmdp).is_none() {
         return Ok(Outcome::Infeasible(Infeasible::NoSureArrival));
+    }
+    // A bound of zero forbids every pair that costs. Said so beforehand it is kept exactly.
+    let forbidding: Vec<usize> = (0..handling.len())
+        .filter(|i| handling[*i] == Unmeetable::Refuse && cmdp.secondary()[*i].bound == 0.0)
+        .collect();
+    let free = |pair: &Pair| forbidding.iter().all(|i| pair.costs[i + 1] == 0.0);
+    let allowed = Sure::of(cmdp, free);
+    let Some(reachable) = allowed.reachable(cmdp) else {
+        return Ok(Outcome::Infeasible(Infeasible::ZeroBounds));
     };
     let states = reachable.iter().filter(|r| **r).count();
     let acting = sure.approach.iter().flatten().count();
     if states.max(acting) > MAX_STATES {
         return Err(SolveError::TooLarge { states: states.max(acting) });
     }
-    let programme = Programme::new(cmdp, &sure, &reachable)?;
+    let programme = Programme::new(cmdp, &allowed, &reachable)?;
     let criteria = model_criteria(cmdp);
 
     let start = interior_or_nothing(&programme);
@@ -194,7 +205,7 @@ pub fn solve_with(cmdp: &Cmdp, handling: &[Unmeetable]) -> Result<Outcome, Solve
     let mut vertex = if let Some(vertex) = purified {
         vertex
     } else {
-        let best = lexicographic_best(cmdp, &sure, &criteria);
+        let best = lexicographic_best(cmdp, &allowed, &criteria);
         let columns: Vec<usize> = (0..programme.pairs.len())
             .filter(|j| {
                 let index = programme.pairs[*j];

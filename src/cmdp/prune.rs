@@ -5,7 +5,7 @@
 //! the largest S such that every state of S can reach M with positive probability by pairs that never leave
 //! S ∪ M (de Alfaro 1997, "Formal verification of probabilistic systems", almost-sure reachability).
 
-use super::model::Cmdp;
+use super::model::{Cmdp, Pair};
 
 /// The states from which some policy reaches M with probability 1, and the pairs that stay among them.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -20,8 +20,8 @@ pub struct Sure {
 }
 
 impl Sure {
-    /// The nested fixpoint on `cmdp`.
-    pub fn of(cmdp: &Cmdp) -> Self {
+    /// The nested fixpoint on the pairs of `cmdp` that are `usable`.
+    pub fn of(cmdp: &Cmdp, usable: impl Fn(&Pair) -> bool) -> Self {
         let pairs = cmdp.pairs();
         let mut arrivals = vec![Vec::new(); cmdp.states()];
         for (index, pair) in pairs.iter().enumerate() {
@@ -36,6 +36,7 @@ impl Sure {
                 .map(|pair| {
                     !cmdp.is_absorbing(pair.state)
                         && states[pair.state]
+                        && usable(pair)
                         && pair.successors.iter().all(|(y, _)| states[*y])
                 })
                 .collect();
@@ -122,7 +123,7 @@ mod tests {
     #[test]
     fn traps_dead_ends_and_those_that_only_lead_there_are_dropped() {
         let cmdp = trapped();
-        let sure = Sure::of(&cmdp);
+        let sure = Sure::of(&cmdp, |_| true);
         assert_eq!(sure.states, [true, false, false, false, true, true]);
         // In order: (0,0) (0,1) (1,0) (2,0) (2,1) (5,0) (5,1).
         assert_eq!(sure.pairs, [true, false, false, false, false, true, true]);
@@ -140,7 +141,7 @@ mod tests {
         builder.initial(0, 1.0).unwrap();
         builder.transition(0, 0, 0, 1.0).unwrap();
         let cmdp = builder.build().unwrap();
-        let sure = Sure::of(&cmdp);
+        let sure = Sure::of(&cmdp, |_| true);
         assert_eq!(sure.states, [false]);
         assert_eq!(sure.reachable(&cmdp), None);
     }

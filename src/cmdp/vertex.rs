@@ -21,6 +21,8 @@ const ENTRY: f64 = 1e-9;
 const FEASIBILITY: f64 = 1e-11;
 /// Mass of the interior point below which a column is simply set to zero.
 const NEGLIGIBLE: f64 = 1e-8;
+/// How small, relative to the largest multiplier, the terms of a reduced cost may be to count in full.
+const FLOOR: f64 = 1e-3;
 /// Pivots between two fresh factorisations.
 const FRESH: usize = 50;
 
@@ -205,24 +207,36 @@ impl<'a> Vertex<'a> {
         Err(Stalled)
     }
 
-    /// The reduced cost of a column and the size of the terms that it is made of.
-    fn reduced_cost(&self, column: usize, costs: &[f64], y: &[f64]) -> (f64, f64) {
+    /// The reduced cost of a column and the size of the terms that it is made of, with a floor: what is
+    /// exactly zero comes out as rounding of the largest multiplier.
+    fn reduced_cost(&self, column: usize, costs: &[f64], y: &[f64], floor: f64) -> (f64, f64) {
         let (mut reduced, mut scale) = (costs[column], costs[column].abs());
         for (row, entry) in &self.programme.columns[column] {
             let term = y[*row] * entry;
             reduced -= term;
             scale += term.abs();
         }
-        (reduced, scale)
+        // A slack is measured in bounds, a whole one of which is worth something next to the total.
+        let share = if column < self.programme.pairs.len() { FLOOR } else { 1.0 };
+        (reduced, scale.max(share * floor))
+    }
+
+    /// The size of the numbers that multipliers are made of: the largest expected total from any state, or
+    /// basic cost, as the former may cancel.
+    fn magnitude(&self, costs: &[f64], y: &[f64]) -> f64 {
+        let basic = self.basis.basic.iter().map(|column| costs[*column]);
+        let totals = y[..self.programme.flow_rows].iter().copied();
+        basic.chain(totals).fold(0.0, |largest, x| largest.max(x.abs()))
     }
 
     fn entering(&self, costs: &[f64], y: &[f64], tolerance: f64, bland: bool) -> Option<usize> {
+        let floor = self.magnitude(costs, y);
         let mut best = (0.0, None);
         for column in 0..self.programme.columns.len() {
             if self.row_of[column].is_some() || self.banned[column] {
                 continue;
             }
-            let (reduced, scale) = self.reduced_cost(column, costs, y);
+            let (reduced, scale) = self.reduced_cost(column, costs, y, floor);
             if reduced < -tolerance * scale && reduced < best.0 {
                 best = (reduced, Some(column));
                 if bland {
@@ -319,10 +333,11 @@ impl<'a> Vertex<'a> {
     }
 
     fn optimum(&self, costs: &[f64], y: &[f64]) -> Optimum {
+        let floor = self.magnitude(costs, y);
         let worse = (0..self.programme.columns.len())
             .filter(|column| self.row_of[*column].is_none())
             .filter(|column| {
-                let (reduced, scale) = self.reduced_cost(*column, costs, y);
+                let (reduced, scale) = self.reduced_cost(*column, costs, y, floor);
                 reduced > STRICTLY_WORSE * scale
             })
             .collect();

@@ -75,11 +75,8 @@ fn a_bound_of_zero_is_kept_exactly() {
     assert!(relative(solution.primary, 3.0) < 1e-11);
     assert_eq!(solution.policy.at(2), &[(1, 1.0)], "reached with probability 1e-14 only");
     // Without the free way there is none.
-    instance.pair(1, 0, &[], &[0.0, 1.0]);
-    assert_eq!(
-        solve(&instance.cmdp()).unwrap(),
-        Outcome::Infeasible(Infeasible::Bound { index: 0, least: 1e-9 })
-    );
+    instance.secondary[0].1.push((1, 0, 1.0));
+    assert_eq!(solve(&instance.cmdp()).unwrap(), Outcome::Infeasible(Infeasible::ZeroBounds));
 }
 
 /// All ways equal: still a vertex, still few randomised states.
@@ -102,7 +99,6 @@ fn ties_everywhere_leave_a_vertex() {
     let solution = optimal(&instance.cmdp());
     assert!(relative(solution.primary, 10.0) < 1e-14);
     assert!(solution.policy.randomised() <= 2);
-    assert!(matches!(solution.effort.interior, None | Some(_)));
 }
 
 /// Units from micro to mega in one model, and the same model in other units.
@@ -210,4 +206,77 @@ fn a_model_too_large_says_so() {
         solve(&instance.cmdp()).unwrap_err().to_string(),
         "2001 states take part; expected at most 2000"
     );
+}
+
+/// Wherever a bound cannot be met, the least total said to be achievable is, and nothing below it.
+#[test]
+fn the_least_achievable_total_is_the_knife_edge() {
+    let mut edges = 0;
+    for family in Family::ALL {
+        for index in 0..30 {
+            let mut instance = family.instance(index, 12);
+            let Outcome::Infeasible(why) = solve(&instance.cmdp()).unwrap() else { continue };
+            let Infeasible::Bound { index: i, least } = why else { panic!("{family:?} {why:?}") };
+            edges += 1;
+            for (_, later) in instance.secondary.iter_mut().enumerate().filter(|(j, _)| *j > i) {
+                later.0 = 1e6;
+            }
+            for nudge in [0.0, 1e-13, -1e-13, 1e-11, 1e-9, 1e-7, 1e-5] {
+                instance.secondary[i].0 = least * (1.0 + nudge);
+                let solution = optimal(&instance.cmdp());
+                let total = solution.secondary[i];
+                assert!(
+                    relative(total, least) < 2e-5,
+                    "{family:?} {index} {nudge}: {total} {least}"
+                );
+                assert!(solution.policy.randomised() <= 2);
+            }
+            for nudge in [1e-8, 1e-6, 1e-3] {
+                instance.secondary[i].0 = least * (1.0 - nudge);
+                let Outcome::Infeasible(Infeasible::Bound { least: again, .. }) =
+                    solve(&instance.cmdp()).unwrap()
+                else {
+                    panic!("{family:?} {index}: feasible at {nudge} below the least");
+                };
+                assert!(relative(again, least) < 1e-10, "{family:?} {index} {nudge}");
+            }
+        }
+    }
+    assert!(edges >= 20, "{edges} instances only were infeasible");
+}
+
+#[test]
+#[ignore]
+fn dbg_stress() {
+    for family in Family::ALL {
+        let mut bad = 0;
+        let mut fails = std::collections::BTreeMap::new();
+        let (mut opt, mut inf) = (0, 0);
+        for index in 100_000..100_600 {
+            let size = 5 + (index % 60) as usize;
+            let cmdp = family.instance(index, size).cmdp();
+            let expected = super::oracles::textbook(&cmdp);
+            match (solve(&cmdp), expected) {
+                (Ok(Outcome::Optimal(s)), Some(e)) => {
+                    opt += 1;
+                    *fails
+                        .entry(format!("{:?}", s.effort.interior.map(|r| r.map(|_| 0))))
+                        .or_insert(0) += 1;
+                    if relative(s.primary, e) > 1e-8 {
+                        bad += 1;
+                        eprintln!("{family:?} {index} {} {e}", s.primary);
+                    }
+                }
+                (Ok(Outcome::Infeasible(_)), None) => inf += 1,
+                (a, b) => {
+                    bad += 1;
+                    eprintln!(
+                        "{family:?} {index} {:?} {b:?}",
+                        a.map(|o| matches!(o, Outcome::Optimal(_)))
+                    );
+                }
+            }
+        }
+        eprintln!("{family:?} bad {bad} opt {opt} inf {inf} {fails:?}");
+    }
 }

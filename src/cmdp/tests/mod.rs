@@ -76,7 +76,7 @@ impl Instance {
     fn best_by(&self, k: usize) -> Vec<f64> {
         let cmdp = self.cmdp();
         let costs = cmdp.pairs().iter().map(|pair| pair.costs[k]).collect();
-        let sure = prune::Sure::of(&cmdp);
+        let sure = prune::Sure::of(&cmdp, |_| true);
         let best = improvement::lexicographic_best(&cmdp, &sure, &[costs]);
         let choices = best
             .iter()
@@ -85,17 +85,16 @@ impl Instance {
         evaluate(&cmdp, &Policy::new(&cmdp, choices)).unwrap()
     }
 
-    /// Sets each bound between what is least and what the cheapest policy takes, or a little outside.
+    /// Sets the bounds to what a mixture of the policies that are best by each secondary cost takes, or a
+    /// little more or less. Never nearly what is least: there, oracles with a tolerance cannot judge.
     fn bound(&mut self, stream: &mut Stream) {
-        let cheapest = self.best_by(0);
-        for i in 0..self.secondary.len() {
-            let least = self.best_by(i + 1)[i + 1];
-            let mut share = stream.between(-0.1, 1.2);
-            if share.abs() < 0.02 {
-                share = 0.02; // away from the knife edge, which oracles with a tolerance cannot judge
-            }
-            let span = (cheapest[i + 1] - least).max(0.1 * least);
-            self.secondary[i].0 = (least + share * span).max(0.0);
+        let extremes: Vec<_> = (0..self.secondary.len()).map(|i| self.best_by(i + 1)).collect();
+        let weight = stream.between(0.1, 0.9);
+        let (first, last) = (&extremes[0], &extremes[extremes.len() - 1]);
+        for (i, (bound, _)) in self.secondary.iter_mut().enumerate() {
+            let mixture = weight * first[i + 1] + (1.0 - weight) * last[i + 1];
+            let share = stream.between(0.75, 1.3);
+            *bound = mixture * if (share - 1.0).abs() < 0.003 { 1.003 } else { share };
         }
     }
 }

@@ -5,7 +5,7 @@ use super::*;
 use microlp::{ComparisonOp, OptimizationDirection, Problem};
 
 /// The textbook occupation-measure programme over every state outside M. `None` where infeasible.
-fn textbook(cmdp: &Cmdp) -> Option<f64> {
+pub(super) fn textbook(cmdp: &Cmdp) -> Option<f64> {
     let mut problem = Problem::new(OptimizationDirection::Minimize);
     let used: Vec<&Pair> =
         cmdp.pairs().iter().filter(|pair| !cmdp.is_absorbing(pair.state)).collect();
