@@ -244,39 +244,3 @@ fn the_least_achievable_total_is_the_knife_edge() {
     }
     assert!(edges >= 20, "{edges} instances only were infeasible");
 }
-
-#[test]
-#[ignore]
-fn dbg_stress() {
-    for family in Family::ALL {
-        let mut bad = 0;
-        let mut fails = std::collections::BTreeMap::new();
-        let (mut opt, mut inf) = (0, 0);
-        for index in 100_000..100_600 {
-            let size = 5 + (index % 60) as usize;
-            let cmdp = family.instance(index, size).cmdp();
-            let expected = super::oracles::textbook(&cmdp);
-            match (solve(&cmdp), expected) {
-                (Ok(Outcome::Optimal(s)), Some(e)) => {
-                    opt += 1;
-                    *fails
-                        .entry(format!("{:?}", s.effort.interior.map(|r| r.map(|_| 0))))
-                        .or_insert(0) += 1;
-                    if relative(s.primary, e) > 1e-8 {
-                        bad += 1;
-                        eprintln!("{family:?} {index} {} {e}", s.primary);
-                    }
-                }
-                (Ok(Outcome::Infeasible(_)), None) => inf += 1,
-                (a, b) => {
-                    bad += 1;
-                    eprintln!(
-                        "{family:?} {index} {:?} {b:?}",
-                        a.map(|o| matches!(o, Outcome::Optimal(_)))
-                    );
-                }
-            }
-        }
-        eprintln!("{family:?} bad {bad} opt {opt} inf {inf} {fails:?}");
-    }
-}
