@@ -8,6 +8,9 @@ use super::occupation::Programme;
 /// A row that no column covers yet.
 const UNCOVERED: usize = usize::MAX;
 
+/// A sum this small, relative to the sum of its terms' sizes, is zero.
+const ROUNDING: f64 = 1e-13;
+
 /// Columns B of a programme, one for each row, and B⁻¹.
 #[derive(Debug, Clone)]
 pub(super) struct Basis {
@@ -53,12 +56,21 @@ impl Basis {
         (missing == 0).then_some(basis)
     }
 
-    /// B⁻¹ a for a sparse column a.
+    /// B⁻¹ a for a sparse column a. Entries that are nothing but cancelled rounding are zero: rows have scales
+    /// of their own, so that only the terms of an entry tell how small it may be.
     pub(super) fn direction(&self, column: &[(usize, f64)]) -> Vec<f64> {
         let rows = self.basic.len();
         self.inverse
             .chunks_exact(rows.max(1))
-            .map(|line| column.iter().map(|(row, value)| line[*row] * value).sum())
+            .map(|line| {
+                let (mut sum, mut size) = (0.0_f64, 0.0);
+                for (row, value) in column {
+                    let term = line[*row] * value;
+                    sum += term;
+                    size += term.abs();
+                }
+                if sum.abs() > ROUNDING * size { sum } else { 0.0 }
+            })
             .collect()
     }
 

@@ -250,12 +250,21 @@ pub fn solve_with(cmdp: &Cmdp, handling: &[Unmeetable]) -> Result<Outcome, Solve
     effort.pivots = vertex.pivots;
 
     let fallback = fallback(cmdp, &sure, &criteria, &multipliers, &relaxed);
-    let policy = of_vertex(cmdp, &programme, &vertex, &fallback);
-    let totals = evaluate(cmdp, &policy).ok_or_else(|| numerical(&effort))?;
-    if totals.iter().chain(&multipliers).any(|total| !total.is_finite()) {
-        return Err(SolveError::Overflow);
+    // A share of 1e-13 is rounding of zero, unless what it buys costs 1e13 as much as the rest: then the exact
+    // totals say so, and it is kept.
+    let mut confirmed = Err(numerical(&effort));
+    for negligible in [1e-12, 1e-15, 0.0] {
+        let policy = of_vertex(cmdp, &programme, &vertex, &fallback, negligible);
+        let Some(totals) = evaluate(cmdp, &policy) else { continue };
+        if totals.iter().chain(&multipliers).any(|total| !total.is_finite()) {
+            return Err(SolveError::Overflow);
+        }
+        confirmed = confirm(cmdp, &programme, &totals[1..], &relaxed).map(|()| (policy, totals));
+        if confirmed.is_ok() {
+            break;
+        }
     }
-    confirm(cmdp, &programme, &totals[1..], &relaxed)?;
+    let (policy, totals) = confirmed?;
     Ok(Outcome::Optimal(Solution {
         primary: totals[0],
         secondary: totals[1..].to_vec(),

@@ -6,9 +6,6 @@ use super::model::Cmdp;
 use super::occupation::Programme;
 use super::vertex::Vertex;
 
-/// An action's share of its state's occupation below which it is rounding of zero.
-const NEGLIGIBLE_SHARE: f64 = 1e-12;
-
 /// π(x, a): with which probability each action is taken in each state. To be drawn afresh at every visit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Policy {
@@ -89,7 +86,8 @@ pub fn evaluate(cmdp: &Cmdp, policy: &Policy) -> Option<Vec<f64>> {
     Some(totals.iter().map(from_start).collect())
 }
 
-/// The policy of a vertex, with `fallback` (a pair per state) where it never comes.
+/// The policy of a vertex, with `fallback` (a pair per state) where it never comes. Actions whose share of
+/// their state's largest is `negligible` or less are dropped.
 ///
 /// A state with a single basic column takes it however small its occupation: a state reached with
 /// probability 1e-14 is reached.
@@ -98,6 +96,7 @@ pub(super) fn of_vertex(
     programme: &Programme,
     vertex: &Vertex<'_>,
     fallback: &[Option<usize>],
+    negligible: f64,
 ) -> Policy {
     let columns = vertex.columns();
     let mut basic: Vec<Vec<(usize, f64)>> = vec![Vec::new(); cmdp.states()];
@@ -111,7 +110,7 @@ pub(super) fn of_vertex(
     for choices in &mut basic {
         let largest = choices.iter().fold(0.0_f64, |largest, (_, rho)| largest.max(*rho));
         if choices.len() > 1 {
-            choices.retain(|(_, rho)| *rho > NEGLIGIBLE_SHARE * largest || *rho == largest);
+            choices.retain(|(_, rho)| *rho > negligible * largest || *rho == largest);
             if largest == 0.0 {
                 choices.truncate(1);
             }

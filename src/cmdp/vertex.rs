@@ -16,7 +16,10 @@ const STRICTLY_WORSE: f64 = 1e-11;
 /// After so much stalling a reduced cost this small is called zero.
 const FORGIVEN: f64 = 1e-9;
 /// Entries of a direction this small, relative to its largest, are rounding.
-const ENTRY: f64 = 1e-9;
+const ENTRY: f64 = 1e-13;
+/// How far from dependent, relative to the largest entry of its direction, a column is taken into the first
+/// basis.
+const INDEPENDENT: f64 = 1e-9;
 /// How far below zero, relative to the largest, a basic value may be.
 const FEASIBILITY: f64 = 1e-11;
 /// Mass of the interior point below which a column is simply set to zero.
@@ -75,7 +78,7 @@ impl<'a> Vertex<'a> {
     pub(super) fn of_interior(programme: &'a Programme, interior: &[f64]) -> Option<Self> {
         let mut order: Vec<usize> = (0..interior.len()).collect();
         order.sort_by(|a, b| interior[*b].total_cmp(&interior[*a]).then(a.cmp(b)));
-        let basis = Basis::factor(programme, order.iter().copied(), ENTRY)?;
+        let basis = Basis::factor(programme, order.iter().copied(), INDEPENDENT)?;
         let mut vertex = Self::at(programme, basis);
         // Columns outside the basis that carry mass are pushed to zero one by one.
         let extra: Vec<usize> = order
@@ -92,7 +95,7 @@ impl<'a> Vertex<'a> {
         for j in extra {
             vertex.push_to_zero(j, interior[j]);
         }
-        vertex.refresh(ENTRY)?;
+        vertex.refresh(0.0)?;
         let tolerance = FEASIBILITY * vertex.largest_value();
         vertex.values.iter().all(|x| *x >= -tolerance).then_some(vertex)
     }
