@@ -10,6 +10,8 @@
 //!    policy without bounds instead and impose the bounds one by one. What cannot be met is found here.
 //! 4. Certify or improve the vertex by pivots, criterion by criterion, each on the optimal face of the last.
 //! 5. Read the policy off, and evaluate it exactly. The values reported are these.
+//! 6. Hold them against the bounds, and the primary against a lower bound by weak duality that owes nothing to
+//!    steps 2 to 4 but the multipliers.
 
 use super::improvement::lexicographic_best;
 use super::model::{Cmdp, Pair};
@@ -133,7 +135,21 @@ pub enum SolveError {
         /// Its bound.
         bound: f64,
     },
+    /// The multipliers do not confirm that the solution is optimal.
+    #[error(
+        "the policy found costs {primary}, and {lower} could not be ruled out: rounding dominates; \
+         scale the costs or drop probabilities that are next to zero"
+    )]
+    Uncertified {
+        /// Its exact expected primary total.
+        primary: f64,
+        /// What every policy within the bounds costs at least.
+        lower: f64,
+    },
 }
+
+/// Relative gap between a solution and its lower bound that is called rounding.
+const GAP: f64 = 1e-8;
 
 impl From<Overflow> for SolveError {
     fn from(_: Overflow) -> Self {
@@ -201,6 +217,7 @@ pub fn solve_with(cmdp: &Cmdp, handling: &[Unmeetable]) -> Result<Outcome, Solve
     let stalled = |_: Stalled| numerical(&effort);
 
     let mut relaxed = Vec::new();
+    let mut kept_to_a_face = !forbidding.is_empty();
     let purified = found.and_then(|i| Vertex::of_interior(&programme, &i.columns));
     let mut vertex = if let Some(vertex) = purified {
         vertex
@@ -224,6 +241,7 @@ pub fn solve_with(cmdp: &Cmdp, handling: &[Unmeetable]) -> Result<Outcome, Solve
                 // Solving on the face of least total is solving with that total as the bound, without the
                 // knife edge.
                 vertex.keep_to(&optimum);
+                kept_to_a_face = true;
             }
             vertex.release(i);
             if !knife_edge {
@@ -265,6 +283,9 @@ pub fn solve_with(cmdp: &Cmdp, handling: &[Unmeetable]) -> Result<Outcome, Solve
         }
     }
     let (policy, totals) = confirmed?;
+    if relaxed.is_empty() && !kept_to_a_face {
+        certify(cmdp, &fallback, &multipliers, totals[0])?;
+    }
     Ok(Outcome::Optimal(Solution {
         primary: totals[0],
         secondary: totals[1..].to_vec(),
@@ -314,6 +335,29 @@ fn fallback(
         .chain(criteria[1..].iter().cloned())
         .collect();
     lexicographic_best(cmdp, sure, &order)
+}
+
+/// Weak duality: no policy within the bounds costs less than the best one without bounds by c + Σ λᵢ cᵢ, which
+/// is the fallback, minus Σ λᵢ Dᵢ.
+fn certify(
+    cmdp: &Cmdp,
+    fallback: &[Option<usize>],
+    multipliers: &[f64],
+    primary: f64,
+) -> Result<(), SolveError> {
+    let choices = fallback
+        .iter()
+        .map(|pair| pair.iter().map(|index| (cmdp.pairs()[*index].action, 1.0)).collect())
+        .collect();
+    let lower = evaluate(cmdp, &Policy::new(cmdp, choices)).map_or(f64::NEG_INFINITY, |totals| {
+        let priced = multipliers.iter().zip(cmdp.secondary()).zip(&totals[1..]);
+        totals[0] + priced.map(|((lambda, s), total)| lambda * (total - s.bound)).sum::<f64>()
+    });
+    if primary - lower <= GAP * primary {
+        Ok(())
+    } else {
+        Err(SolveError::Uncertified { primary, lower })
+    }
 }
 
 /// Holds the exact totals against the bounds, or against the least that was achievable.

@@ -8,9 +8,10 @@
 //! bound rows     sum rho(x,a) c_i(x,a) + slack_i = D_i                              i = 1..L
 //! ```
 //!
-//! Two scalings make it well behaved. A column stands for the expected number of *departures* by (x, a), not
+//! Three scalings make it well behaved. A column stands for the expected number of *departures* by (x, a), not
 //! of attempts: self-loops are folded by dividing the column by the exit probability, so that its own flow
-//! entry is exactly 1 and the others sum to at least -1. And a bound row is divided by its bound.
+//! entry is exactly 1 and the others sum to at least -1. A bound row is divided by its bound. And a column with
+//! entries above 1, one whose single departure would exceed a bound, is divided by the largest.
 
 use super::model::Cmdp;
 use super::prune::Sure;
@@ -22,6 +23,9 @@ pub(super) struct Programme {
     pub(super) flow_rows: usize,
     /// Per column its nonzero entries, by ascending row.
     pub(super) columns: Vec<Vec<(usize, f64)>>,
+    /// Per column, how many units of it make one departure: at least 1, so that no entry of a column is above
+    /// 1 and a value next to zero is next to zero in every row.
+    pub(super) unit: Vec<f64>,
     /// Per pair column, which pair of the model it is.
     pub(super) pairs: Vec<usize>,
     /// Right-hand sides.
@@ -101,13 +105,23 @@ impl Programme {
             }
             columns.push(column);
         }
+        let mut unit: Vec<f64> = columns
+            .iter_mut()
+            .map(|column: &mut Vec<(usize, f64)>| {
+                let unit = column.iter().fold(1.0_f64, |largest, (_, entry)| largest.max(*entry));
+                column.iter_mut().for_each(|(_, entry)| *entry /= unit);
+                unit
+            })
+            .collect();
+        unit.resize(columns.len() + bounds, 1.0);
         columns.extend((0..bounds).map(|i| vec![(flow_rows + i, 1.0)]));
         let objectives: Vec<Vec<f64>> = objective_scale
             .iter()
             .enumerate()
             .map(|(k, scale)| {
                 let slacks = std::iter::repeat_n(0.0, bounds);
-                folded.iter().map(|c| c[k] / scale).chain(slacks).collect()
+                let costs = folded.iter().zip(&unit).map(|(c, unit)| c[k] / scale / unit);
+                costs.chain(slacks).collect()
             })
             .collect();
         let finite = columns.iter().flatten().all(|(_, value)| value.is_finite())
@@ -116,7 +130,7 @@ impl Programme {
         if !finite {
             return Err(Overflow);
         }
-        Ok(Self { flow_rows, columns, pairs, rhs, objectives, objective_scale, bound_scale })
+        Ok(Self { flow_rows, columns, unit, pairs, rhs, objectives, objective_scale, bound_scale })
     }
 
     /// How many rows there are.

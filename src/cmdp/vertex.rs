@@ -118,9 +118,10 @@ impl<'a> Vertex<'a> {
         }
     }
 
-    /// The value of every column.
+    /// The expected number of departures by every pair column, and the slacks.
     pub(super) fn columns(&self) -> Vec<f64> {
-        self.row_of.iter().map(|row| row.map_or(0.0, |row| self.values[row].max(0.0))).collect()
+        let value = |row: &Option<usize>| row.map_or(0.0, |row| self.values[row].max(0.0));
+        self.row_of.iter().zip(&self.programme.unit).map(|(row, unit)| value(row) / unit).collect()
     }
 
     /// Whether `column` is basic: only then can its value be positive.
@@ -220,14 +221,18 @@ impl<'a> Vertex<'a> {
             scale += term.abs();
         }
         // A slack is measured in bounds, a whole one of which is worth something next to the total.
-        let share = if column < self.programme.pairs.len() { FLOOR } else { 1.0 };
+        let share = if column < self.programme.pairs.len() {
+            FLOOR / self.programme.unit[column]
+        } else {
+            1.0
+        };
         (reduced, scale.max(share * floor))
     }
 
     /// The size of the numbers that multipliers are made of: the largest expected total from any state, or
     /// basic cost, as the former may cancel.
     fn magnitude(&self, costs: &[f64], y: &[f64]) -> f64 {
-        let basic = self.basis.basic.iter().map(|column| costs[*column]);
+        let basic = self.basis.basic.iter().map(|j| costs[*j] * self.programme.unit[*j]);
         let totals = y[..self.programme.flow_rows].iter().copied();
         basic.chain(totals).fold(0.0, |largest, x| largest.max(x.abs()))
     }

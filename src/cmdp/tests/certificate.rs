@@ -48,8 +48,8 @@ fn distorted(mut instance: Instance, decades: f64, patient: bool, stream: &mut S
     instance
 }
 
-fn judge(decades: f64, patient: bool, indices: std::ops::Range<u64>, goal: f64) -> (usize, usize) {
-    let (mut solved, mut start_elsewhere) = (0, 0);
+fn judge(decades: f64, patient: bool, indices: std::ops::Range<u64>, goal: f64) -> usize {
+    let mut solved = 0;
     for family in Family::ALL {
         for index in indices.clone() {
             let size = 5 + usize::try_from(index % 25).unwrap();
@@ -59,7 +59,6 @@ fn judge(decades: f64, patient: bool, indices: std::ops::Range<u64>, goal: f64) 
             let outcome = solve(&cmdp).unwrap_or_else(|e| panic!("{family:?} {index}: {e}"));
             let Outcome::Optimal(solution) = outcome else { continue };
             solved += 1;
-            start_elsewhere += usize::from(matches!(solution.effort.interior, Some(Err(_))));
             let gap =
                 (solution.primary - lower_bound(&cmdp, &solution.multipliers)) / solution.primary;
             assert!(
@@ -72,31 +71,20 @@ fn judge(decades: f64, patient: bool, indices: std::ops::Range<u64>, goal: f64) 
             }
         }
     }
-    (solved, start_elsewhere)
+    solved
 }
 
 #[test]
 fn the_multipliers_certify_the_value() {
-    let (solved, _) = judge(0.0, false, 1000..1030, 1e-12);
+    let solved = judge(0.0, false, 1000..1030, 1e-12);
     assert!(solved > 100, "{solved}");
 }
 
-/// Costs from 1e-3 to 1e3, or moves that take a million attempts, or both.
+/// Costs from 1e-3 to 1e3 or 1e-6 to 1e6, moves that take a million attempts, or both.
 #[test]
 fn bad_scaling_is_certified_too() {
-    for (decades, patient) in [(6.0, false), (0.0, true), (6.0, true)] {
-        let (solved, _) = judge(decades, patient, 2000..2015, 1e-9);
+    for (decades, patient) in [(6.0, false), (12.0, false), (0.0, true), (6.0, true)] {
+        let solved = judge(decades, patient, 2000..2015, 1e-9);
         assert!(solved > 40, "{solved} at {decades} {patient}");
-    }
-}
-
-#[test]
-#[ignore]
-fn dbg_stress() {
-    for (decades, patient) in
-        [(0.0, false), (6.0, false), (0.0, true), (6.0, true), (12.0, false), (12.0, true)]
-    {
-        let r = std::panic::catch_unwind(|| judge(decades, patient, 30_000..30_300, 1e-8));
-        eprintln!("{decades} {patient} {r:?}");
     }
 }

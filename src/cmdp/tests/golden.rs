@@ -16,7 +16,7 @@ fn solutions_have_the_same_bits_everywhere() {
     let digest = Sha256Digest::of(&text);
     assert_eq!(
         (text.len(), digest.short().as_str()),
-        (0, ""),
+        (4405, "cbff3c9d"),
         "the planner's bits have changed. Size equal, digest not: a number moved in its last places. Find \
          out which of two it is. On one platform only: a platform-dependent float function or a fused \
          multiply-add has slipped in; that is a bug, do not re-mint. On all platforms, after a change to the \
