@@ -16,7 +16,7 @@ const SIZES: [usize; 6] = [5, 20, 50, 100, 200, 300];
 
 /// A grid of about `states` cells, four moves at two speeds, slips to a neighbour, two bounds that bind.
 fn grid(states: usize) -> Cmdp {
-    let width = (2..).find(|w| w * w >= states).expect("some width suffices");
+    let width = (2..=states).find(|w| w * w >= states).expect("some width suffices");
     let cells = width * states.div_ceil(width);
     let mut builder = CmdpBuilder::new(cells, 8);
     let expected = "the grid is valid";

@@ -55,7 +55,9 @@ impl Chain {
             }
             // From here on, row k is where the chain goes next among the states before k, and its cost
             // that of the whole stay.
-            line.iter_mut().for_each(|p| *p /= exit);
+            for p in line.iter_mut() {
+                *p /= exit;
+            }
             self.absorbed[k] /= exit;
             for costs in &mut self.costs {
                 costs[k] /= exit;
@@ -102,10 +104,10 @@ mod tests {
             chain.charge(x, 0, 1.0);
         }
         let totals = chain.totals().unwrap();
-        for x in 0..n - 1 {
+        for (x, total) in totals[0].iter().enumerate() {
             let k = x + 1;
             let expected = f64::from(u32::try_from(k * (n - k)).unwrap());
-            assert!((totals[0][x] - expected).abs() < 1e-12 * expected);
+            assert!((total - expected).abs() < 1e-12 * expected);
         }
     }
 

@@ -109,7 +109,9 @@ impl Programme {
             .iter_mut()
             .map(|column: &mut Vec<(usize, f64)>| {
                 let unit = column.iter().fold(1.0_f64, |largest, (_, entry)| largest.max(*entry));
-                column.iter_mut().for_each(|(_, entry)| *entry /= unit);
+                for (_, entry) in column.iter_mut() {
+                    *entry /= unit;
+                }
                 unit
             })
             .collect();

@@ -139,7 +139,9 @@ fn normalise(choices: &mut [(usize, f64)]) {
         return;
     }
     let total: f64 = choices.iter().map(|(_, rho)| rho).sum();
-    choices.iter_mut().for_each(|(_, rho)| *rho /= total);
+    for (_, rho) in choices.iter_mut() {
+        *rho /= total;
+    }
 }
 
 fn visited(cmdp: &Cmdp, choices: &[Vec<(usize, f64)>]) -> Vec<bool> {

@@ -33,7 +33,9 @@ fn distorted(mut instance: Instance, decades: f64, patient: bool, stream: &mut S
         *c *= stretch();
     }
     for (_, costs) in &mut instance.secondary {
-        costs.iter_mut().for_each(|(_, _, c)| *c *= stretch());
+        for (_, _, c) in costs.iter_mut() {
+            *c *= stretch();
+        }
     }
     if patient {
         for (x, a) in instance.primary.iter().map(|(x, a, _)| (*x, *a)).collect::<Vec<_>>() {

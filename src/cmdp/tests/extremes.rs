@@ -113,7 +113,9 @@ fn units_do_not_matter() {
             }
             for (bound, costs) in &mut scaled.secondary {
                 *bound /= scale;
-                costs.iter_mut().for_each(|(_, _, c)| *c /= scale);
+                for (_, _, c) in costs.iter_mut() {
+                    *c /= scale;
+                }
             }
             match (solve(&plain.cmdp()).unwrap(), solve(&scaled.cmdp()).unwrap()) {
                 (Outcome::Optimal(a), Outcome::Optimal(b)) => {

@@ -12,6 +12,9 @@ use super::chain::Chain;
 use super::*;
 use crate::rng::{Seeds, Stream};
 
+/// State, action, cost.
+type Cost = (usize, usize, f64);
+
 /// A model as plain lists, to be renumbered, written out and handed to other solvers.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Instance {
@@ -20,8 +23,9 @@ pub(super) struct Instance {
     pub(super) absorbing: Vec<usize>,
     pub(super) initial: Vec<(usize, f64)>,
     pub(super) transitions: Vec<(usize, usize, usize, f64)>,
-    pub(super) primary: Vec<(usize, usize, f64)>,
-    pub(super) secondary: Vec<(f64, Vec<(usize, usize, f64)>)>,
+    pub(super) primary: Vec<Cost>,
+    /// Bounds with their costs.
+    pub(super) secondary: Vec<(f64, Vec<Cost>)>,
 }
 
 impl Instance {
@@ -139,7 +143,7 @@ impl Family {
             Self::Corridor => (size, (1..size).map(|x| (x - 1, x)).collect::<Vec<_>>()),
             Self::Tree => (size, (1..size).map(|x| (below(stream, x), x)).collect()),
             Self::Grid | Self::SlippyGrid | Self::Trapped => {
-                let width = (2..).find(|w| w * w >= size).unwrap();
+                let width = (2..=size).find(|w| w * w >= size).unwrap();
                 let right =
                     (0..width * width).filter(|x| x % width + 1 < width).map(|x| (x, x + 1));
                 let down = (0..width * (width - 1)).map(|x| (x, x + width));
