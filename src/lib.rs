@@ -39,6 +39,10 @@ pub mod sim;
 // Layer 3: the studies.
 pub mod studies;
 
+// Layers 4 and 5: what is asked, and the trials that follow.
+pub mod manifest;
+pub mod plan;
+
 // Layer 6: running a plan, and sealing what came out.
 pub mod bundle;
 pub mod runner;

@@ -1,5 +1,6 @@
 //! A YAML document as a tree that remembers where everything stands.
 
+use super::reader::read_node;
 use super::{Diagnostic, Source};
 use std::ops::Range;
 
@@ -164,6 +165,63 @@ impl Tree {
     pub fn fault(&self, place: Place, message: impl Into<String>) -> Diagnostic {
         let source = &self.sources[usize::from(place.source).min(self.sources.len() - 1)];
         Diagnostic::error(source, first_line(&source.text, place), message)
+    }
+
+    /// Puts the YAML value that `source` holds from byte `value_at` on where `path` leads; mappings on the way
+    /// are made where they are missing. Each step of the path comes with its bytes in `source`.
+    ///
+    /// # Errors
+    /// Where the value is no YAML or the path leads through something that is neither a mapping nor a list.
+    pub fn graft(
+        &mut self,
+        source: &Source,
+        path: &[(&str, Range<usize>)],
+        value_at: usize,
+    ) -> Result<(), Vec<Diagnostic>> {
+        let number = u16::try_from(self.sources.len()).unwrap_or(u16::MAX);
+        let value = read_node(source, number, value_at)?;
+        self.sources.push(source.clone());
+        let mut node = &mut self.root;
+        let mut walked = String::new();
+        for (step, bytes) in path {
+            let key_place = Place { source: number, start: bytes.start, end: bytes.end };
+            if node.content == Content::Null {
+                node.content = Content::Map(Vec::new());
+            }
+            let found = node.found();
+            node = match &mut node.content {
+                Content::Map(entries) => {
+                    let at = entries.iter().position(|e| e.key == *step).unwrap_or_else(|| {
+                        let value = Node { place: key_place, content: Content::Null };
+                        entries.push(Entry { key: (*step).to_owned(), key_place, value });
+                        entries.len() - 1
+                    });
+                    &mut entries[at].value
+                }
+                Content::List(items) => {
+                    let count = items.len();
+                    match step.parse::<usize>().ok().and_then(|i| items.get_mut(i)) {
+                        Some(item) => item,
+                        None => {
+                            let message = format!("`{walked}` has no item {step}");
+                            let fault = Diagnostic::error(source, bytes.clone(), message)
+                                .label(format!("expected a number below {count}"));
+                            return Err(vec![fault]);
+                        }
+                    }
+                }
+                _ => {
+                    let message = format!("`{walked}` has no keys: it is {found}");
+                    return Err(vec![Diagnostic::error(source, bytes.clone(), message)]);
+                }
+            };
+            if !walked.is_empty() {
+                walked.push('.');
+            }
+            walked.push_str(step);
+        }
+        *node = value;
+        Ok(())
     }
 
     /// The deepest node towards `pointer`, its key's place, and whether it is what the pointer names.

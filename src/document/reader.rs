@@ -16,18 +16,22 @@ const MOST_NESTING: usize = 48;
 /// # Errors
 /// All scalars and keys that are refused, or the first fault of the syntax.
 pub fn read(source: &Source) -> Result<Tree, Vec<Diagnostic>> {
-    let root = read_node(std::slice::from_ref(source), 0)?;
+    let root = read_node(source, 0, 0)?;
     Ok(Tree { sources: vec![source.clone()], root })
 }
 
-/// The node that the last of `sources` holds, its places numbered `number`.
-pub(super) fn read_node(sources: &[Source], number: u16) -> Result<Node, Vec<Diagnostic>> {
-    let source = &sources[usize::from(number)];
+/// The node that the text of `source` from byte `offset` on holds, its places in source number `number`.
+pub(super) fn read_node(
+    source: &Source,
+    number: u16,
+    offset: usize,
+) -> Result<Node, Vec<Diagnostic>> {
     let options = options! { disallow_directives: true, emit_comments: false };
     let mut reader = Reader {
-        events: Parser::new_from_str_with_options(&source.text, options),
+        events: Parser::new_from_str_with_options(&source.text[offset..], options),
         source,
         number,
+        offset,
         anchors: BTreeMap::new(),
         nodes: 0,
         faults: Vec::new(),
@@ -49,6 +53,8 @@ struct Reader<'a> {
     events: Parser<'a, StrInput<'a>>,
     source: &'a Source,
     number: u16,
+    /// Where in the source the parsed text begins.
+    offset: usize,
     /// Finished anchored nodes, with how many nodes and levels each holds.
     anchors: BTreeMap<usize, (Node, usize, usize)>,
     nodes: usize,
@@ -73,7 +79,7 @@ impl<'a> Reader<'a> {
                 _ => {}
             }
         }
-        let nothing = Place { source: self.number, start: 0, end: 0 };
+        let nothing = Place { source: self.number, start: self.offset, end: self.offset };
         Ok(root.unwrap_or(Node { place: nothing, content: Content::Null }))
     }
 
@@ -82,11 +88,10 @@ impl<'a> Reader<'a> {
             None => Ok(None),
             Some(Ok(next)) => Ok(Some(next)),
             Some(Err(error)) => {
-                let at = error.marker().byte_offset().unwrap_or(self.source.text.len());
-                let end = self.source.text[at.min(self.source.text.len())..]
-                    .chars()
-                    .next()
-                    .map_or(at, |c| at + c.len_utf8());
+                let length = self.source.text.len();
+                let at = error.marker().byte_offset().map_or(length, |b| b + self.offset);
+                let next = self.source.text.get(at..).and_then(|rest| rest.chars().next());
+                let end = next.map_or(at, |c| at + c.len_utf8());
                 let place = Place { source: self.number, start: at, end };
                 let info = error.info();
                 Err(Box::new(self.fault(place, format!("not valid YAML: {info}"))))
@@ -234,9 +239,10 @@ impl<'a> Reader<'a> {
     }
 
     fn place(&self, span: &Span) -> Place {
-        let length = self.source.text.len();
+        let length = self.source.text.len() - self.offset;
         let range = span.byte_range().unwrap_or(length..length);
-        Place { source: self.number, start: range.start, end: range.end.max(range.start) }
+        let (start, end) = (range.start + self.offset, range.end + self.offset);
+        Place { source: self.number, start, end: end.max(start) }
     }
 
     /// Where a collection ends: at its closing bracket; a block's end event lies behind it.

@@ -17,7 +17,7 @@ pub use parameters::{
     Sensing, Strategy,
 };
 pub use requests::{
-    COVERAGE_LEVELS, CoverageCurve, CoverageTable, FactorValue, FigureRequest, Metric, TableRequest,
+    CoverageCurve, CoverageTable, FactorValue, FigureRequest, Metric, TableRequest,
 };
 
 use crate::geometry::Pose;

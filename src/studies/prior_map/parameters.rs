@@ -44,18 +44,25 @@ parameters!(
     /// The range scanner as the study used it (section 4.1). What is absent is the robot's own.
     Sensing {
         /// Longest range reported (m), above 0.
+        #[schemars(extend("exclusiveMinimum" = 0))]
         range_m: Option<f64> = None,
         /// Standard deviation of the Gaussian noise on ranges (m), 0 or more.
+        #[schemars(range(min = 0.0))]
         range_noise_sd_m: Option<f64> = None,
         /// Standard deviation of the error of the executed linear speed, as a share of the command, 0 to 1.
+        #[schemars(range(min = 0.0, max = 1.0))]
         drive_noise_linear: f64 = 0.0,
         /// Standard deviation of the error of the executed angular speed, as a share of the command, 0 to 1.
+        #[schemars(range(min = 0.0, max = 1.0))]
         drive_noise_angular: f64 = 0.0,
         /// How long one error of the drive lasts (s), above 0.
+        #[schemars(extend("exclusiveMinimum" = 0))]
         drive_noise_correlation_s: f64 = 0.5,
         /// Standard deviation of odometry's error of distance, per square root of metre (m), 0 or more.
+        #[schemars(range(min = 0.0))]
         odometry_noise_distance: f64 = 0.0,
         /// Standard deviation of odometry's error of heading, per square root of radian turned (rad), 0 or more.
+        #[schemars(range(min = 0.0))]
         odometry_noise_heading: f64 = 0.0,
     }
 );
@@ -64,16 +71,22 @@ parameters!(
     /// Building the map from scans, in GMapping's manner.
     Mapping {
         /// Number of particles; 1 is mapping with known poses, as the simulated study really ran.
+        #[schemars(range(min = 1))]
         particles: u32 = 1,
         /// Side of a map cell (m), above 0.
+        #[schemars(extend("exclusiveMinimum" = 0))]
         resolution_m: f64 = 0.1,
         /// A scan is taken into the map after this much travel (m), above 0.
+        #[schemars(extend("exclusiveMinimum" = 0))]
         keyframe_distance_m: f64 = 1.0,
         /// ... or after turning this much (rad), above 0.
+        #[schemars(extend("exclusiveMinimum" = 0))]
         keyframe_turn_rad: f64 = 0.5,
         /// Beams are cut to this range (m); `null` means the sensor's own range.
+        #[schemars(extend("exclusiveMinimum" = 0))]
         clip_range_m: Option<f64> = None,
         /// A visited cell is occupied where more than this share of its visits were hits, 0 to 1.
+        #[schemars(range(min = 0.0, max = 1.0))]
         hit_ratio: f64 = 0.05,
     }
 );
@@ -82,22 +95,30 @@ parameters!(
     /// Planning on the inflated map and driving, after Nav2D's behaviour.
     Navigation {
         /// Obstacles are inflated over this many cells, at least 1.
+        #[schemars(range(min = 1))]
         inflation_radius_cells: u32 = 9,
         /// Inflated cost (0 to 100) from which a cell counts as lethal when frontiers are sought.
+        #[schemars(range(min = 0, max = 100))]
         frontier_lethal_cost: u32 = 60,
         /// Inflated cost (0 to 100) from which the planner does not cross a cell.
+        #[schemars(range(min = 0, max = 100))]
         planner_lethal_cost: u32 = 75,
         /// Extra cost of a step per unit of inflated cost / 100: length x (1 + this x cost / 100).
+        #[schemars(range(min = 0.0))]
         cost_weight: f64 = 10.0,
         /// Highest linear speed (m/s), above 0.
+        #[schemars(extend("exclusiveMinimum" = 0))]
         max_linear_m_s: f64 = 1.0,
         /// Highest angular speed when turning in place (rad/s), above 0.
+        #[schemars(extend("exclusiveMinimum" = 0))]
         max_angular_rad_s: f64 = 1.0,
         /// Radius of the disc that must stay clear of obstacles when driving (m), above 0.
+        #[schemars(extend("exclusiveMinimum" = 0))]
         robot_radius_m: f64 = 0.25,
         /// The operator sees each range as the median of this many neighbouring beams, odd; 1 as they are.
         obstacle_median_beams: u32 = 1,
         /// A target counts as reached within this distance (m), above 0.
+        #[schemars(extend("exclusiveMinimum" = 0))]
         goal_tolerance_m: f64 = 0.3,
     }
 );
@@ -108,16 +129,20 @@ parameters!(
         /// How the next location is chosen.
         strategy: Strategy = Strategy::Utility,
         /// Weight of distance against information gain in equation 1, 0 to 1.
+        #[schemars(range(min = 0.0, max = 1.0))]
         alpha: f64 = 0.5,
         /// How I(p) is computed.
         gain: Gain = Gain::Paper,
         /// When the next location is chosen anew.
         reselect: Reselect = Reselect::OnArrival,
         /// Under `reselect: continuous`, the time between choices (s), above 0.
+        #[schemars(extend("exclusiveMinimum" = 0))]
         reselect_period_s: f64 = 3.2,
         /// ... and when the remaining plan is cheaper than `reselect-near-cost`.
+        #[schemars(extend("exclusiveMinimum" = 0))]
         reselect_near_period_s: f64 = 1.2,
         /// Weighted length (m) of the remaining plan below which the shorter period holds.
+        #[schemars(range(min = 0.0))]
         reselect_near_cost: f64 = 3.0,
         /// Frontiers with fewer cells are left out.
         minimum_frontier_cells: u32 = 1,
@@ -177,10 +202,13 @@ parameters!(
     /// When a trial ends, besides running out of frontiers.
     Mission {
         /// Simulated time after which a trial is ended (s), above 0.
+        #[schemars(extend("exclusiveMinimum" = 0))]
         time_limit_s: f64 = 1800.0,
         /// A robot that has not moved `stuck-distance-m` within this time (s) is stuck, above 0.
+        #[schemars(extend("exclusiveMinimum" = 0))]
         stuck_after_s: f64 = 60.0,
         /// See `stuck-after-s` (m), above 0.
+        #[schemars(extend("exclusiveMinimum" = 0))]
         stuck_distance_m: f64 = 0.5,
     }
 );

@@ -67,9 +67,6 @@ impl Metric {
     }
 }
 
-/// Levels of coverage (percent) at which records hold measures.
-pub const COVERAGE_LEVELS: [u32; 10] = [50, 55, 60, 65, 70, 75, 80, 85, 90, 95];
-
 /// One figure to produce.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]

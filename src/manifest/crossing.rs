@@ -1,0 +1,198 @@
+//! Factors crossed into conditions, with include and exclude as in CI matrices.
+
+use super::choice::FactorDoc;
+use super::document::ManifestDoc;
+use super::faults::{Faults, step};
+use crate::document::suggestion;
+use crate::studies::Condition;
+use crate::studies::prior_map::FactorValue;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// More conditions than any study has: a crossing gone wrong.
+const MOST_CONDITIONS: usize = 20_000;
+
+/// Columns of tables that no factor may be named after.
+const RESERVED: [&str; 7] = ["key", "trial", "outcome", "coverage-percent", "value", "sd", "n"];
+
+/// A factor with all values it takes anywhere, in the order written.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+pub struct Factor {
+    /// Its name.
+    pub name: String,
+    /// Its values.
+    pub values: Vec<String>,
+}
+
+/// The factors of `doc` and its conditions, last factor fastest, those of `include` at the end.
+pub(super) fn cross(doc: &ManifestDoc, faults: &mut Faults<'_>) -> (Vec<Factor>, Vec<Condition>) {
+    let mut factors: Vec<Factor> = Vec::new();
+    let mut cells = vec![Condition(Vec::new())];
+    for (name, written) in &doc.factors.0 {
+        let pointer = step("/factors", name);
+        check_name(name, &pointer, faults);
+        let mut values: Vec<String> = Vec::new();
+        let mut note = |list: &[FactorValue], pointer: &str, faults: &mut Faults<'_>| {
+            if list.is_empty() {
+                faults.at(pointer, "a factor needs at least one value", "expected values");
+            }
+            let mut here = BTreeSet::new();
+            for (i, value) in list.iter().enumerate() {
+                if !here.insert(value) {
+                    let message = format!("value `{value}` is written twice");
+                    faults.at(&format!("{pointer}/{i}"), message, "already in this list");
+                }
+                if !values.contains(&value.0) {
+                    values.push(value.0.clone());
+                }
+            }
+        };
+        let mut next = Vec::new();
+        match written {
+            FactorDoc::List(list) => {
+                note(list, &pointer, faults);
+                for cell in &cells {
+                    next.extend(list.iter().map(|value| with(cell, name, value)));
+                }
+            }
+            FactorDoc::By(by) => {
+                let known: Vec<&str> = factors.iter().map(|f| f.name.as_str()).collect();
+                let Some(other) = factors.iter().find(|f| f.name == by.by) else {
+                    let fault = faults
+                        .fault(&format!("{pointer}/by"), format!("unknown factor `{}`", by.by))
+                        .label("expected a factor written before this one");
+                    faults.push(fault.help(known_or_near(&by.by, &known)));
+                    continue;
+                };
+                faults.check_levels(by.values.keys(), other, &format!("{pointer}/values"));
+                for (level, list) in &by.values {
+                    note(list, &step(&format!("{pointer}/values"), level), faults);
+                }
+                for cell in &cells {
+                    let list = cell.value(&by.by).and_then(|level| by.values.get(level));
+                    next.extend(list.into_iter().flatten().map(|value| with(cell, name, value)));
+                }
+            }
+        }
+        if next.len() > MOST_CONDITIONS {
+            let message = format!("the factors cross to more than {MOST_CONDITIONS} conditions");
+            faults.at(&pointer, message, "with this factor");
+            return (factors, Vec::new());
+        }
+        if !next.is_empty() {
+            cells = next;
+        }
+        factors.push(Factor { name: name.clone(), values });
+    }
+    exclude(doc, &factors, &mut cells, faults);
+    include(doc, &factors, &mut cells, faults);
+    if cells.is_empty() {
+        faults.at_key("/exclude", "no condition is left", "everything is excluded");
+    }
+    let mut slugs: BTreeMap<String, &Condition> = BTreeMap::new();
+    for cell in &cells {
+        if let Some(other) = slugs.insert(cell.slug().to_ascii_lowercase(), cell) {
+            let message = format!("the conditions `{other}` and `{cell}` have the same file name");
+            let fault = faults.key_fault("/factors", message).label("in these factors");
+            faults.push(fault.help("use values that differ in their letters and digits"));
+        }
+    }
+    (factors, cells)
+}
+
+fn with(cell: &Condition, name: &str, value: &FactorValue) -> Condition {
+    let mut cell = cell.clone();
+    cell.0.push((name.to_owned(), value.0.clone()));
+    cell
+}
+
+fn check_name(name: &str, pointer: &str, faults: &mut Faults<'_>) {
+    if !is_kebab(name) {
+        let fault = faults
+            .key_fault(pointer, format!("`{name}` cannot be the name of a factor"))
+            .label("expected lower-case letters, digits and single hyphens");
+        faults.push(fault);
+    }
+    if RESERVED.contains(&name) {
+        let message = format!("`{name}` is a column of every table and cannot name a factor");
+        faults.at_key(pointer, message, "choose another name");
+    }
+}
+
+/// Faults of a partial condition in `include` or `exclude`; whether there was none.
+fn check_cell(
+    cell: &BTreeMap<String, FactorValue>,
+    factors: &[Factor],
+    pointer: &str,
+    faults: &mut Faults<'_>,
+) -> bool {
+    let mut fine = true;
+    for (name, value) in cell {
+        let place = step(pointer, name);
+        fine &= faults.check_level(factors, name, value, &place);
+    }
+    fine
+}
+
+fn exclude(
+    doc: &ManifestDoc,
+    factors: &[Factor],
+    cells: &mut Vec<Condition>,
+    faults: &mut Faults<'_>,
+) {
+    for (i, cell) in doc.exclude.iter().enumerate() {
+        let pointer = format!("/exclude/{i}");
+        if !check_cell(cell, factors, &pointer, faults) {
+            continue;
+        }
+        let before = cells.len();
+        cells.retain(|c| !cell.iter().all(|(name, value)| c.value(name) == Some(&value.0)));
+        if cells.len() == before {
+            let fault = faults.fault(&pointer, "this excludes no condition");
+            faults.push(fault.label("no condition has all these values").warning());
+        }
+    }
+}
+
+fn include(
+    doc: &ManifestDoc,
+    factors: &[Factor],
+    cells: &mut Vec<Condition>,
+    faults: &mut Faults<'_>,
+) {
+    for (i, cell) in doc.include.iter().enumerate() {
+        let pointer = format!("/include/{i}");
+        let missing: Vec<&str> =
+            factors.iter().map(|f| f.name.as_str()).filter(|f| !cell.contains_key(*f)).collect();
+        if !missing.is_empty() {
+            let message = format!("an included condition has no value for `{}`", missing[0]);
+            faults.at(&pointer, message, "expected a value for every factor");
+        }
+        if !check_cell(cell, factors, &pointer, faults) || !missing.is_empty() {
+            continue;
+        }
+        let added =
+            Condition(factors.iter().map(|f| (f.name.clone(), cell[&f.name].0.clone())).collect());
+        if cells.contains(&added) {
+            let fault = faults.fault(&pointer, "this condition is there already");
+            faults.push(fault.label(format!("`{added}`")).warning());
+        } else {
+            cells.push(added);
+        }
+    }
+}
+
+/// Whether `name` is of lower-case letters, digits and single hyphens between them.
+pub(super) fn is_kebab(name: &str) -> bool {
+    name.split('-').all(|part| {
+        !part.is_empty() && part.bytes().all(|b| b.is_ascii_lowercase() || b.is_ascii_digit())
+    })
+}
+
+/// A suggestion, or the list of what is known.
+pub(super) fn known_or_near(word: &str, known: &[&str]) -> String {
+    match suggestion(word, known.iter().copied()) {
+        Some(near) => format!("did you mean `{near}`? (known: {})", known.join(", ")),
+        None if known.is_empty() => "none is known".to_owned(),
+        None => format!("known: {}", known.join(", ")),
+    }
+}

@@ -1,0 +1,159 @@
+//! A manifest with everything settled: names are references, defaults are written out, files are read.
+
+use super::crossing::Factor;
+use super::document::{Author, Cite};
+use super::inputs::Input;
+use crate::digest::MeaningDigest;
+use crate::document::Tree;
+use crate::json;
+use crate::studies::prior_map::{FigureRequest, TableRequest};
+use crate::studies::{Condition, Setup, StudyKind};
+use crate::table::Table;
+use serde::Serialize;
+use serde_json::{Map, Value, json};
+use std::collections::BTreeMap;
+
+/// A resolved experiment.
+#[derive(Debug, Clone)]
+pub struct Experiment {
+    /// Its short name, for files.
+    pub name: String,
+    /// Its title.
+    pub title: String,
+    /// The publication it re-enacts.
+    pub cite: Option<Cite>,
+    /// Authors of the manifest.
+    pub authors: Vec<Author>,
+    /// Licence of the manifest and of what it yields.
+    pub license: Option<String>,
+    /// Which study this is.
+    pub kind: StudyKind,
+    /// Seed of all randomness.
+    pub seed: u64,
+    /// Trials per condition.
+    pub trials: u32,
+    /// Factors whose values see the same noise.
+    pub shared_noise: Vec<String>,
+    /// The factors, in order.
+    pub factors: Vec<Factor>,
+    /// The cells of the design and what their trials need, in crossed order.
+    pub conditions: Vec<(Condition, Setup)>,
+    /// What the things of each condition mean; as long as `conditions`.
+    pub meanings: Vec<Meanings>,
+    /// What each condition was resolved from, for people; as long as `conditions`.
+    pub(super) described: Vec<Value>,
+    /// The paper's own numbers, by name.
+    pub published: BTreeMap<String, Table>,
+    /// The file each of them comes from, as written.
+    pub(super) published_files: BTreeMap<String, String>,
+    /// Tables to produce.
+    pub tables: Vec<TableRequest>,
+    /// Figures to produce.
+    pub figures: Vec<FigureRequest>,
+    /// Claims as written; `/claims/N` in `document` says where.
+    pub claims: Vec<Value>,
+    /// Values that the paper leaves open, with the reasons for them.
+    pub assumptions: Vec<Assumption>,
+    /// `PATH=VALUE` from the command line, in order.
+    pub overrides: Vec<String>,
+    /// Every file that was read, once.
+    pub inputs: Vec<Input>,
+    /// The manifest's tree, to point at in later faults.
+    pub document: Tree,
+}
+
+/// A parameter that the paper leaves open.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Assumption {
+    /// Its path in the manifest (`parameters.mapping.resolution-m`).
+    pub path: String,
+    /// Its value, or one for every value of a factor.
+    pub value: Value,
+    /// Why it was chosen.
+    pub why: String,
+}
+
+/// Digests of what a condition's things mean, whatever their files look like.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Meanings {
+    /// The robot.
+    pub robot: MeaningDigest,
+    /// The world.
+    pub world: MeaningDigest,
+    /// The prior map, where there is one.
+    pub prior: Option<MeaningDigest>,
+}
+
+impl Experiment {
+    /// Everything as resolved, the content of `study.resolved.json`: nothing of this machine is in it.
+    pub fn resolved_json(&self, engine_version: &str) -> Value {
+        let conditions: Vec<Value> = self
+            .conditions
+            .iter()
+            .zip(&self.meanings)
+            .zip(&self.described)
+            .map(|(((condition, setup), meanings), described)| {
+                let Setup::PriorMap(setup) = setup;
+                json!({
+                    "condition": levels(condition),
+                    "slug": condition.slug(),
+                    "described": described,
+                    "meanings": meanings,
+                    "start": {
+                        "x-m": setup.start.x,
+                        "y-m": setup.start.y,
+                        "heading-rad": setup.start.heading,
+                    },
+                    "parameters": setup.parameters,
+                })
+            })
+            .collect();
+        let inputs: Vec<Value> = self
+            .inputs
+            .iter()
+            .map(|input| {
+                json!({
+                    "as-written": input.as_written,
+                    "written-in": input.written_in,
+                    "file": format!("inputs/{}", input.name),
+                    "sha256": input.digest,
+                    "license": input.license,
+                })
+            })
+            .collect();
+        json!({
+            "reenact": 1,
+            "engine-version": engine_version,
+            "name": self.name,
+            "title": self.title,
+            "cite": self.cite,
+            "authors": self.authors,
+            "license": self.license,
+            "study": self.kind,
+            "seed": self.seed,
+            "trials": self.trials,
+            "shared-noise": self.shared_noise,
+            "factors": self.factors,
+            "conditions": conditions,
+            "published": self.published_files,
+            "tables": self.tables,
+            "figures": self.figures,
+            "claims": self.claims,
+            "assumptions": self.assumptions,
+            "overrides": self.overrides,
+            "inputs": inputs,
+        })
+    }
+
+    /// [`Self::resolved_json`] as its one canonical text, with a final line feed.
+    pub fn resolved_text(&self, engine_version: &str) -> String {
+        let mut text = json::canonical(&self.resolved_json(engine_version));
+        text.push('\n');
+        text
+    }
+}
+
+/// A condition as a JSON object.
+pub(super) fn levels(condition: &Condition) -> Map<String, Value> {
+    condition.0.iter().map(|(name, value)| (name.clone(), Value::from(value.clone()))).collect()
+}

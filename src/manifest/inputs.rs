@@ -1,0 +1,160 @@
+//! The files a manifest names: asked for once each, by their path as written.
+
+use crate::digest::{FileDigest, Sha256Digest};
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+/// Where a path was written, which says what it is relative to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum WrittenIn {
+    /// In the manifest (or a file that it names): relative to the manifest.
+    Manifest,
+    /// On the command line: relative to where the command was given.
+    CommandLine,
+}
+
+/// Who hands over the bytes of files: the file system, or a bundle.
+pub trait Inputs {
+    /// The bytes of the file `as_written`: a path with forward slashes and without needless dots.
+    ///
+    /// # Errors
+    /// Why there are none, in words (`no such file`).
+    fn read(&self, as_written: &str, written_in: WrittenIn) -> Result<Vec<u8>, String>;
+}
+
+/// One file that was read.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Input {
+    /// Its path, as it was asked for.
+    pub as_written: String,
+    /// What that path is relative to.
+    pub written_in: WrittenIn,
+    /// Its name in a bundle: flat, of `[A-Za-z0-9._-]`, unique even where case does not count.
+    pub name: String,
+    /// What it holds.
+    pub bytes: Arc<[u8]>,
+    /// Digest of what it holds.
+    pub digest: FileDigest,
+    /// Its licence, where the manifest states one.
+    pub license: Option<String>,
+}
+
+type Key = (String, WrittenIn);
+
+/// Reads every file once and remembers it.
+pub(super) struct InputFiles<'a> {
+    source: &'a dyn Inputs,
+    files: BTreeMap<Key, Result<Arc<[u8]>, String>>,
+}
+
+impl<'a> InputFiles<'a> {
+    pub(super) fn new(source: &'a dyn Inputs) -> Self {
+        Self { source, files: BTreeMap::new() }
+    }
+
+    /// The bytes of `path`, which is [`normalised`].
+    pub(super) fn read(&mut self, path: &str, written_in: WrittenIn) -> Result<Arc<[u8]>, String> {
+        self.files
+            .entry((path.to_owned(), written_in))
+            .or_insert_with(|| self.source.read(path, written_in).map(Into::into))
+            .clone()
+    }
+
+    /// The paths of all files that were asked for.
+    pub(super) fn paths(&self) -> Vec<String> {
+        self.files.keys().map(|(path, _)| path.clone()).collect()
+    }
+
+    /// Everything that could be read, in the order of paths.
+    pub(super) fn finish(self, licenses: &BTreeMap<String, String>) -> Vec<Input> {
+        let mut names = BTreeSet::new();
+        self.files
+            .into_iter()
+            .filter_map(|((as_written, written_in), bytes)| {
+                Some((as_written, written_in, bytes.ok()?))
+            })
+            .map(|(as_written, written_in, bytes)| Input {
+                name: unique_name(&as_written, &mut names),
+                digest: FileDigest(Sha256Digest::of(&bytes)),
+                license: licenses.get(&as_written).cloned(),
+                as_written,
+                written_in,
+                bytes,
+            })
+            .collect()
+    }
+}
+
+/// A flat name for `path` that `taken` (lower case) does not hold yet.
+fn unique_name(path: &str, taken: &mut BTreeSet<String>) -> String {
+    let file = path.rsplit('/').next().unwrap_or_default();
+    let safe = |c: char| if c.is_ascii_alphanumeric() || "._-".contains(c) { c } else { '-' };
+    let mut name: String = file.chars().map(safe).collect();
+    // Neither hidden files nor options of some command.
+    if !name.starts_with(|c: char| c.is_ascii_alphanumeric()) {
+        name.insert_str(0, "input");
+    }
+    let (stem, extension) = match name.rfind('.') {
+        Some(dot) => name.split_at(dot),
+        None => (name.as_str(), ""),
+    };
+    let mut unique = name.clone();
+    let mut number = 2;
+    while !taken.insert(unique.to_ascii_lowercase()) {
+        unique = format!("{stem}-{number}{extension}");
+        number += 1;
+    }
+    unique
+}
+
+/// `path` without `.` steps, doubled slashes and steps that `..` undoes.
+pub(super) fn normalised(path: &str) -> String {
+    let mut steps: Vec<&str> = Vec::new();
+    for step in path.split('/') {
+        match step {
+            "" | "." => {}
+            ".." if steps.last().is_some_and(|last| *last != "..") => {
+                steps.pop();
+            }
+            ".." if path.starts_with('/') => {}
+            other => steps.push(other),
+        }
+    }
+    let root = if path.starts_with('/') { "/" } else { "" };
+    format!("{root}{}", steps.join("/"))
+}
+
+/// `path`, written in the file `beside`, from where `beside` is written.
+pub(super) fn joined(beside: &str, path: &str) -> String {
+    match beside.rsplit_once('/') {
+        Some((folder, _)) if !path.starts_with('/') => normalised(&format!("{folder}/{path}")),
+        _ => normalised(path),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_are_joined_and_normalised() {
+        assert_eq!(normalised("./a//b/../c.yaml"), "a/c.yaml");
+        assert_eq!(normalised("../../x"), "../../x");
+        assert_eq!(normalised("/a/../../b"), "/b");
+        assert_eq!(joined("../worlds/basic.yaml", "priors/a.png"), "../worlds/priors/a.png");
+        assert_eq!(joined("../worlds/basic.yaml", "/abs.png"), "/abs.png");
+        assert_eq!(joined("basic.yaml", "a.png"), "a.png");
+    }
+
+    #[test]
+    fn names_are_flat_safe_and_unique() {
+        let mut taken = BTreeSet::new();
+        let names = ["a/basic.yaml", "b/Basic.yaml", "c/.hidden", "d/with space.png", "e/"]
+            .map(|path| unique_name(path, &mut taken));
+        assert_eq!(
+            names,
+            ["basic.yaml", "Basic-2.yaml", "input.hidden", "with-space.png", "input"]
+        );
+    }
+}

@@ -1,0 +1,201 @@
+//! What is well-formed and still wrong: starts inside walls, priors that lie elsewhere, slips of units.
+
+use super::faults::Faults;
+use super::priors::UsedPrior;
+use super::resolve::{UsedWorld, WALLS};
+use crate::geometry::{Outline, Point};
+use crate::grid::{Cell, Occupancy, OccupancyGrid};
+use crate::math;
+use crate::studies::prior_map::Setup;
+use crate::units::Tick;
+use serde_json::Value;
+use std::f64::consts::TAU;
+
+/// How far a prior's walls may lie from the world's (m) and still be taken for them.
+const ALIGNED_WITHIN: f64 = 0.3;
+/// The share of walls below which a prior is taken to lie elsewhere.
+const ALIGNED_SHARE: f64 = 0.5;
+
+/// Collects what is wrong or suspicious about one condition.
+pub(super) fn check(
+    setup: &Setup,
+    world: &UsedWorld,
+    prior: Option<&UsedPrior>,
+    faults: &mut Faults<'_>,
+) {
+    sensors(setup, faults);
+    start(setup, faults);
+    units(setup, faults);
+    if let Some(prior) = prior {
+        resolution(setup, prior, faults);
+        if !prior.own && setup.robot.lidar.is_some() {
+            alignment(setup, world, prior, faults);
+        }
+    }
+}
+
+fn sensors(setup: &Setup, faults: &mut Faults<'_>) {
+    let name = &setup.robot.name;
+    let Some(lidar) = &setup.robot.lidar else {
+        let fault = faults
+            .fault("/robot", format!("the robot `{name}` has no range scanner"))
+            .label("this study explores with one");
+        faults.push(fault.help("add a `<gazebo>` ray sensor to the URDF, or name another robot"));
+        return;
+    };
+    if Tick::period_of(lidar.rate_hz).is_none() {
+        let message = format!("the scanner `{}` runs at {} Hz", lidar.name, lidar.rate_hz);
+        let fault = faults.fault("/robot", message).label("not a whole number of clock ticks");
+        faults.push(fault.help("use a rate that divides 3000 Hz, such as 10, 20, 30 or 40"));
+    }
+}
+
+fn start(setup: &Setup, faults: &mut Faults<'_>) {
+    let at = setup.start.position();
+    let solids = setup.world.contact(setup.robot.body_z[0], setup.robot.body_z[1]);
+    let radius = setup.robot.circumscribed_radius();
+    let nearest = solids.iter().map(|s| s.distance(at)).fold(f64::INFINITY, f64::min);
+    if nearest <= radius {
+        let fault = faults
+            .fault("/start", format!("the robot starts inside something solid at {}", spot(at)));
+        let label =
+            format!("{nearest:.2} m to the nearest obstacle, the robot's radius is {radius:.2} m");
+        faults.push(
+            fault.label(label).help("move the start, or leave the layer out that stands there"),
+        );
+        return;
+    }
+    if !setup.world.bounds().contains(at) {
+        let fault = faults
+            .fault("/start", format!("the robot starts outside the building at {}", spot(at)));
+        let bounds = setup.world.bounds();
+        let help = format!("the world reaches from {} to {}", spot(bounds.min), spot(bounds.max));
+        faults.push(fault.label("beyond every wall").help(help).warning());
+    }
+}
+
+fn spot(point: Point) -> String {
+    format!("({:.2}, {:.2}) m", point.x, point.y)
+}
+
+/// Values that look as if they were written in another unit, by the unit in their key.
+fn units(setup: &Setup, faults: &mut Faults<'_>) {
+    let Ok(Value::Object(groups)) = serde_json::to_value(&setup.parameters) else { return };
+    for (group, values) in &groups {
+        for (key, value) in values.as_object().into_iter().flatten() {
+            let Some(value) = value.as_f64() else { continue };
+            let slip = if key.ends_with("-rad-s") || key.ends_with("-m-s") {
+                (value.abs() > 20.0).then_some("faster than any robot here")
+            } else if key.ends_with("-rad") {
+                (value.abs() > TAU).then_some("more than a full turn: is this in degrees?")
+            } else if key.ends_with("-m") {
+                (value.abs() > 200.0).then_some("more than 200 m: is this in millimetres?")
+            } else if key.ends_with("-s") {
+                (value.abs() > 1e6).then_some("more than 11 days: is this in milliseconds?")
+            } else {
+                None
+            };
+            if let Some(label) = slip {
+                let pointer = format!("/parameters/{group}/{key}");
+                let message = format!("`{group}.{key}` is {value}");
+                let fault = faults.fault(&pointer, message).label(label);
+                faults.push(fault.warning());
+            }
+        }
+    }
+}
+
+fn resolution(setup: &Setup, prior: &UsedPrior, faults: &mut Faults<'_>) {
+    let (own, map) = (prior.grid.frame().resolution, setup.parameters.mapping.resolution_m);
+    if own != map {
+        let message = format!("the prior map has cells of {own} m, the robot's map of {map} m");
+        let fault = faults.fault(&prior.pointer, message).label("is resampled");
+        faults.push(fault.help("`parameters.mapping.resolution-m` sets the robot's").warning());
+    }
+}
+
+fn alignment(setup: &Setup, world: &UsedWorld, prior: &UsedPrior, faults: &mut Faults<'_>) {
+    let Some(lidar) = &setup.robot.lidar else { return };
+    let solids = &world.world.solids;
+    let has_walls = solids.iter().any(|solid| solid.layer == WALLS);
+    let outlines: Vec<Outline> = solids
+        .iter()
+        .filter(|solid| !has_walls || solid.layer == WALLS)
+        .filter_map(|solid| solid.body.slice(lidar.height))
+        .collect();
+    let grid = &prior.grid;
+    let walls = along(&outlines, grid.frame().resolution);
+    let drawn: Vec<Point> = grid
+        .frame()
+        .cells()
+        .filter(|&cell| grid.at(cell) == Occupancy::Occupied)
+        .map(|cell| grid.frame().center(cell))
+        .collect();
+    if walls.is_empty() || drawn.is_empty() {
+        return;
+    }
+    let near_drawn = share(&walls, |point| near(grid, point));
+    // The other way round, a footprint matches too: it draws some of the walls, all of them true.
+    let near_wall =
+        share(&drawn, |point| outlines.iter().any(|o| o.distance(point) <= ALIGNED_WITHIN));
+    if near_drawn.max(near_wall) >= ALIGNED_SHARE {
+        return;
+    }
+    let percent = (near_drawn * 100.0).round();
+    let message = if near_drawn == 0.0 && near_wall == 0.0 {
+        "the prior map does not overlap the world".to_owned()
+    } else {
+        format!(
+            "the prior map fits the world badly: {percent} % of the walls have one of its own within {ALIGNED_WITHIN} m"
+        )
+    };
+    let fault =
+        faults.fault(&prior.pointer, message).label("shifted, scaled or of another building");
+    let help = "check `origin` and `frame`; `reenact show` draws the map";
+    faults.push(fault.help(help).warning());
+}
+
+fn share(points: &[Point], holds: impl Fn(Point) -> bool) -> f64 {
+    let count = points.iter().filter(|&&point| holds(point)).count();
+    #[expect(clippy::cast_precision_loss, reason = "counts of cells")]
+    let share = count as f64 / points.len() as f64;
+    share
+}
+
+/// Whether the grid has an occupied cell within reach of `point`.
+fn near(grid: &OccupancyGrid, point: Point) -> bool {
+    let resolution = grid.frame().resolution;
+    #[expect(clippy::cast_possible_truncation, reason = "a few cells")]
+    let reach = (ALIGNED_WITHIN / resolution).ceil().min(64.0) as i32;
+    let center = grid.frame().cell_at(point);
+    (-reach..=reach).any(|dy| {
+        (-reach..=reach).any(|dx| {
+            let cell = Cell::new(center.x.saturating_add(dx), center.y.saturating_add(dy));
+            grid.at(cell) == Occupancy::Occupied
+                && grid.frame().center(cell).distance(point) <= ALIGNED_WITHIN + resolution / 2.0
+        })
+    })
+}
+
+/// Points along the outlines, `spacing` m apart.
+fn along(outlines: &[Outline], spacing: f64) -> Vec<Point> {
+    let mut points = Vec::new();
+    for outline in outlines {
+        if let Outline::Circle { center, radius } = outline {
+            for i in 0..16 {
+                let (sin, cos) = math::sin_cos(TAU * f64::from(i) / 16.0);
+                points.push(*center + Point::new(cos, sin) * *radius);
+            }
+        }
+        for side in outline.sides() {
+            let length = side.a.distance(side.b);
+            #[expect(clippy::cast_possible_truncation, reason = "walls are short")]
+            let steps = (length / spacing).ceil().clamp(1.0, 1e5) as i32;
+            for i in 0..steps {
+                let t = f64::from(i) / f64::from(steps);
+                points.push(side.a + (side.b - side.a) * t);
+            }
+        }
+    }
+    points
+}

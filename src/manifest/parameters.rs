@@ -1,0 +1,202 @@
+//! A study's parameters as written: every value plain, with a reason, or by a factor.
+
+use crate::studies::prior_map::Parameters;
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::Deserialize;
+use serde_json::{Map, Value, json};
+use std::borrow::Cow;
+
+/// Parameters as written, their values still wrapped.
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
+#[serde(transparent)]
+pub struct ParametersDoc(pub Map<String, Value>);
+
+/// One value that is written with a reason or by a factor.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Wrapped<'a> {
+    /// JSON pointer from the manifest's root.
+    pub(super) pointer: String,
+    /// Why the value was chosen.
+    pub(super) why: Option<&'a str>,
+    /// The value, or one for every value of a factor.
+    pub(super) value: WrappedValue<'a>,
+}
+
+/// What is wrapped.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum WrappedValue<'a> {
+    /// The same for all conditions.
+    Plain(&'a Value),
+    /// By a factor.
+    By {
+        /// The factor.
+        factor: &'a str,
+        /// Value of the factor to value of the parameter.
+        values: &'a Map<String, Value>,
+    },
+}
+
+impl ParametersDoc {
+    /// All values that are not plain, in the order of their pointers.
+    pub(super) fn wrapped(&self) -> Vec<Wrapped<'_>> {
+        let mut found = Vec::new();
+        collect(&self.0, &groups(), "/parameters", &mut found);
+        found
+    }
+
+    /// The parameters for one condition: wrapped values taken out by `value_of` (factor to its value).
+    ///
+    /// # Errors
+    /// What serde refuses; the schema has been checked before, so this is a value of a wrong kind within
+    /// `values` at most.
+    pub(super) fn for_condition<'c>(
+        &self,
+        value_of: &dyn Fn(&str) -> Option<&'c str>,
+    ) -> Result<Parameters, String> {
+        let plain = unwrap_all(&self.0, &groups(), value_of);
+        serde_json::from_value(Value::Object(plain)).map_err(|error| error.to_string())
+    }
+}
+
+/// The parameters' tree of groups: what is an object in the defaults is a group, the rest are values.
+fn groups() -> Map<String, Value> {
+    match serde_json::to_value(Parameters::default()) {
+        Ok(Value::Object(groups)) => groups,
+        _ => Map::new(),
+    }
+}
+
+fn wrap<'a>(value: &'a Value, pointer: &str) -> Option<Wrapped<'a>> {
+    let map = value.as_object()?;
+    let why = map.get("why").and_then(Value::as_str);
+    let value = match (map.get("value"), map.get("by"), map.get("values")) {
+        (Some(value), None, None) => WrappedValue::Plain(value),
+        (None, Some(by), Some(values)) => {
+            WrappedValue::By { factor: by.as_str()?, values: values.as_object()? }
+        }
+        _ => return None,
+    };
+    Some(Wrapped { pointer: pointer.to_owned(), why, value })
+}
+
+fn collect<'a>(
+    written: &'a Map<String, Value>,
+    groups: &Map<String, Value>,
+    pointer: &str,
+    found: &mut Vec<Wrapped<'a>>,
+) {
+    for (key, value) in written {
+        let pointer = format!("{pointer}/{key}");
+        match (value, groups.get(key)) {
+            (Value::Object(inner), Some(Value::Object(group))) => {
+                collect(inner, group, &pointer, found);
+            }
+            _ => found.extend(wrap(value, &pointer)),
+        }
+    }
+}
+
+fn unwrap_all<'c>(
+    written: &Map<String, Value>,
+    groups: &Map<String, Value>,
+    value_of: &dyn Fn(&str) -> Option<&'c str>,
+) -> Map<String, Value> {
+    let mut plain = Map::new();
+    for (key, value) in written {
+        let value = match (value, groups.get(key)) {
+            (Value::Object(inner), Some(Value::Object(group))) => {
+                Some(Value::Object(unwrap_all(inner, group, value_of)))
+            }
+            _ => match wrap(value, "").map(|wrapped| wrapped.value) {
+                None => Some(value.clone()),
+                Some(WrappedValue::Plain(value)) => Some(value.clone()),
+                Some(WrappedValue::By { factor, values }) => {
+                    value_of(factor).and_then(|level| values.get(level)).cloned()
+                }
+            },
+        };
+        plain.extend(value.map(|value| (key.clone(), value)));
+    }
+    plain
+}
+
+impl JsonSchema for ParametersDoc {
+    fn schema_name() -> Cow<'static, str> {
+        "Parameters".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        // Inlined, because its groups differ from the study's own schemas in what their values may be.
+        let settings = schemars::generate::SchemaSettings::draft2020_12().for_deserialize();
+        let generator = settings.with(|s| s.inline_subschemas = true).into_generator();
+        let mut schema = generator.into_root_schema_for::<Parameters>();
+        schema.remove("$schema");
+        schema.remove("title");
+        if let Some(object) = schema.as_object_mut() {
+            wrap_values(object);
+        }
+        schema
+    }
+}
+
+/// Lets every value below `schema` be plain, `{value, why}` or `{by, values, why}`.
+fn wrap_values(schema: &mut Map<String, Value>) {
+    let Some(Value::Object(properties)) = schema.get_mut("properties") else { return };
+    for property in properties.values_mut() {
+        let Value::Object(object) = property else { continue };
+        object.remove("default");
+        if object.contains_key("properties") {
+            wrap_values(object);
+            continue;
+        }
+        let description = object.get("description").cloned().unwrap_or_default();
+        let plain = Value::Object(object.clone());
+        let why = json!({ "type": "string", "description": "Why this value was chosen." });
+        *property = json!({
+            "description": description,
+            "anyOf": [
+                plain,
+                {
+                    "type": "object",
+                    "properties": { "value": plain, "why": why },
+                    "required": ["value", "why"],
+                    "additionalProperties": false,
+                },
+                {
+                    "type": "object",
+                    "properties": {
+                        "by": { "type": "string", "description": "The factor that decides." },
+                        "values": { "type": "object", "additionalProperties": plain },
+                        "why": why,
+                    },
+                    "required": ["by", "values"],
+                    "additionalProperties": false,
+                },
+            ],
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wrapped_values_are_found_and_taken_out() {
+        let doc: ParametersDoc = serde_json::from_value(json!({
+            "sensing": {
+                "range-m": {"by": "environment", "values": {"basic": 10, "office": 30}, "why": "hardware"},
+                "range-noise-sd-m": 0.1
+            },
+            "mapping": {"resolution-m": {"value": 0.05, "why": "finer"}}
+        }))
+        .unwrap();
+        let pointers: Vec<_> = doc.wrapped().iter().map(|w| w.pointer.clone()).collect();
+        assert_eq!(pointers, ["/parameters/mapping/resolution-m", "/parameters/sensing/range-m"]);
+        let level = |factor: &str| (factor == "environment").then_some("office");
+        let parameters = doc.for_condition(&level).unwrap();
+        assert_eq!(parameters.sensing.range_m, Some(30.0));
+        assert_eq!(parameters.sensing.range_noise_sd_m, Some(0.1));
+        assert_eq!(parameters.mapping.resolution_m, 0.05);
+    }
+}

@@ -1,0 +1,242 @@
+//! Prior knowledge PK_E: a map file aligned to the world, or what is derived from a world.
+
+use super::choice::Choice;
+use super::crossing::known_or_near;
+use super::document::{DerivedFrom, MapPrior, OwnWorld, PriorDoc, PriorFrame, UnknownAs, WorldDoc};
+use super::faults::step;
+use super::inputs::{joined, normalised};
+use super::readers::{self, Derived};
+use super::resolve::{Known, Resolver, UsedWorld};
+use crate::digest::{Hasher, MeaningDigest};
+use crate::geometry::{Point, Pose};
+use crate::grid::{GridFrame, Occupancy, OccupancyGrid};
+use crate::json;
+use crate::robot::Robot;
+use crate::studies::Condition;
+use crate::studies::prior_map::Parameters;
+use crate::world::{floor_plan::Plan, map_server};
+use serde_json::{Value, json};
+use std::sync::Arc;
+
+/// The factor that chooses among prior maps, and the choice of none.
+const FACTOR: &str = "prior";
+const NONE: &str = "none";
+
+/// A prior map as a condition uses it.
+#[derive(Clone)]
+pub(super) struct UsedPrior {
+    pub(super) grid: Arc<OccupancyGrid>,
+    pub(super) meaning: MeaningDigest,
+    pub(super) described: Value,
+    /// Where it is written.
+    pub(super) pointer: String,
+    /// Whether it was derived from the condition's own world, and so lies on it.
+    pub(super) own: bool,
+}
+
+impl Resolver<'_> {
+    /// Faults of the names of prior maps.
+    pub(super) fn check_prior_names(&mut self) {
+        let doc = self.doc;
+        let mut known: Vec<&str> = vec![NONE];
+        known.extend(doc.prior_maps.keys().map(String::as_str));
+        if doc.prior_maps.contains_key(NONE) {
+            let message = "`none` stands for no prior map and cannot name one";
+            self.faults.at_key("/prior-maps/none", message, "choose another name");
+        }
+        let chosen: Vec<(String, String)> = match self.factors.iter().find(|f| f.name == FACTOR) {
+            Some(factor) => {
+                if doc.prior.is_some() {
+                    let message = "the factor `prior` chooses the prior map already";
+                    self.faults.at_key("/prior", message, "remove this key");
+                }
+                let places = factor.values.iter().enumerate();
+                places.map(|(i, v)| (format!("/factors/prior/{i}"), v.clone())).collect()
+            }
+            None => doc.prior.iter().map(|name| ("/prior".to_owned(), name.clone())).collect(),
+        };
+        for (pointer, name) in &chosen {
+            if !known.contains(&name.as_str()) {
+                let fault = self
+                    .faults
+                    .fault(pointer, format!("unknown prior map `{name}`"))
+                    .label("neither `none` nor a key of `prior-maps`");
+                self.faults.push(fault.help(known_or_near(name, &known)));
+            }
+        }
+        for name in doc.prior_maps.keys().filter(|name| chosen.iter().all(|(_, c)| c != *name)) {
+            let fault = self
+                .faults
+                .key_fault(
+                    &step("/prior-maps", name),
+                    format!("the prior map `{name}` is not used"),
+                )
+                .label("not a value of the factor `prior`");
+            self.faults.push(fault.warning());
+        }
+    }
+
+    /// The prior map of `condition`: `Some(None)` where it has none, `None` where it could not be had, which
+    /// has been told.
+    pub(super) fn prior(
+        &mut self,
+        condition: &Condition,
+        world: &UsedWorld,
+        robot: &Robot,
+        start: Pose,
+        parameters: &Parameters,
+    ) -> Option<Option<UsedPrior>> {
+        let doc = self.doc;
+        let name = condition.value(FACTOR).or(doc.prior.as_deref()).unwrap_or(NONE);
+        if name == NONE {
+            return Some(None);
+        }
+        let choice: &Choice<PriorDoc> = doc.prior_maps.get(name)?;
+        let (prior, pointer) = self.choose(choice, &step("/prior-maps", name), condition)?;
+        let derived = |kind: Derived, from: &'_ DerivedFrom, resolution: Option<f64>| {
+            (kind, from.clone(), resolution.unwrap_or(parameters.mapping.resolution_m))
+        };
+        let (kind, from, resolution) = match prior {
+            PriorDoc::Map(map) => return self.map(map, &pointer, start).map(Some),
+            PriorDoc::FloorPlan(p) => {
+                derived(Derived::FloorPlanOf, &p.floor_plan_of, p.resolution_m)
+            }
+            PriorDoc::Footprint(p) => {
+                derived(Derived::FootprintOf, &p.footprint_of, p.resolution_m)
+            }
+            PriorDoc::BoundingBox(p) => {
+                derived(Derived::BoundingBoxOf, &p.bounding_box_of, p.resolution_m)
+            }
+        };
+        let key = json!(kind).as_str().unwrap_or_default().to_owned();
+        let own = matches!(from, DerivedFrom::Own(OwnWorld::World));
+        let of = match &from {
+            DerivedFrom::Own(OwnWorld::World) => world.clone(),
+            DerivedFrom::Other(other) => self.other_world(other, &pointer, &key, condition)?,
+        };
+        let described = json!({
+            key.as_str(): if own { json!("world") } else { of.described.clone() },
+            "resolution-m": resolution,
+        });
+        // Without a scanner there is no height to cut at; the lint says so.
+        let height = robot.lidar.as_ref().map_or(0.0, |lidar| lidar.height);
+        let cache = json!([described, of.meaning, height]).to_string();
+        let known = match self.priors.get(&cache) {
+            Some(known) => known.clone(),
+            None => {
+                let plan = Plan { height, resolution, layers: None };
+                let known: Known<OccupancyGrid> = match kind.draw(&of.world, plan) {
+                    Ok(grid) => {
+                        let meaning = meaning(&grid);
+                        Some((Arc::new(grid), meaning))
+                    }
+                    Err(problem) => {
+                        let fault = self.faults.fault(&pointer, problem).label("derived here");
+                        self.faults.push(fault);
+                        None
+                    }
+                };
+                self.priors.insert(cache, known.clone());
+                known
+            }
+        };
+        let (grid, meaning) = known?;
+        Some(Some(UsedPrior { grid, meaning, described, pointer, own }))
+    }
+
+    fn other_world(
+        &mut self,
+        doc: &WorldDoc,
+        pointer: &str,
+        key: &str,
+        condition: &Condition,
+    ) -> Option<UsedWorld> {
+        self.world(doc, &step(pointer, key), condition)
+    }
+
+    fn map(&mut self, doc: &MapPrior, pointer: &str, start: Pose) -> Option<UsedPrior> {
+        let place = format!("{pointer}/map");
+        let described = json!({
+            "map": normalised(&doc.map),
+            "frame": doc.frame,
+            "origin": doc.origin.map(|o| json!({ "x-m": o.x_m, "y-m": o.y_m })),
+            "alpha": doc.alpha,
+            "unknown": doc.unknown,
+        });
+        let shift = match doc.frame {
+            PriorFrame::World => Point::ZERO,
+            PriorFrame::Start => start.position(),
+        };
+        if doc.frame == PriorFrame::Start && start.heading != 0.0 {
+            let message = "a map in the start's frame needs a start that faces along x";
+            let fault = self.faults.fault(&format!("{pointer}/frame"), message);
+            let label = format!("the start is turned by {} degrees", start.heading.to_degrees());
+            self.faults.push(fault.label(label).help("turn the image, or use `frame: world`"));
+            return None;
+        }
+        let cache = json!([described, self.faults.written_in(&place), shift]).to_string();
+        let known = match self.priors.get(&cache) {
+            Some(known) => known.clone(),
+            None => {
+                let known = self.read_map(doc, &place, shift);
+                self.priors.insert(cache, known.clone());
+                known
+            }
+        };
+        let (grid, meaning) = known?;
+        let pointer = pointer.to_owned();
+        Some(UsedPrior { grid, meaning, described, pointer, own: false })
+    }
+
+    fn read_map(&mut self, doc: &MapPrior, place: &str, shift: Point) -> Known<OccupancyGrid> {
+        let source = self.text(&doc.map, place)?;
+        let image = match map_server::image_path(&source) {
+            Ok(image) => image,
+            Err(faults) => {
+                self.faults.extend(faults);
+                return None;
+            }
+        };
+        let path = joined(&normalised(&doc.map), &image);
+        let written_in = self.faults.written_in(place);
+        let bytes = self.bytes_of(&path, written_in, &path, place)?;
+        let grid = match readers::map(&source, &path, &bytes, doc.alpha) {
+            Ok(grid) => grid,
+            Err(faults) => {
+                self.faults.extend(faults);
+                return None;
+            }
+        };
+        let origin = doc.origin.map_or(grid.frame().origin, |o| Point::new(o.x_m, o.y_m));
+        let frame = GridFrame { origin: origin + shift, ..*grid.frame() };
+        let unknown = match doc.unknown {
+            UnknownAs::Unknown => Occupancy::Unknown,
+            UnknownAs::Free => Occupancy::Free,
+            UnknownAs::Occupied => Occupancy::Occupied,
+        };
+        let cells = grid
+            .values()
+            .iter()
+            .map(|&cell| if cell == Occupancy::Unknown { unknown } else { cell })
+            .collect();
+        let grid = OccupancyGrid::from_cells(frame, cells);
+        let meaning = meaning(&grid);
+        Some((Arc::new(grid), meaning))
+    }
+}
+
+/// Digest of where a grid lies and what it holds.
+fn meaning(grid: &OccupancyGrid) -> MeaningDigest {
+    let mut hasher = Hasher::new();
+    hasher.update(b"reenact-grid-1\0").update(json::canonical_of(grid.frame())).update([0]);
+    let cells: Vec<u8> = grid
+        .values()
+        .iter()
+        .map(|cell| match cell {
+            Occupancy::Unknown => b'?',
+            Occupancy::Free => b'.',
+            Occupancy::Occupied => b'#',
+        })
+        .collect();
+    MeaningDigest(hasher.update(cells).digest())
+}

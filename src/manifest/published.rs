@@ -1,0 +1,171 @@
+//! The paper's own numbers, and the tables and figures that ask for them.
+
+use super::crossing::{Factor, is_kebab, known_or_near};
+use super::document::ManifestDoc;
+use super::faults::{Faults, step};
+use crate::document::{Diagnostic, Source, suggestion};
+use crate::studies::prior_map::{CoverageTable, MILESTONES};
+use crate::table::{Table, Value};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Columns of a tidy CSV of published numbers besides the factors', and whether each must be there.
+const COLUMNS: [(&str, bool); 4] =
+    [("coverage-percent", true), ("value", true), ("sd", false), ("n", false)];
+
+/// Reads a tidy CSV: columns named after factors, then `coverage-percent`, `value`, and where known `sd` and
+/// `n`; one row per published number.
+pub(super) fn read(source: &Source, factors: &[Factor], faults: &mut Faults<'_>) -> Option<Table> {
+    let table = match Table::from_csv(&source.text) {
+        Ok(table) => table,
+        Err(error) => {
+            faults.push(Diagnostic::error(source, line(source, error.line), error.problem));
+            return None;
+        }
+    };
+    let mut fine = true;
+    let known: Vec<&str> = factors
+        .iter()
+        .map(|f| f.name.as_str())
+        .chain(COLUMNS.iter().map(|(name, _)| *name))
+        .collect();
+    for column in table.columns.iter().filter(|c| !known.contains(&c.as_str())) {
+        let fault =
+            Diagnostic::error(source, line(source, 1), format!("unknown column `{column}`"))
+                .label("expected factors of the manifest and the columns of numbers");
+        faults.push(fault.help(known_or_near(column, &known)));
+        fine = false;
+    }
+    for (name, _) in COLUMNS.iter().filter(|(name, needed)| *needed && table.column(name).is_none())
+    {
+        let fault = Diagnostic::error(source, line(source, 1), format!("missing column `{name}`"));
+        faults.push(fault.label(format!("expected a column `{name}`")));
+        fine = false;
+    }
+    let mut unknown = BTreeSet::new();
+    for (i, row) in table.rows.iter().enumerate() {
+        // Exact while no field spans lines; a place one line off is still a help then.
+        let place = line(source, i + 2);
+        for (column, value) in table.columns.iter().zip(row) {
+            if let Some(factor) = factors.iter().find(|f| f.name == *column) {
+                // A paper may have more levels than are run; one that is nearly a level is a slip.
+                let level = value.to_string();
+                let names: Vec<&str> = factor.values.iter().map(String::as_str).collect();
+                if !names.contains(&level.as_str())
+                    && suggestion(&level, names.iter().copied()).is_some()
+                    && unknown.insert((column, level.clone()))
+                {
+                    let message = format!("`{level}` is not a value of the factor `{column}`");
+                    let fault = Diagnostic::error(source, place.clone(), message)
+                        .label("this row will stand beside nothing")
+                        .help(known_or_near(&level, &names));
+                    faults.push(fault.warning());
+                }
+            } else if COLUMNS.iter().any(|(name, needed)| name == column && *needed)
+                && value.as_f64().is_none()
+            {
+                let found = match value {
+                    Value::Missing => "nothing".to_owned(),
+                    other => format!("`{other}`"),
+                };
+                let message = format!("`{column}` must be a number, found {found}");
+                faults.push(Diagnostic::error(source, place.clone(), message));
+                fine = false;
+            }
+        }
+    }
+    fine.then_some(table)
+}
+
+/// Bytes of the one-based line `number`.
+fn line(source: &Source, number: usize) -> std::ops::Range<usize> {
+    let start = source
+        .text
+        .split_inclusive('\n')
+        .take(number.saturating_sub(1))
+        .map(str::len)
+        .sum::<usize>();
+    let length = source.text[start..].lines().next().map_or(0, str::len);
+    start..start + length
+}
+
+/// Faults of the requests for tables and figures.
+pub(super) fn check_requests(
+    doc: &ManifestDoc,
+    factors: &[Factor],
+    published: &BTreeMap<String, Table>,
+    faults: &mut Faults<'_>,
+) {
+    let mut ids = BTreeSet::new();
+    let tables = doc.tables.iter().enumerate().map(|(i, t)| (format!("/tables/{i}/id"), &t.id));
+    let figures = doc.figures.iter().enumerate().map(|(i, f)| (format!("/figures/{i}/id"), &f.id));
+    for (pointer, id) in tables.chain(figures) {
+        if !is_kebab(id) {
+            let label = "expected lower-case letters, digits and single hyphens";
+            faults.at(&pointer, format!("`{id}` cannot be an id"), label);
+        }
+        if !ids.insert(id) {
+            faults.at(&pointer, format!("the id `{id}` is used twice"), "choose another one");
+        }
+    }
+    for (i, table) in doc.tables.iter().enumerate() {
+        let pointer = format!("/tables/{i}/coverage-table");
+        check_table(&table.coverage_table, &pointer, doc, factors, published, faults);
+    }
+    for (i, figure) in doc.figures.iter().enumerate() {
+        let pointer = format!("/figures/{i}/coverage-curve");
+        let curve = &figure.coverage_curve;
+        faults.check_factor(factors, &curve.by, &format!("{pointer}/by"), false);
+        for (name, value) in &curve.only {
+            let place = step(&format!("{pointer}/where"), name);
+            faults.check_level(factors, name, value, &place);
+        }
+    }
+}
+
+fn check_table(
+    table: &CoverageTable,
+    pointer: &str,
+    doc: &ManifestDoc,
+    factors: &[Factor],
+    published: &BTreeMap<String, Table>,
+    faults: &mut Faults<'_>,
+) {
+    for (i, level) in table.at.iter().enumerate().filter(|(_, l)| !MILESTONES.contains(l)) {
+        let message = format!("trials are not measured at {level} % of coverage");
+        faults.at(&format!("{pointer}/at/{i}"), message, "expected a multiple of 5 from 50 to 95");
+    }
+    let by = faults.check_factor(factors, &table.by, &format!("{pointer}/by"), false);
+    if let (Some(_), Some(baseline)) = (by, &table.baseline) {
+        faults.check_level(factors, &table.by, baseline, &format!("{pointer}/baseline"));
+    }
+    for (i, row) in table.rows.iter().enumerate() {
+        let place = format!("{pointer}/rows/{i}");
+        faults.check_factor(factors, row, &place, false);
+        if *row == table.by {
+            faults.at(&place, format!("`{row}` stands in the columns already"), "remove it");
+        }
+    }
+    for factor in factors.iter().filter(|f| {
+        by.is_some() && f.values.len() > 1 && f.name != table.by && !table.rows.contains(&f.name)
+    }) {
+        let message = format!("the table pools all values of the factor `{}`", factor.name);
+        let fault = faults.key_fault(pointer, message).label("it is neither in `by` nor in `rows`");
+        faults.push(fault.help(format!("add `{}` to `rows`", factor.name)).warning());
+    }
+    let Some(name) = &table.published else { return };
+    let place = format!("{pointer}/published");
+    if !doc.published.contains_key(name) {
+        let known: Vec<&str> = doc.published.keys().map(String::as_str).collect();
+        let fault = faults
+            .fault(&place, format!("unknown published numbers `{name}`"))
+            .label("not a key of `published`");
+        faults.push(fault.help(known_or_near(name, &known)));
+    } else if let Some(numbers) = published.get(name) {
+        for factor in std::iter::once(&table.by).chain(&table.rows) {
+            if numbers.column(factor).is_none() {
+                let message = format!("the published numbers `{name}` have no column `{factor}`");
+                faults.at(&place, message, "asked for by this table");
+            }
+        }
+    }
+}

@@ -1,0 +1,438 @@
+//! From a manifest as written to an experiment: every name looked up, every file read, every fault collected.
+
+use super::choice::{By, Choice};
+use super::crossing::{Factor, cross, is_kebab, known_or_near};
+use super::document::{ManifestDoc, StartDoc, WorldDoc};
+use super::experiment::{Assumption, Experiment, Meanings};
+use super::faults::{Faults, step};
+use super::inputs::{InputFiles, Inputs, WrittenIn, joined, normalised};
+use super::parameters::WrappedValue;
+use super::{lint, overrides, published, readers};
+use crate::digest::MeaningDigest;
+use crate::document::{Diagnostic, Parsed, Source, parse_tree, read};
+use crate::geometry::Pose;
+use crate::robot::{Robot, urdf};
+use crate::studies::prior_map::{self, Parameters};
+use crate::studies::{Condition, Setup, StudyKind};
+use crate::table::Table;
+use crate::units::Radians;
+use crate::world::World;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Resolves the manifest `source`, changed by `overrides` (`PATH=VALUE`), with the files that `inputs` hands
+/// over. Comes with warnings.
+///
+/// # Errors
+/// Every fault that can be told at this point, warnings among them, in the order of the manifest.
+pub fn resolve(
+    source: &Source,
+    overrides: &[String],
+    inputs: &dyn Inputs,
+) -> Result<(Experiment, Vec<Diagnostic>), Vec<Diagnostic>> {
+    let mut tree = read(source)?;
+    overrides::apply(&mut tree, overrides)?;
+    let Parsed { value: doc, tree } = parse_tree::<ManifestDoc>(tree)?;
+    let mut resolver = Resolver {
+        doc: &doc,
+        folder: &source.name,
+        faults: Faults::new(&tree),
+        files: InputFiles::new(inputs),
+        factors: Vec::new(),
+        robots: BTreeMap::new(),
+        worlds: BTreeMap::new(),
+        priors: BTreeMap::new(),
+    };
+    let resolved = resolver.run(overrides);
+    let Resolver { faults, files, .. } = resolver;
+    let broken = faults.any_error();
+    let faults = faults.finish();
+    match resolved {
+        Some(mut experiment) if !broken => {
+            experiment.inputs = files.finish(&doc.license_of);
+            Ok((experiment, faults))
+        }
+        _ => Err(faults),
+    }
+}
+
+/// The layer of a world that always stands.
+pub(super) const WALLS: &str = "walls";
+
+/// A thing that was read and what it means; `None` where it could not be, which has been told.
+pub(super) type Known<T> = Option<(Arc<T>, MeaningDigest)>;
+
+pub(super) struct Resolver<'a> {
+    pub(super) doc: &'a ManifestDoc,
+    /// Name of the manifest, which relative paths are shown beside.
+    folder: &'a str,
+    pub(super) faults: Faults<'a>,
+    files: InputFiles<'a>,
+    pub(super) factors: Vec<Factor>,
+    robots: BTreeMap<(String, WrittenIn), Known<Robot>>,
+    worlds: BTreeMap<String, Known<World>>,
+    pub(super) priors: BTreeMap<String, Known<crate::grid::OccupancyGrid>>,
+}
+
+/// A world as a condition uses it.
+#[derive(Clone)]
+pub(super) struct UsedWorld {
+    pub(super) world: Arc<World>,
+    pub(super) meaning: MeaningDigest,
+    /// File and layers, as written.
+    pub(super) described: Value,
+}
+
+impl Resolver<'_> {
+    fn run(&mut self, overrides: &[String]) -> Option<Experiment> {
+        let doc = self.doc;
+        if !is_kebab(&doc.name) {
+            let label = "expected lower-case letters, digits and single hyphens";
+            self.faults.at("/name", format!("`{}` cannot be a name", doc.name), label);
+        }
+        let (factors, conditions) = cross(doc, &mut self.faults);
+        self.factors.clone_from(&factors);
+        self.check_shared_noise();
+        self.check_prior_names();
+        let assumptions = self.assumptions();
+        let published = self.published();
+        published::check_requests(doc, &factors, &published, &mut self.faults);
+
+        let mut resolved = Vec::new();
+        for condition in conditions {
+            resolved.extend(self.condition(condition));
+        }
+        self.check_licenses();
+        let (mut cells, mut meanings, mut described) = (Vec::new(), Vec::new(), Vec::new());
+        for (condition, setup, meaning, description) in resolved {
+            cells.push((condition, setup));
+            meanings.push(meaning);
+            described.push(description);
+        }
+        let StudyKind::PriorMap = doc.study;
+        Some(Experiment {
+            name: doc.name.clone(),
+            title: doc.title.clone(),
+            cite: doc.cite.clone(),
+            authors: doc.authors.clone(),
+            license: doc.license.clone(),
+            kind: doc.study,
+            seed: doc.seed,
+            trials: doc.trials,
+            shared_noise: doc.shared_noise.clone(),
+            factors,
+            conditions: cells,
+            meanings,
+            described,
+            published,
+            published_files: doc
+                .published
+                .iter()
+                .map(|(name, file)| (name.clone(), normalised(file.path())))
+                .collect(),
+            tables: doc.tables.clone(),
+            figures: doc.figures.clone(),
+            claims: doc.claims.clone(),
+            assumptions,
+            overrides: overrides.to_vec(),
+            inputs: Vec::new(),
+            document: self.faults.tree.clone(),
+        })
+    }
+
+    fn check_shared_noise(&mut self) {
+        for (i, name) in self.doc.shared_noise.iter().enumerate() {
+            let pointer = format!("/shared-noise/{i}");
+            self.faults.check_factor(&self.factors, name, &pointer, false);
+        }
+    }
+
+    fn check_licenses(&mut self) {
+        let read: Vec<String> = self.files.paths();
+        let known: Vec<&str> = read.iter().map(String::as_str).collect();
+        for path in self.doc.license_of.keys().filter(|path| !known.contains(&path.as_str())) {
+            let fault = self
+                .faults
+                .key_fault(&step("/license-of", path), format!("no input is read from `{path}`"))
+                .label("expected the path of an input, as written")
+                .help(known_or_near(path, &known));
+            self.faults.push(fault);
+        }
+    }
+
+    /// Values with reasons; faults of those that depend on a factor.
+    fn assumptions(&mut self) -> Vec<Assumption> {
+        let mut assumptions = Vec::new();
+        for wrapped in self.doc.parameters.wrapped() {
+            let value = match wrapped.value {
+                WrappedValue::Plain(value) => value.clone(),
+                WrappedValue::By { factor, values } => {
+                    let by = format!("{}/by", wrapped.pointer);
+                    let found = self.faults.check_factor(&self.factors, factor, &by, false);
+                    if let Some(found) = found {
+                        let place = format!("{}/values", wrapped.pointer);
+                        self.faults.check_levels(values.keys(), found, &place);
+                    }
+                    json!({ "by": factor, "values": values })
+                }
+            };
+            assumptions.extend(wrapped.why.map(|why| Assumption {
+                path: wrapped.pointer[1..].replace('/', "."),
+                value,
+                why: why.to_owned(),
+            }));
+        }
+        assumptions
+    }
+
+    fn published(&mut self) -> BTreeMap<String, Table> {
+        let mut tables = BTreeMap::new();
+        for (name, file) in &self.doc.published {
+            let pointer = step("/published", name);
+            if let Some(source) = self.text(file.path(), &pointer)
+                && let Some(table) = published::read(&source, &self.factors, &mut self.faults)
+            {
+                tables.insert(name.clone(), table);
+            }
+        }
+        tables
+    }
+
+    fn condition(&mut self, condition: Condition) -> Option<(Condition, Setup, Meanings, Value)> {
+        let doc = self.doc;
+        let parameters = self.parameters(&condition);
+        let robot = self.choose(&doc.robot, "/robot", &condition);
+        let robot_file = robot.as_ref().map(|(path, _)| (*path).clone());
+        let robot = robot.and_then(|(path, pointer)| self.robot(path, &pointer));
+        let world = self
+            .choose(&doc.world, "/world", &condition)
+            .and_then(|(world, pointer)| self.world(world, &pointer, &condition));
+        let start = self.start(world.as_ref(), &condition);
+        // Every part has told its faults by now; the prior needs them all.
+        let (parameters, (robot, robot_meaning), world, start) =
+            (parameters?, robot?, world?, start?);
+        let prior = self.prior(&condition, &world, &robot, start, &parameters)?;
+        let setup = prior_map::Setup::new(
+            Arc::clone(&world.world),
+            robot,
+            prior.as_ref().map(|prior| Arc::clone(&prior.grid)),
+            start,
+            parameters,
+        );
+        lint::check(&setup, &world, prior.as_ref(), &mut self.faults);
+        let meanings = Meanings {
+            robot: robot_meaning,
+            world: world.meaning,
+            prior: prior.as_ref().map(|prior| prior.meaning),
+        };
+        let described = json!({
+            "robot": robot_file,
+            "world": world.described,
+            "prior": prior.map(|prior| prior.described),
+        });
+        Some((condition, Setup::PriorMap(Arc::new(setup)), meanings, described))
+    }
+
+    fn parameters(&mut self, condition: &Condition) -> Option<Parameters> {
+        match self.doc.parameters.for_condition(&|factor| condition.value(factor)) {
+            Ok(parameters) => Some(parameters),
+            Err(problem) => {
+                self.faults.at_key("/parameters", problem, &format!("for `{condition}`"));
+                None
+            }
+        }
+    }
+
+    /// What `choice` is for `condition`, and where that is written.
+    pub(super) fn choose<'c, T>(
+        &mut self,
+        choice: &'c Choice<T>,
+        pointer: &str,
+        condition: &Condition,
+    ) -> Option<(&'c T, String)> {
+        match choice {
+            Choice::Plain(value) => Some((value, pointer.to_owned())),
+            Choice::By(By { by, values }) => {
+                let place = format!("{pointer}/by");
+                let factor = self.faults.check_factor(&self.factors, by, &place, false)?;
+                self.faults.check_levels(values.keys(), factor, &format!("{pointer}/values"));
+                let level = condition.value(by)?;
+                let pointer = step(&format!("{pointer}/values"), level);
+                self.choose(values.get(level)?, &pointer, condition)
+            }
+        }
+    }
+
+    /// The bytes of the file `path`, written at `pointer`, and its text's name.
+    pub(super) fn bytes(&mut self, path: &str, pointer: &str) -> Option<Arc<[u8]>> {
+        let written_in = self.faults.written_in(pointer);
+        self.bytes_of(&normalised(path), written_in, path, pointer)
+    }
+
+    pub(super) fn bytes_of(
+        &mut self,
+        normalised: &str,
+        written_in: WrittenIn,
+        path: &str,
+        pointer: &str,
+    ) -> Option<Arc<[u8]>> {
+        match self.files.read(normalised, written_in) {
+            Ok(bytes) => Some(bytes),
+            Err(reason) => {
+                let fault = self.faults.fault(pointer, format!("cannot read `{path}`"));
+                let help = match written_in {
+                    WrittenIn::Manifest => "paths are relative to the file they are written in",
+                    WrittenIn::CommandLine => {
+                        "paths in `--set` are relative to the current directory"
+                    }
+                };
+                self.faults.push(fault.label(reason).help(help));
+                None
+            }
+        }
+    }
+
+    /// The text of the file `path`, written at `pointer`.
+    pub(super) fn text(&mut self, path: &str, pointer: &str) -> Option<Source> {
+        let bytes = self.bytes(path, pointer)?;
+        let Ok(text) = std::str::from_utf8(&bytes) else {
+            let fault = self.faults.fault(pointer, format!("`{path}` is not UTF-8 text"));
+            self.faults.push(fault.label("expected a text file"));
+            return None;
+        };
+        let name = match self.faults.written_in(pointer) {
+            WrittenIn::Manifest => joined(self.folder, path),
+            WrittenIn::CommandLine => normalised(path),
+        };
+        Some(Source::new(name, text))
+    }
+
+    fn robot(&mut self, path: &str, pointer: &str) -> Known<Robot> {
+        let key = (normalised(path), self.faults.written_in(pointer));
+        if let Some(known) = self.robots.get(&key) {
+            return known.clone();
+        }
+        let known = self.text(path, pointer).and_then(|source| match urdf::read(&source) {
+            Ok((robot, warnings)) => {
+                self.faults.extend(warnings);
+                let meaning = robot.meaning();
+                Some((Arc::new(robot), meaning))
+            }
+            Err(faults) => {
+                self.faults.extend(faults);
+                None
+            }
+        });
+        self.robots.insert(key, known.clone());
+        known
+    }
+
+    /// The world that `doc`, written at `pointer`, is for `condition`.
+    pub(super) fn world(
+        &mut self,
+        doc: &WorldDoc,
+        pointer: &str,
+        condition: &Condition,
+    ) -> Option<UsedWorld> {
+        let (file, file_pointer) = self.choose(&doc.file, &format!("{pointer}/file"), condition)?;
+        let layers = match &doc.layers {
+            None => None,
+            Some(layers) => Some(self.choose(layers, &format!("{pointer}/layers"), condition)?),
+        };
+        let described = json!({
+            "file": normalised(file),
+            "layers": layers.as_ref().map(|(layers, _)| layers),
+        });
+        let written_in = self.faults.written_in(&file_pointer);
+        let key = json!([described, written_in]).to_string();
+        let known = match self.worlds.get(&key) {
+            Some(known) => known.clone(),
+            None => {
+                let known = self.read_world(file, &file_pointer, layers.as_ref());
+                self.worlds.insert(key, known.clone());
+                known
+            }
+        };
+        let (world, meaning) = known?;
+        Some(UsedWorld { world, meaning, described })
+    }
+
+    fn read_world(
+        &mut self,
+        file: &str,
+        pointer: &str,
+        layers: Option<&(&Vec<String>, String)>,
+    ) -> Known<World> {
+        let source = self.text(file, pointer)?;
+        let mut world = match readers::world(&source, None) {
+            Ok(world) => world,
+            Err(faults) => {
+                self.faults.extend(faults);
+                return None;
+            }
+        };
+        for warning in &world.warnings {
+            let fault = self.faults.fault(pointer, warning.clone()).label("in this world");
+            self.faults.push(fault.warning());
+        }
+        if let Some((layers, pointer)) = layers {
+            world = self.choose_layers(world, &source, layers, pointer);
+        }
+        let meaning = world.meaning();
+        Some((Arc::new(world), meaning))
+    }
+
+    /// `world` with its walls and `layers` alone; faults where there is no such layer.
+    fn choose_layers(
+        &mut self,
+        mut world: World,
+        source: &Source,
+        layers: &[String],
+        pointer: &str,
+    ) -> World {
+        let known: Vec<String> = world.layers().iter().map(|l| (*l).to_owned()).collect();
+        let unknown = |layer: &String| !known.contains(layer);
+        if layers.iter().any(unknown) {
+            // A layer may be there and hold nothing.
+            if let Ok(world) = readers::world(source, Some(layers))
+                && source.name.ends_with(".yaml")
+            {
+                return world;
+            }
+        }
+        for (i, layer) in layers.iter().enumerate().filter(|(_, layer)| unknown(layer)) {
+            let known: Vec<&str> = known.iter().map(String::as_str).collect();
+            let fault = self
+                .faults
+                .fault(&format!("{pointer}/{i}"), format!("unknown layer `{layer}`"))
+                .label(format!("not a layer of `{}`", source.name))
+                .help(known_or_near(layer, &known));
+            self.faults.push(fault);
+        }
+        world.solids.retain(|solid| solid.layer == WALLS || layers.contains(&solid.layer));
+        world
+    }
+
+    fn start(&mut self, world: Option<&UsedWorld>, condition: &Condition) -> Option<Pose> {
+        let (start, pointer) = self.choose(&self.doc.start, "/start", condition)?;
+        match start {
+            StartDoc::Pose(pose) => {
+                Some(Pose::new(pose.x_m, pose.y_m, Radians::from_degrees(pose.heading_deg).get()))
+            }
+            StartDoc::Name(name) => {
+                let starts = &world?.world.starts;
+                if let Some(pose) = starts.get(name) {
+                    return Some(*pose);
+                }
+                let known: Vec<&str> = starts.keys().map(String::as_str).collect();
+                let fault = self
+                    .faults
+                    .fault(&pointer, format!("unknown start `{name}`"))
+                    .label("not a start of the world");
+                self.faults.push(fault.help(known_or_near(name, &known)));
+                None
+            }
+        }
+    }
+}

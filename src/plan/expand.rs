@@ -1,0 +1,159 @@
+//! The trials of an experiment, in plan order.
+
+use super::key::{ENGINE_VERSION, explain, key_content, key_of, study_digest};
+use super::selection::{Selection, SelectionError};
+use crate::digest::StudyDigest;
+use crate::manifest::Experiment;
+use crate::rng::Seeds;
+use crate::studies::{Condition, StudyKind, TrialSpec};
+use serde_json::Value;
+
+/// An experiment and its trials: condition by condition, trial by trial.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// What is planned.
+    pub experiment: Experiment,
+    /// The trials, in plan order.
+    pub trials: Vec<TrialSpec>,
+    /// Whether some of the experiment's trials are left out (or others added).
+    pub partial: bool,
+}
+
+/// Why a trial was not found.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum FindError {
+    /// Neither a prefix of a key nor CONDITION/NUMBER.
+    #[error("`{0}` is neither at least 8 hex digits of a trial's key nor CONDITION/NUMBER")]
+    NotATrial(String),
+    /// No trial is called that.
+    #[error("no trial `{wanted}` in this plan; it begins with `{first}`")]
+    Unknown {
+        /// What was asked for.
+        wanted: String,
+        /// The first trial of the plan.
+        first: String,
+    },
+    /// Several keys begin like that.
+    #[error("`{0}` begins the keys of several trials: give more digits")]
+    Ambiguous(String),
+}
+
+impl Plan {
+    /// All trials of `experiment`.
+    pub fn of(experiment: Experiment) -> Self {
+        let trials = expand(&experiment, &Selection::default());
+        Self { experiment, trials, partial: false }
+    }
+
+    /// The trials of `experiment` that `selection` wants.
+    ///
+    /// # Errors
+    /// Where `selection` names factors or values that are not there, or leaves no condition.
+    pub fn select(experiment: Experiment, selection: &Selection) -> Result<Self, SelectionError> {
+        selection.check(&experiment)?;
+        let trials = expand(&experiment, selection);
+        Ok(Self { experiment, trials, partial: selection.is_partial() })
+    }
+
+    /// The trial that `wanted` names: at least 8 hex digits of its key, or `CONDITION/NUMBER` with the
+    /// condition's slug.
+    ///
+    /// # Errors
+    /// Where it names none or several.
+    pub fn find(&self, wanted: &str) -> Result<&TrialSpec, FindError> {
+        let unknown = || FindError::Unknown {
+            wanted: wanted.to_owned(),
+            first: self.trials.first().map_or_else(String::new, |first| {
+                format!("{}/{}", first.condition.slug(), first.trial)
+            }),
+        };
+        if let Some((slug, number)) = wanted.rsplit_once('/') {
+            let number: u32 =
+                number.parse().map_err(|_| FindError::NotATrial(wanted.to_owned()))?;
+            let found = |t: &&TrialSpec| t.trial == number && t.condition.slug() == slug;
+            return self.trials.iter().find(found).ok_or_else(unknown);
+        }
+        let prefix = wanted.to_ascii_lowercase();
+        if prefix.len() < 8 || !prefix.bytes().all(|b| b.is_ascii_hexdigit()) {
+            return Err(FindError::NotATrial(wanted.to_owned()));
+        }
+        let mut found = self.trials.iter().filter(|t| t.key.hex().starts_with(&prefix));
+        match (found.next(), found.next()) {
+            (Some(trial), None) => Ok(trial),
+            (Some(_), Some(_)) => Err(FindError::Ambiguous(wanted.to_owned())),
+            (None, _) => Err(unknown()),
+        }
+    }
+
+    /// What the key of `spec` is made of, in lines.
+    pub fn explain(&self, spec: &TrialSpec) -> String {
+        explain(&self.experiment, spec)
+    }
+
+    /// The content of `study.resolved.json`.
+    pub fn resolved_json(&self) -> Value {
+        self.experiment.resolved_json(ENGINE_VERSION)
+    }
+
+    /// The text of `study.resolved.json`.
+    pub fn resolved_text(&self) -> String {
+        self.experiment.resolved_text(ENGINE_VERSION)
+    }
+
+    /// Digest of what was asked.
+    pub fn study_digest(&self) -> StudyDigest {
+        study_digest(&self.experiment)
+    }
+}
+
+fn expand(experiment: &Experiment, selection: &Selection) -> Vec<TrialSpec> {
+    let count = selection.trials.unwrap_or(experiment.trials);
+    let (shard, shards) = selection.shard.unwrap_or((1, 1));
+    let mut number = 0_u32;
+    let mut trials = Vec::new();
+    for ((condition, setup), meanings) in experiment.conditions.iter().zip(&experiment.meanings) {
+        if !selection.wants(condition) {
+            continue;
+        }
+        for trial in 0..count {
+            let mine = number % shards == shard - 1;
+            number = number.wrapping_add(1);
+            if !mine {
+                continue;
+            }
+            let content = key_content(
+                experiment.kind,
+                experiment.seed,
+                &experiment.shared_noise,
+                condition,
+                trial,
+                setup,
+                meanings,
+            );
+            trials.push(TrialSpec {
+                key: key_of(&content),
+                condition: condition.clone(),
+                trial,
+                seeds: seeds(experiment, condition, trial),
+                setup: setup.clone(),
+            });
+        }
+    }
+    trials
+}
+
+/// Where a trial's random streams come from: the study, the factors that do not share noise, the number.
+fn seeds(experiment: &Experiment, condition: &Condition, trial: u32) -> Seeds {
+    let study = match experiment.kind {
+        StudyKind::PriorMap => "prior-map",
+    };
+    let mut coordinates = vec![("study".to_owned(), study.to_owned())];
+    // Sorted, so that the order of factors in the manifest moves no number.
+    let mut levels: Vec<_> =
+        condition.0.iter().filter(|(name, _)| !experiment.shared_noise.contains(name)).collect();
+    levels.sort();
+    coordinates
+        .extend(levels.into_iter().map(|(name, value)| (format!("factor {name}"), value.clone())));
+    coordinates.push(("trial".to_owned(), trial.to_string()));
+    Seeds::new(experiment.seed, coordinates)
+}

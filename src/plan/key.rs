@@ -1,0 +1,107 @@
+//! What identifies a trial.
+//!
+//! [`key_content`] is the documented content; the [`TrialKey`] is the SHA-256 of its canonical JSON. Paths,
+//! comments, order of keys, layouts of files and the number of trials planned are not part of it: a trial that
+//! means the same has the same key, whoever planned it.
+
+use crate::digest::{Sha256Digest, StudyDigest, TrialKey};
+use crate::json;
+use crate::manifest::{Experiment, Meanings};
+use crate::studies::{Condition, Setup, StudyKind, TrialSpec};
+use serde_json::{Value, json};
+
+/// Version of everything that turns a trial's content into its bytes. Raised whenever any trial's record
+/// changes; the golden digests in `tests/` fail when that is forgotten.
+pub const ENGINE_VERSION: &str = "1";
+
+/// The content of a trial's key.
+///
+/// | field | holds |
+/// |---|---|
+/// | `engine-version` | [`ENGINE_VERSION`] |
+/// | `study` | the study's kind |
+/// | `seed` | the experiment's seed |
+/// | `shared-noise` | the factors that share noise, sorted |
+/// | `condition` | factor to value |
+/// | `trial` | number within the condition, from 0 |
+/// | `robot`, `world`, `prior` | digests of what they mean; `prior` is `null` where there is none |
+/// | `start` | x (m), y (m), heading (rad) |
+/// | `parameters` | the study's parameters, defaults written out |
+pub fn key_content(
+    kind: StudyKind,
+    seed: u64,
+    shared_noise: &[String],
+    condition: &Condition,
+    trial: u32,
+    setup: &Setup,
+    meanings: &Meanings,
+) -> Value {
+    let Setup::PriorMap(setup) = setup;
+    let mut shared: Vec<&String> = shared_noise.iter().collect();
+    shared.sort();
+    let levels: serde_json::Map<String, Value> =
+        condition.0.iter().map(|(name, value)| (name.clone(), json!(value))).collect();
+    json!({
+        "engine-version": ENGINE_VERSION,
+        "study": kind,
+        "seed": seed,
+        "shared-noise": shared,
+        "condition": levels,
+        "trial": trial,
+        "robot": meanings.robot,
+        "world": meanings.world,
+        "prior": meanings.prior,
+        "start": [setup.start.x, setup.start.y, setup.start.heading],
+        "parameters": setup.parameters,
+    })
+}
+
+/// The key of that content.
+pub(super) fn key_of(content: &Value) -> TrialKey {
+    TrialKey(Sha256Digest::of(json::canonical(content)))
+}
+
+/// What was asked: digest of `study.resolved.json`, and so of the manifest's meaning and all input files.
+pub fn study_digest(experiment: &Experiment) -> StudyDigest {
+    StudyDigest(Sha256Digest::of(experiment.resolved_text(ENGINE_VERSION)))
+}
+
+/// The content of a trial's key in lines that two people can compare.
+pub fn explain(experiment: &Experiment, spec: &TrialSpec) -> String {
+    let at = experiment.conditions.iter().position(|(c, _)| *c == spec.condition);
+    let Some(meanings) = at.map(|i| &experiment.meanings[i]) else {
+        return format!("trial {} is not of this experiment\n", spec.key);
+    };
+    let content = key_content(
+        experiment.kind,
+        experiment.seed,
+        &experiment.shared_noise,
+        &spec.condition,
+        spec.trial,
+        &spec.setup,
+        meanings,
+    );
+    let mut text = format!(
+        "trial {}/{}\nkey   {}\n\nThe key is the SHA-256 of the canonical JSON of:\n",
+        spec.condition.slug(),
+        spec.trial,
+        spec.key
+    );
+    lines("", &content, &mut text);
+    text
+}
+
+/// One `path = value` line per leaf, sorted by path.
+fn lines(path: &str, value: &Value, text: &mut String) {
+    match value {
+        Value::Object(map) if !map.is_empty() => {
+            let mut keys: Vec<&String> = map.keys().collect();
+            keys.sort();
+            for key in keys {
+                let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
+                lines(&path, &map[key], text);
+            }
+        }
+        leaf => text.push_str(&format!("  {path} = {}\n", json::canonical(leaf))),
+    }
+}

@@ -1,0 +1,9 @@
+//! From an experiment to its trials, each with an identity that depends on nothing but what it means.
+
+mod expand;
+mod key;
+mod selection;
+
+pub use expand::{FindError, Plan};
+pub use key::{ENGINE_VERSION, explain, key_content, study_digest};
+pub use selection::{Selection, SelectionError};

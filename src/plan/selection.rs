@@ -1,0 +1,136 @@
+//! Which trials of a plan to run: `--only`, `--trials` and `--shard`.
+
+use crate::document::suggestion;
+use crate::manifest::Experiment;
+use crate::studies::Condition;
+use std::collections::BTreeMap;
+
+/// A part of a plan; the default is all of it.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Selection {
+    /// Factor to the values that are wanted; factors that are absent are not restricted.
+    pub only: BTreeMap<String, Vec<String>>,
+    /// Trials per condition, where fewer (or more) than the manifest's are wanted.
+    pub trials: Option<u32>,
+    /// Shard I of N, both from 1: every N-th trial of the plan, beginning with the I-th.
+    pub shard: Option<(u32, u32)>,
+}
+
+/// Why a selection cannot be made.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum SelectionError {
+    /// `--only` is not FACTOR=VALUE.
+    #[error("`--only {0}` is not FACTOR=VALUE[,VALUE]")]
+    NotAnOnly(String),
+    /// The factor does not exist.
+    #[error("unknown factor `{name}` in `--only`{hint}")]
+    UnknownFactor {
+        /// The name written.
+        name: String,
+        /// A suggestion or what is known.
+        hint: String,
+    },
+    /// The factor has no such value.
+    #[error("`{value}` is not a value of the factor `{name}`{hint}")]
+    UnknownValue {
+        /// The factor.
+        name: String,
+        /// The value written.
+        value: String,
+        /// A suggestion or what is known.
+        hint: String,
+    },
+    /// `--shard` is not I/N with 1 <= I <= N.
+    #[error("`--shard {0}` is not I/N with I from 1 to N")]
+    NotAShard(String),
+    /// `--trials 0`.
+    #[error("`--trials` must be at least 1, found 0")]
+    NoTrials,
+    /// Nothing is left.
+    #[error("no condition has all the values of `--only`")]
+    Nothing,
+}
+
+impl Selection {
+    /// A selection as the command line writes it: `--only` any number of times (values of one factor add up),
+    /// `--trials` and `--shard I/N`.
+    ///
+    /// # Errors
+    /// Where an option is not of its form.
+    pub fn parse(
+        only: &[String],
+        trials: Option<u32>,
+        shard: Option<&str>,
+    ) -> Result<Self, SelectionError> {
+        let mut selection = Self { trials, ..Self::default() };
+        for written in only {
+            let bad = || SelectionError::NotAnOnly(written.clone());
+            let (factor, values) = written.split_once('=').ok_or_else(bad)?;
+            let values: Vec<String> = values.split(',').map(str::to_owned).collect();
+            if factor.is_empty() || values.iter().any(String::is_empty) {
+                return Err(bad());
+            }
+            selection.only.entry(factor.to_owned()).or_default().extend(values);
+        }
+        if let Some(written) = shard {
+            let bad = || SelectionError::NotAShard(written.to_owned());
+            let (i, n) = written.split_once('/').ok_or_else(bad)?;
+            let (i, n): (u32, u32) = (i.parse().map_err(|_| bad())?, n.parse().map_err(|_| bad())?);
+            if i == 0 || i > n {
+                return Err(bad());
+            }
+            selection.shard = Some((i, n));
+        }
+        if trials == Some(0) {
+            return Err(SelectionError::NoTrials);
+        }
+        Ok(selection)
+    }
+
+    /// Whether anything of a plan is left out (or, with `--trials`, changed).
+    pub fn is_partial(&self) -> bool {
+        *self != Self::default()
+    }
+
+    /// Holds the names of `--only` against the experiment.
+    pub(super) fn check(&self, experiment: &Experiment) -> Result<(), SelectionError> {
+        for (name, values) in &self.only {
+            let Some(factor) = experiment.factors.iter().find(|f| f.name == *name) else {
+                let known = experiment.factors.iter().map(|f| f.name.as_str()).collect();
+                return Err(SelectionError::UnknownFactor {
+                    name: name.clone(),
+                    hint: hint(name, known),
+                });
+            };
+            for value in values.iter().filter(|value| !factor.values.contains(value)) {
+                let known = factor.values.iter().map(String::as_str).collect();
+                return Err(SelectionError::UnknownValue {
+                    name: name.clone(),
+                    value: value.clone(),
+                    hint: hint(value, known),
+                });
+            }
+        }
+        if experiment.conditions.iter().any(|(condition, _)| self.wants(condition)) {
+            Ok(())
+        } else {
+            Err(SelectionError::Nothing)
+        }
+    }
+
+    /// Whether `condition` has one of the wanted values of every restricted factor.
+    pub(super) fn wants(&self, condition: &Condition) -> bool {
+        self.only.iter().all(|(factor, values)| {
+            condition.value(factor).is_some_and(|value| values.iter().any(|v| v == value))
+        })
+    }
+}
+
+fn hint(word: &str, known: Vec<&str>) -> String {
+    let list = known.join(", ");
+    match suggestion(word, known) {
+        Some(near) => format!(": did you mean `{near}`? (known: {list})"),
+        None if list.is_empty() => ": the manifest has none".to_owned(),
+        None => format!(" (known: {list})"),
+    }
+}

@@ -1,0 +1,351 @@
+//! From records to what a reader sees: the trials table, the curves, the paper's tables and figures.
+
+use super::requests::{CoverageCurve, CoverageTable, FigureRequest, Metric, TableRequest};
+use crate::figure::{LineChart, PublishedPoint, Series};
+use crate::stats::summary::{median, quantile, Summary};
+use crate::studies::{Condition, Outcome, TrialRecord};
+use crate::table::{Table, Value};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// What the tables and figures of one experiment are made from.
+#[derive(Debug, Clone, Copy)]
+pub struct Findings<'a> {
+    /// Factors and their values, in the manifest's order.
+    pub factors: &'a [(String, Vec<String>)],
+    /// The records, in plan order.
+    pub records: &'a [TrialRecord],
+    /// The paper's own numbers, by name: factor columns, `coverage-percent`, `value`, `sd`, `n`.
+    pub published: &'a BTreeMap<String, Table>,
+}
+
+/// Mean and spread of one cell of a table, beside the paper's.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CoverageCell {
+    /// Values of the row's factors, coverage, and the column's value.
+    pub rows: Vec<(String, String)>,
+    /// Coverage (percent).
+    pub percent: u32,
+    /// The value of the factor whose values stand side by side.
+    pub by: String,
+    /// Trials of this cell, whether or not they got there.
+    pub trials: u64,
+    /// Those that reached the coverage; `None` where none did.
+    pub ours: Option<Summary>,
+    /// Difference of our mean to our baseline's (percent).
+    pub difference_percent: Option<f64>,
+    /// The paper's mean, standard deviation and number of runs.
+    pub published: Option<(f64, Option<f64>, Option<f64>)>,
+    /// Difference of the paper's mean to its baseline's (percent), recomputed from its printed means.
+    pub published_difference_percent: Option<f64>,
+}
+
+impl Findings<'_> {
+    /// One row a trial: key, factors, number, outcome, then every measure.
+    pub fn trials(&self) -> Table {
+        let measures: BTreeSet<&str> =
+            self.records.iter().flat_map(|r| r.measures.keys().map(String::as_str)).collect();
+        let mut measures: Vec<&str> = measures.into_iter().collect();
+        // `...-at-95` after `...-at-50`, and the whole trial's measures after those.
+        measures.sort_by_key(|name| (!name.contains("-at-"), *name));
+        let mut columns = vec!["key".to_owned()];
+        columns.extend(self.factors.iter().map(|(name, _)| name.clone()));
+        columns.extend(["trial".to_owned(), "outcome".to_owned()]);
+        columns.extend(measures.iter().map(|&m| m.to_owned()));
+        let mut table = Table::new(columns);
+        for record in self.records {
+            let mut row: Vec<Value> = vec![record.key.hex().into()];
+            row.extend(self.factor_values(&record.condition()));
+            row.push(i64::from(record.trial).into());
+            row.push(record.outcome.name().into());
+            row.extend(measures.iter().map(|&m| record.measures.get(m).copied().flatten().into()));
+            table.push(row);
+        }
+        table
+    }
+
+    /// The curves: one row at the first crossing of every whole percent and at every 10 s.
+    pub fn series(&self) -> Table {
+        let mut columns = vec!["key".to_owned()];
+        columns.extend(self.factors.iter().map(|(name, _)| name.clone()));
+        columns.extend(["trial", "time-s", "distance-m", "coverage-percent"].map(str::to_owned));
+        let mut table = Table::new(columns);
+        for record in self.records {
+            for point in &record.series {
+                let mut row: Vec<Value> = vec![record.key.short().into()];
+                row.extend(self.factor_values(&record.condition()));
+                row.push(i64::from(record.trial).into());
+                row.extend(
+                    [point.time_s, point.distance_m, point.coverage_percent].map(Value::from),
+                );
+                table.push(row);
+            }
+        }
+        table
+    }
+
+    /// The cells of a table in the paper's order: rows, then coverage, then side by side.
+    pub fn coverage_cells(&self, request: &CoverageTable) -> Vec<CoverageCell> {
+        let mut cells = Vec::new();
+        for rows in self.crossed(&request.rows) {
+            for &percent in &request.at {
+                let first = cells.len();
+                for by in self.values_of(&request.by) {
+                    let mut fixed = rows.clone();
+                    fixed.push((request.by.clone(), by.clone()));
+                    cells.push(self.coverage_cell(request, rows.clone(), percent, by, &fixed));
+                }
+                let baseline = request.baseline.as_ref().map(|b| b.0.as_str());
+                add_differences(&mut cells[first..], baseline);
+            }
+        }
+        cells
+    }
+
+    fn coverage_cell(
+        &self,
+        request: &CoverageTable,
+        rows: Vec<(String, String)>,
+        percent: u32,
+        by: String,
+        fixed: &[(String, String)],
+    ) -> CoverageCell {
+        let measure = request.metric.measure_at(percent);
+        let here: Vec<_> = self.records.iter().filter(|r| matches(r, fixed)).collect();
+        let reached: Vec<f64> =
+            here.iter().filter_map(|r| r.measures.get(&measure).copied().flatten()).collect();
+        let published = request.published.as_ref().and_then(|name| {
+            let table = self.published.get(name)?;
+            let row = table.rows.iter().find(|row| {
+                let text = |column: &str| table.value(row, column).to_string();
+                table.value(row, "coverage-percent").as_f64() == Some(f64::from(percent))
+                    && fixed.iter().all(|(f, v)| table.column(f).is_none() || text(f) == *v)
+            })?;
+            let number = |column: &str| table.value(row, column).as_f64();
+            Some((number("value")?, number("sd"), number("n")))
+        });
+        CoverageCell {
+            rows,
+            percent,
+            by,
+            trials: here.len() as u64,
+            ours: (!reached.is_empty()).then(|| Summary::of(&reached)),
+            difference_percent: None,
+            published,
+            published_difference_percent: None,
+        }
+    }
+
+    /// A requested table, tidy: one row a cell.
+    pub fn coverage_table(&self, request: &TableRequest) -> Table {
+        let wanted = &request.coverage_table;
+        let mut columns = wanted.rows.clone();
+        columns.extend(["coverage-percent".to_owned(), wanted.by.clone()]);
+        columns.extend(
+            [
+                "mean", "sd", "n", "trials", "difference-percent", "published", "published-sd",
+                "published-n", "published-difference-percent",
+            ]
+            .map(str::to_owned),
+        );
+        let mut table = Table::new(columns);
+        for cell in self.coverage_cells(wanted) {
+            let mut row: Vec<Value> = cell.rows.iter().map(|(_, v)| v.as_str().into()).collect();
+            row.push(i64::from(cell.percent).into());
+            row.push(cell.by.as_str().into());
+            let whole = |n: u64| i64::try_from(n).unwrap_or(i64::MAX);
+            row.push(cell.ours.map(|s| rounded(s.mean)).into());
+            row.push(cell.ours.filter(|s| s.n > 1).map(|s| rounded(s.sd)).into());
+            row.push(cell.ours.map_or(0, |s| whole(s.n)).into());
+            row.push(whole(cell.trials).into());
+            row.push(cell.difference_percent.map(rounded).into());
+            row.push(cell.published.map(|p| p.0).into());
+            row.push(cell.published.and_then(|p| p.1).into());
+            row.push(cell.published.and_then(|p| p.2).into());
+            row.push(cell.published_difference_percent.map(rounded).into());
+            table.push(row);
+        }
+        table
+    }
+
+    /// A requested table as people read it: the values side by side, ours and the paper's.
+    pub fn coverage_table_in_print(&self, request: &TableRequest) -> Table {
+        let wanted = &request.coverage_table;
+        let cells = self.coverage_cells(wanted);
+        let side_by_side = self.values_of(&wanted.by);
+        let mut columns = wanted.rows.clone();
+        columns.push("coverage".to_owned());
+        for value in &side_by_side {
+            columns.push(value.clone());
+            columns.push(format!("{value} (paper)"));
+        }
+        let mut table = Table::new(columns);
+        for line in cells.chunks(side_by_side.len().max(1)) {
+            let Some(first) = line.first() else { continue };
+            let mut row: Vec<Value> = first.rows.iter().map(|(_, v)| v.as_str().into()).collect();
+            row.push(format!("{} %", first.percent).into());
+            for cell in line {
+                row.push(ours_in_print(cell).into());
+                row.push(published_in_print(cell).into());
+            }
+            table.push(row);
+        }
+        table
+    }
+
+    /// A requested figure: median coverage with a band from the 10th to the 90th percentile of trials, and the
+    /// paper's points where a table of the same metric has them.
+    pub fn coverage_figure(&self, request: &FigureRequest, tables: &[TableRequest]) -> LineChart {
+        let wanted = &request.coverage_curve;
+        let only: Vec<(String, String)> =
+            wanted.only.iter().map(|(f, v)| (f.clone(), v.0.clone())).collect();
+        let series = self.values_of(&wanted.by).into_iter().map(|value| {
+            let mut fixed = only.clone();
+            fixed.push((wanted.by.clone(), value.clone()));
+            self.curve(wanted, &fixed, value, tables)
+        });
+        let (x_title, along) = match wanted.against {
+            Metric::TimeS => ("time (s)", "time"),
+            Metric::DistanceM => ("distance travelled (m)", "distance"),
+        };
+        LineChart {
+            title: request.title.clone(),
+            x_title: x_title.to_owned(),
+            y_title: "coverage (%)".to_owned(),
+            meaning: format!(
+                "Coverage over {along}: median of the trials, band from the 10th to the 90th percentile; hollow \
+                 markers are the paper's means with one standard deviation."
+            ),
+            series: series.collect(),
+        }
+    }
+
+    fn curve(
+        &self,
+        wanted: &CoverageCurve,
+        fixed: &[(String, String)],
+        name: String,
+        tables: &[TableRequest],
+    ) -> Series {
+        let runs: Vec<Vec<(f64, f64)>> = self
+            .records
+            .iter()
+            .filter(|r| matches(r, fixed) && r.outcome != Outcome::Panicked)
+            .map(|r| {
+                let x = |p: &crate::studies::SeriesPoint| match wanted.against {
+                    Metric::TimeS => p.time_s,
+                    Metric::DistanceM => p.distance_m,
+                };
+                r.series.iter().map(|p| (x(p), p.coverage_percent)).collect()
+            })
+            .collect();
+        let end = runs.iter().filter_map(|r| r.last().map(|p| p.0)).fold(0.0, f64::max);
+        let (mut points, mut band) = (Vec::new(), Vec::new());
+        if end > 0.0 {
+            for i in 0..=SAMPLES {
+                let x = end * f64::from(i) / f64::from(SAMPLES);
+                let values: Vec<f64> = runs.iter().map(|run| value_at(run, x)).collect();
+                points.push((x, median(&values)));
+                band.push((x, quantile(&values, 0.1), quantile(&values, 0.9)));
+            }
+        }
+        let published = tables
+            .iter()
+            .map(|t| &t.coverage_table)
+            .filter(|t| t.metric == wanted.against && t.by == wanted.by)
+            .flat_map(|t| self.coverage_cells(t))
+            .filter(|cell| {
+                cell.by == name && cell.rows.iter().all(|row| !fixed.iter().any(|f| f.0 == row.0 && f != row))
+            })
+            .filter_map(|cell| {
+                let (x, sd, _) = cell.published?;
+                let y = f64::from(cell.percent);
+                Some(PublishedPoint { x, y, x_error: sd, y_error: None })
+            })
+            .collect();
+        Series { name, points, band, published }
+    }
+
+    fn values_of(&self, factor: &str) -> Vec<String> {
+        let values = self.factors.iter().find(|(name, _)| name == factor).map(|(_, v)| v.clone());
+        let ran = |value: &String| {
+            self.records.iter().any(|r| r.condition.iter().any(|(f, v)| f == factor && v == value))
+        };
+        // Partial runs leave values out.
+        values.unwrap_or_default().into_iter().filter(ran).collect()
+    }
+
+    fn crossed(&self, factors: &[String]) -> Vec<Vec<(String, String)>> {
+        let mut crossed = vec![Vec::new()];
+        for factor in factors {
+            crossed = crossed
+                .into_iter()
+                .flat_map(|row| {
+                    self.values_of(factor).into_iter().map(move |value| {
+                        let mut row: Vec<(String, String)> = row.clone();
+                        row.push((factor.clone(), value));
+                        row
+                    })
+                })
+                .collect();
+        }
+        crossed
+    }
+
+    fn factor_values(&self, condition: &Condition) -> Vec<Value> {
+        self.factors.iter().map(|(name, _)| condition.value(name).map(str::to_owned).into()).collect()
+    }
+}
+
+/// A curve is drawn through this many pieces.
+const SAMPLES: u32 = 120;
+
+/// Coverage of a run at `x`: what it last had, and what it ended with once it has ended.
+fn value_at(run: &[(f64, f64)], x: f64) -> f64 {
+    run.iter().take_while(|p| p.0 <= x).last().map_or(0.0, |p| p.1)
+}
+
+fn matches(record: &TrialRecord, fixed: &[(String, String)]) -> bool {
+    fixed.iter().all(|f| record.condition.contains(f))
+}
+
+fn add_differences(line: &mut [CoverageCell], baseline: Option<&str>) {
+    let Some(base) = line.iter().find(|c| Some(c.by.as_str()) == baseline).cloned() else { return };
+    for cell in line.iter_mut().filter(|c| c.by != base.by) {
+        if let (Some(ours), Some(theirs)) = (cell.ours, base.ours) {
+            cell.difference_percent = Some(100.0 * (ours.mean / theirs.mean - 1.0));
+        }
+        if let (Some(ours), Some(theirs)) = (cell.published, base.published) {
+            cell.published_difference_percent = Some(100.0 * (ours.0 / theirs.0 - 1.0));
+        }
+    }
+}
+
+/// Six significant digits: more would only be noise in a table.
+fn rounded(x: f64) -> f64 {
+    format!("{x:.5e}").parse().unwrap_or(x)
+}
+
+fn ours_in_print(cell: &CoverageCell) -> String {
+    let Some(ours) = &cell.ours else { return format!("not reached (0 of {})", cell.trials) };
+    let mut text = if ours.n > 1 {
+        format!("{:.2} ± {:.2}", ours.mean, ours.sd)
+    } else {
+        format!("{:.2}", ours.mean)
+    };
+    if let Some(difference) = cell.difference_percent {
+        text.push_str(&format!(" ({difference:+.0} %)"));
+    }
+    if ours.n < cell.trials {
+        text.push_str(&format!(" [{} of {}]", ours.n, cell.trials));
+    }
+    text
+}
+
+fn published_in_print(cell: &CoverageCell) -> String {
+    let Some((mean, sd, _)) = cell.published else { return String::new() };
+    let mut text = sd.map_or_else(|| format!("{mean:.2}"), |sd| format!("{mean:.2} ± {sd:.2}"));
+    if let Some(difference) = cell.published_difference_percent {
+        text.push_str(&format!(" ({difference:+.0} %)"));
+    }
+    text
+}
