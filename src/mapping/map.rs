@@ -110,16 +110,16 @@ impl OccupancyMap {
                 }
             }
         }
-        // A cell may have changed back and forth within the scan: tell only what is different in the end.
+        // A cell may have changed back and forth within the scan: its first report tells what it held before
+        // (sorting is stable), and only what is different in the end is told.
+        self.changes.sort_by_key(|c| (c.cell.y, c.cell.x));
+        self.changes.dedup_by_key(|c| c.cell);
         let (grid, offset) = (&self.grid, self.offset);
         self.changes.retain_mut(|change| {
             let cell = Cell::new(change.cell.x - offset.x, change.cell.y - offset.y);
             change.to = grid.at(cell);
             change.to != change.from
         });
-        self.changes.sort_by_key(|c| (c.cell.y, c.cell.x));
-        // The first report of a cell tells what it held before the scan; sorting was stable.
-        self.changes.dedup_by_key(|c| c.cell);
         &self.changes
     }
 

@@ -10,6 +10,7 @@ pub mod information_gain;
 mod mission;
 mod parameters;
 mod requests;
+pub mod results;
 pub mod utility;
 
 pub use parameters::{

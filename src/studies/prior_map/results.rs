@@ -2,7 +2,7 @@
 
 use super::requests::{CoverageCurve, CoverageTable, FigureRequest, Metric, TableRequest};
 use crate::figure::{LineChart, PublishedPoint, Series};
-use crate::stats::summary::{median, quantile, Summary};
+use crate::stats::summary::{Summary, median, quantile};
 use crate::studies::{Condition, Outcome, TrialRecord};
 use crate::table::{Table, Value};
 use std::collections::{BTreeMap, BTreeSet};
