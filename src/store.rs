@@ -167,6 +167,13 @@ pub fn open_bundle(
     };
     let metadata = fs::metadata(path)?;
     if !metadata.is_dir() {
+        if !metadata.is_file() {
+            return Ok(Err(vec![Fault::new(
+                "(archive)",
+                "a file or a folder",
+                "a device or a pipe",
+            )]));
+        }
         if metadata.len() > limits.bytes {
             return too_big(metadata.len());
         }
@@ -310,6 +317,12 @@ mod tests {
                 faults[0].to_string(),
                 "data/link: expected a plain file, found a symbolic link"
             );
+        }
+        #[cfg(unix)]
+        {
+            let endless = open_bundle(Path::new("/dev/zero"), &Limits::default()).unwrap();
+            let fault = endless.unwrap_err()[0].to_string();
+            assert_eq!(fault, "(archive): expected a file or a folder, found a device or a pipe");
         }
         assert!(open_bundle(&directory.path().join("absent"), &Limits::default()).is_err());
     }

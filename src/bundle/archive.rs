@@ -32,7 +32,7 @@ pub struct Limits {
 
 impl Default for Limits {
     fn default() -> Self {
-        Self { entries: 20_000, bytes: 256 << 20, ratio: 250 }
+        Self { entries: 20_000, bytes: 128 << 20, ratio: 250 }
     }
 }
 

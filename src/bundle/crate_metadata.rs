@@ -5,8 +5,9 @@
 //! one-element arrays, every file reachable by `hasPart`, every key in the context (`sha256` is not in that of 1.1).
 
 use super::crate_entities::Entity;
+use super::crate_people::People;
 use super::readme::license_address;
-use super::{Author, BundleContent, Circumstance, Tree, bag, format};
+use super::{BundleContent, Circumstance, Tree, bag, format};
 use crate::digest::{ResultsDigest, Sha256Digest, StudyDigest};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
@@ -55,84 +56,12 @@ pub(super) fn document(
     format!("{document:#}\n").into_bytes()
 }
 
-/// Identifiers of authors and of the organisations they belong to.
-struct People {
-    authors: Vec<String>,
-    /// Name to identifier and web address.
-    organizations: BTreeMap<String, (String, String)>,
-}
-
-/// The validator recommends an affiliation for every person; a manifest need not give one.
-const UNAFFILIATED: &str = "No affiliation stated";
-
-impl People {
-    fn of(content: &BundleContent) -> Self {
-        let mut organizations = BTreeMap::new();
-        for author in &content.authors {
-            let name = affiliation(author);
-            let url = match (&author.affiliation_url, &author.affiliation) {
-                (Some(url), _) => url.clone(),
-                // The validator recommends an address for every organisation.
-                (None, Some(name)) => {
-                    format!("https://ror.org/search?query={}", percent_encoded(name))
-                }
-                (None, None) => format::HOME.to_owned(),
-            };
-            let id = format!("#organization-{}", organizations.len() + 1);
-            organizations.entry(name.to_owned()).or_insert((id, url));
-        }
-        let authors: Vec<String> = content
-            .authors
-            .iter()
-            .enumerate()
-            .map(|(i, a)| a.orcid.clone().unwrap_or_else(|| format!("#author-{}", i + 1)))
-            .collect();
-        // A crate needs an author; a manifest may name none.
-        let authors = if authors.is_empty() { vec!["#authors".to_owned()] } else { authors };
-        Self { authors, organizations }
-    }
-
-    /// Who answers for the bundle.
-    fn publisher(&self, content: &BundleContent) -> &str {
-        let first = content.authors.first();
-        first.map_or(&self.authors[0], |author| &self.organizations[affiliation(author)].0)
-    }
-
-    fn entities(&self, content: &BundleContent) -> Vec<Entity> {
-        let mut entities = Vec::new();
-        for (author, id) in content.authors.iter().zip(&self.authors) {
-            let organization = &self.organizations[affiliation(author)].0;
-            let person = Entity::new(id, &["Person"]).text("name", &author.name);
-            entities.push(person.refer("affiliation", organization));
-        }
-        if content.authors.is_empty() {
-            let name = format!("The authors of {}", content.name);
-            let nobody = Entity::new("#authors", &["Organization"]).text("name", name);
-            entities.push(nobody.text("url", format::HOME));
-        }
-        for (name, (id, url)) in &self.organizations {
-            entities.push(Entity::new(id, &["Organization"]).text("name", name).text("url", url));
-        }
-        entities
-    }
-}
-
-fn affiliation(author: &Author) -> &str {
-    author.affiliation.as_deref().unwrap_or(UNAFFILIATED)
-}
-
-fn percent_encoded(text: &str) -> String {
-    let encode = |b: u8| {
-        if b.is_ascii_alphanumeric() { char::from(b).to_string() } else { format!("%{b:02X}") }
-    };
-    text.bytes().map(encode).collect()
-}
-
-struct Graph<'a> {
-    content: &'a BundleContent,
-    circumstance: &'a Circumstance,
+/// Everything the graph is made of.
+pub(super) struct Graph<'a> {
+    pub(super) content: &'a BundleContent,
+    pub(super) circumstance: &'a Circumstance,
     files: BTreeMap<&'a str, &'a [u8]>,
-    people: People,
+    pub(super) people: People,
 }
 
 impl Graph<'_> {
@@ -307,106 +236,6 @@ impl Graph<'_> {
         entities
     }
 
-    /// What was done: the run, one action a condition, the analysis, and who had them done.
-    fn actions(&self) -> Vec<Entity> {
-        let (runner, simulate, analyze) = self.tools();
-        let (content, circumstance) = (self.content, self.circumstance);
-        let inputs: Vec<String> = self.inputs().into_iter().map(|i| i.path).collect();
-        let outputs: Vec<String> = self.outputs().into_iter().map(|o| o.path).collect();
-        let records: Vec<String> =
-            content.conditions.iter().map(|c| format::records_path(&c.slug)).collect();
-        let environment: Vec<String> =
-            (1..=circumstance.environment.len()).map(|i| format!("#environment-{i}")).collect();
-        let timed = |entity: Entity| {
-            entity
-                .refer("agent", &self.people.authors[0])
-                .text("startTime", circumstance.started.iso())
-                .text("endTime", circumstance.ended.iso())
-        };
-        let action = |id: &str, name: String, description: String, failed: usize, all: usize| {
-            let status = if failed == 0 { "Completed" } else { "Failed" };
-            let action = timed(Entity::new(id, &["CreateAction"]))
-                .text("name", name)
-                .text("description", description)
-                .text("actionStatus", format!("http://schema.org/{status}ActionStatus"));
-            action.with((failed > 0).then_some(failed), |action, failed| {
-                action.text(
-                    "error",
-                    format!("{failed} of {all} trials failed; their records say how"),
-                )
-            })
-        };
-        let failed: usize = content.conditions.iter().map(|c| c.failed).sum();
-        let all: usize = content.conditions.iter().map(|c| c.records.len()).sum();
-        let trials: Vec<String> =
-            content.conditions.iter().map(|c| format!("#condition-{}", c.slug)).collect();
-
-        let mut entities = vec![
-            action(
-                "#run",
-                format!("Run of {}", content.name),
-                "reenact run study.yaml".into(),
-                failed,
-                all,
-            )
-            .refer("instrument", format::STUDY)
-            .refer_all("object", inputs.iter().map(String::as_str).chain(["#seed"]))
-            .refer_all("result", &outputs)
-            .refer_all("environment", &environment),
-        ];
-        for (condition, id) in content.conditions.iter().zip(&trials) {
-            let count = condition.records.len();
-            let description =
-                format!("{count} trials of {} with seed {}", condition.label, content.seed);
-            let name = format!("Condition {}", condition.label);
-            entities.push(
-                action(id, name, description, condition.failed, count)
-                    .refer("instrument", &simulate)
-                    .refer_all("object", inputs.iter().map(String::as_str).chain(["#seed"]))
-                    .refer("result", &format::records_path(&condition.slug)),
-            );
-        }
-        entities.push(
-            action(
-                "#analysis",
-                "Analysis of all trials".into(),
-                "Tables, figures and verdicts from the records".into(),
-                0,
-                0,
-            )
-            .refer("instrument", &analyze)
-            .refer_all("object", &records)
-            .refer_all("result", &outputs),
-        );
-        entities.push(
-            Entity::new("#control-trials", &["ControlAction"])
-                .text("name", "Orchestrate the trials")
-                .refer("instrument", "#step-trials")
-                .refer_all("object", &trials),
-        );
-        entities.push(
-            Entity::new("#control-analysis", &["ControlAction"])
-                .text("name", "Orchestrate the analysis")
-                .refer("instrument", "#step-analysis")
-                .refer("object", "#analysis"),
-        );
-        entities.push(
-            timed(Entity::new("#engine-run", &["OrganizeAction"]))
-                .text("name", format!("Run of reenact {}", circumstance.version))
-                .refer("instrument", &runner)
-                .refer_all("object", ["#control-trials", "#control-analysis"])
-                .refer("result", "#run"),
-        );
-        for ((name, value), id) in circumstance.environment.iter().zip(&environment) {
-            entities.push(
-                Entity::new(id, &["PropertyValue"])
-                    .text("name", bag::one_line(name))
-                    .text("value", bag::one_line(value)),
-            );
-        }
-        entities
-    }
-
     fn files(&self) -> Vec<Entity> {
         let records: Vec<&str> =
             self.files.keys().copied().filter(|path| path.starts_with(format::TRIALS)).collect();
@@ -447,7 +276,7 @@ impl Graph<'_> {
     }
 
     /// Identifiers of the runner and its two tools.
-    fn tools(&self) -> (String, String, String) {
+    pub(super) fn tools(&self) -> (String, String, String) {
         let (home, version) = (format::HOME, &self.circumstance.version);
         (
             format!("{home}#{version}"),
@@ -456,11 +285,11 @@ impl Graph<'_> {
         )
     }
 
-    fn inputs(&self) -> Vec<Parameter> {
+    pub(super) fn inputs(&self) -> Vec<Parameter> {
         self.parameters_under(format::INPUTS, "input")
     }
 
-    fn outputs(&self) -> Vec<Parameter> {
+    pub(super) fn outputs(&self) -> Vec<Parameter> {
         self.parameters_under(format::RESULTS, "output")
     }
 
@@ -477,8 +306,8 @@ impl Graph<'_> {
 }
 
 /// A file that stands for a formal parameter of the workflow.
-struct Parameter {
-    path: String,
+pub(super) struct Parameter {
+    pub(super) path: String,
     parameter: String,
 }
 

@@ -10,8 +10,10 @@
 pub mod archive;
 pub mod bag;
 mod content;
+mod crate_actions;
 mod crate_entities;
 mod crate_metadata;
+mod crate_people;
 mod fault;
 pub mod format;
 mod moment;

@@ -54,7 +54,7 @@ impl Scheduler {
     /// loses nothing but the trials it was at. A panic becomes a record ([`TrialRecord::panicked`]) and is not stored.
     ///
     /// # Errors
-    /// The store's first refusal in plan order; trials not yet begun are then left out.
+    /// A refusal of the store; trials not yet begun are then left out.
     pub fn run(
         &self,
         plan: &[TrialSpec],

@@ -34,13 +34,13 @@ fn plan(trials: u32) -> Vec<TrialSpec> {
         goals: BTreeMap::new(),
         warnings: Vec::new(),
     };
-    let setup = Arc::new(prior_map::Setup {
-        world: Arc::new(world),
-        robot: Arc::new(robot),
-        prior: None,
-        start: Pose::new(0.0, 0.0, 0.0),
-        parameters: prior_map::Parameters::default(),
-    });
+    let setup = Arc::new(prior_map::Setup::new(
+        Arc::new(world),
+        Arc::new(robot),
+        None,
+        Pose::new(0.0, 0.0, 0.0),
+        prior_map::Parameters::default(),
+    ));
     (0..trials)
         .map(|trial| TrialSpec {
             key: TrialKey(Sha256Digest::of(trial.to_le_bytes())),
