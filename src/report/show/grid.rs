@@ -2,7 +2,8 @@
 
 use super::canvas::{Canvas, FAINT, INK, metres};
 use crate::figure::svg::{Element, number};
-use crate::grid::{Occupancy, OccupancyGrid};
+use crate::geometry::{Bounds, Point};
+use crate::grid::{Cell, GridFrame, Occupancy, OccupancyGrid};
 
 /// Fill of free, occupied and unknown cells in drawings.
 const FILLS: [(Occupancy, &str, &str); 3] = [
@@ -11,18 +12,22 @@ const FILLS: [(Occupancy, &str, &str); 3] = [
     (Occupancy::Unknown, "unknown", "#c9c9c9"),
 ];
 
-/// The map called `name` with axes in metres, as an SVG file.
-pub fn grid_svg(name: &str, grid: &OccupancyGrid) -> String {
+/// Around the known part of a mostly unknown map (m).
+const MARGIN: f64 = 1.0;
+
+/// The map called `name` with axes in metres, as an SVG file. Of a mostly unknown map only the known part is drawn.
+pub fn grid_svg(name: &str, whole: &OccupancyGrid) -> String {
+    let grid = &known_part(whole);
     let frame = grid.frame();
     let mut canvas = Canvas::new(frame.bounds(), 900.0, 760.0);
-    let (left, top) = canvas.at(crate::geometry::Point::new(frame.origin.x, frame.bounds().max.y));
+    let (left, top) = canvas.at(Point::new(frame.origin.x, frame.bounds().max.y));
     let side = frame.resolution * canvas.scale();
     // Cells as runs along a row, in units of cells from the upper left corner.
     let mut group = Element::new("g")
         .set("transform", format!("translate({} {}) scale({side})", number(left), number(top)))
         .set("shape-rendering", "crispEdges");
-    let whole = Element::new("rect").set("width", frame.width).set("height", frame.height);
-    group.push(whole.set("fill", FILLS[0].2));
+    let ground = Element::new("rect").set("width", frame.width).set("height", frame.height);
+    group.push(ground.set("fill", FILLS[0].2));
     for (value, _, fill) in &FILLS[1..] {
         let mut data = String::new();
         for (row, cells) in rows(grid).enumerate() {
@@ -40,27 +45,56 @@ pub fn grid_svg(name: &str, grid: &OccupancyGrid) -> String {
     }
     canvas.push(group);
     canvas.axes();
+    let cropped = grid.values().len() < whole.values().len();
+    let frame = whole.frame();
     let bounds = frame.bounds();
     let subtitle = format!(
-        "{} x {} cells of {} m: {} x {} m from ({}, {})",
+        "{} x {} cells of {} m: {} x {} m from ({}, {}){}",
         frame.width,
         frame.height,
         frame.resolution,
         metres(bounds.width()),
         metres(bounds.height()),
         metres(frame.origin.x),
-        metres(frame.origin.y)
+        metres(frame.origin.y),
+        if cropped { "; its known part" } else { "" }
     );
-    canvas.heading(name, &subtitle);
+    canvas.heading(name.rsplit('/').next().unwrap_or(name), &subtitle);
     let legend: Vec<(String, &str, &str)> = FILLS
         .iter()
-        .filter(|(value, _, _)| grid.count(*value) > 0)
+        .filter(|(value, _, _)| whole.count(*value) > 0)
         .map(|(_, name, fill)| {
             ((*name).to_owned(), *fill, if *fill == "#111111" { INK } else { FAINT })
         })
         .collect();
     canvas.legend(&legend);
     canvas.finish(&format!("Grid map {name}"))
+}
+
+/// The part of a map that holds all known cells, where that is less than half of it; else all.
+fn known_part(grid: &OccupancyGrid) -> OccupancyGrid {
+    let frame = grid.frame();
+    let mut known = Bounds::EMPTY;
+    for cell in frame.cells().filter(|cell| grid.at(*cell) != Occupancy::Unknown) {
+        known = known.including(frame.center(cell));
+    }
+    let part = known.grown(MARGIN.max(2.0 * frame.resolution));
+    if known.is_empty()
+        || part.width() * part.height() > 0.5 * frame.bounds().width() * frame.bounds().height()
+    {
+        return grid.clone();
+    }
+    let (low, high) = (frame.cell_at(part.min), frame.cell_at(part.max));
+    let corner = frame.center(low) - Point::new(frame.resolution, frame.resolution) * 0.5;
+    let cut = GridFrame {
+        resolution: frame.resolution,
+        origin: corner,
+        width: high.x - low.x + 1,
+        height: high.y - low.y + 1,
+    };
+    let cells =
+        cut.cells().map(|cell| grid.at(Cell::new(cell.x + low.x, cell.y + low.y))).collect();
+    OccupancyGrid::from_cells(cut, cells)
 }
 
 /// The map as an 8-bit grey PNG with one pixel per cell, north up, in the greys of ROS's `map_saver`: 0 occupied,

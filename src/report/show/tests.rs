@@ -81,6 +81,28 @@ fn every_kind_is_told_by_its_content() {
 }
 
 #[test]
+fn of_a_mostly_unknown_map_the_known_part_is_drawn() {
+    let mut pixels = vec!["205"; 100 * 100];
+    pixels[50 * 100 + 20] = "254";
+    let image = format!("P2 100 100 255\n{}", pixels.join(" "));
+    let map = map_server::read(
+        &Source::new("maps/m.yaml", MAP),
+        "m.pgm",
+        image.as_bytes(),
+        map_server::Options::default(),
+    );
+    let svg = grid_svg("maps/m.yaml", &map.unwrap());
+    let said = texts(&svg);
+    assert_eq!(said.iter().filter(|text| text.starts_with("100 x 100 cells of 0.1 m")).count(), 1);
+    assert!(said.iter().any(|text| text.ends_with("; its known part")), "{said:?}");
+    assert!(
+        svg.contains(r#"<rect width="21" height="21" "#)
+            || svg.contains(r#"<rect width="22" height="21" "#),
+        "{svg}"
+    );
+}
+
+#[test]
 fn what_cannot_be_drawn_is_said() {
     let fault = |name: &str, bytes: &[u8]| {
         let faults =

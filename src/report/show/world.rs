@@ -1,6 +1,6 @@
 //! A world cut at the lidar's height: layers in grey, regions, starts, goals and tags.
 
-use super::canvas::{ACCENT, Canvas, FAINT, INK, metres};
+use super::canvas::{ACCENT, Canvas, FAINT, INK};
 use crate::figure::svg::Element;
 use crate::geometry::{Bounds, Outline, Point};
 use crate::world::{RegionKind, World};
@@ -93,11 +93,8 @@ pub fn world_svg(world: &World, lidar_height: f64) -> String {
         canvas.push(label.set("font-weight", "bold"));
     }
     canvas.axes();
-    let subtitle = format!(
-        "{} x {} m, cut at {lidar_height} m above the floor",
-        metres(size.0),
-        metres(size.1)
-    );
+    let subtitle =
+        format!("{:.2} x {:.2} m, cut at {lidar_height} m above the floor", size.0, size.1);
     canvas.heading(&world.name, &subtitle);
     let mut legend: Vec<(String, &str, &str)> =
         layers.iter().map(|layer| ((*layer).to_owned(), grey(layer), INK)).collect();
