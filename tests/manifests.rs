@@ -55,7 +55,7 @@ fn manifests_in(folder: &str) -> Vec<String> {
     let mut names: Vec<String> = std::fs::read_dir(root().join(folder))
         .unwrap()
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .filter(|name| name.ends_with(".yaml"))
+        .filter(|name| Path::new(name).extension().is_some_and(|e| e == "yaml"))
         .collect();
     names.sort();
     assert!(!names.is_empty(), "{folder} has manifests");
@@ -370,6 +370,20 @@ fn schemas_name_every_key() {
     for key in ["prior-maps", "shared-noise", "range-noise-sd-m", "floor-plan-of", "coverage-table"]
     {
         assert!(parameters.contains(&format!("\"{key}\"")), "{key}");
+    }
+}
+
+#[test]
+fn the_reference_tells_every_parameter_with_its_default() {
+    let reference = std::fs::read_to_string(root().join("docs/manifest.md")).unwrap();
+    let defaults =
+        serde_json::to_value(reenact::studies::prior_map::Parameters::default()).unwrap();
+    for (group, values) in defaults.as_object().unwrap() {
+        for (key, value) in values.as_object().unwrap() {
+            let value = reenact::json::canonical(value);
+            let row = format!("| `{group}.{key}` | `{}` |", value.trim_matches('"'));
+            assert!(reference.contains(&row), "docs/manifest.md lacks `{row}`");
+        }
     }
 }
 

@@ -200,15 +200,14 @@ impl Tree {
                 }
                 Content::List(items) => {
                     let count = items.len();
-                    match step.parse::<usize>().ok().and_then(|i| items.get_mut(i)) {
-                        Some(item) => item,
-                        None => {
-                            let message = format!("`{walked}` has no item {step}");
-                            let fault = Diagnostic::error(source, bytes.clone(), message)
-                                .label(format!("expected a number below {count}"));
-                            return Err(vec![fault]);
-                        }
-                    }
+                    let Some(item) = step.parse::<usize>().ok().and_then(|i| items.get_mut(i))
+                    else {
+                        let message = format!("`{walked}` has no item {step}");
+                        let fault = Diagnostic::error(source, bytes.clone(), message)
+                            .label(format!("expected a number below {count}"));
+                        return Err(vec![fault]);
+                    };
+                    item
                 }
                 _ => {
                     let message = format!("`{walked}` has no keys: it is {found}");

@@ -350,8 +350,9 @@ fn check_range(schema: &Value, spot: &Spot<'_>, faults: &mut Vec<Fault>) {
         Some("int32") => Some((f64::from(i32::MIN), f64::from(i32::MAX))),
         _ => None,
     };
-    let least = bound("minimum").or(format_bounds.map(|b| b.0));
-    let most = bound("maximum").or(format_bounds.map(|b| b.1));
+    // What the number's width forbids is told only where it is what was violated.
+    let least = bound("minimum").or(format_bounds.map(|b| b.0).filter(|&b| value < b));
+    let most = bound("maximum").or(format_bounds.map(|b| b.1).filter(|&b| value > b));
     let (above, below) = (bound("exclusiveMinimum"), bound("exclusiveMaximum"));
     let inside = least.is_none_or(|b| value >= b)
         && most.is_none_or(|b| value <= b)
@@ -360,11 +361,18 @@ fn check_range(schema: &Value, spot: &Spot<'_>, faults: &mut Vec<Fault>) {
     if inside {
         return;
     }
-    let low =
-        above.map(|b| format!("above {b}")).or_else(|| least.map(|b| format!("at least {b}")));
-    let high = below.map(|b| format!("below {b}")).or_else(|| most.map(|b| format!("at most {b}")));
-    let range: Vec<String> = low.into_iter().chain(high).collect();
-    let range = range.join(" and ");
+    let range = match (above, least, most, below) {
+        (None, Some(least), Some(most), None) if least == most => format!("exactly {least}"),
+        (None, Some(least), Some(most), None) => format!("from {least} to {most}"),
+        _ => {
+            let low = above.map(|b| format!("above {b}"));
+            let low = low.or_else(|| least.map(|b| format!("at least {b}")));
+            let high = below.map(|b| format!("below {b}"));
+            let high = high.or_else(|| most.map(|b| format!("at most {b}")));
+            let range: Vec<String> = low.into_iter().chain(high).collect();
+            range.join(" and ")
+        }
+    };
     let fault = spot.fault(
         format!("{} must be {range}, found {value}", spot.name()),
         format!("expected a number {range}"),

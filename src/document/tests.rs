@@ -135,7 +135,7 @@ fn faults(text: &str) -> String {
 fn every_fault_is_told_where_it_is() {
     insta::assert_snapshot!(faults("nmae: x\ntrials: 0\nrange-m: 0\nstrategy: utilty\nextra: 1\n"), @"
     1:1 unknown key `nmae` | not a key of this document | did you mean `name`?
-    2:9 `trials` must be at least 1 and at most 1000, found 0 | expected a number at least 1 and at most 1000 | Trials per condition
+    2:9 `trials` must be from 1 to 1000, found 0 | expected a number from 1 to 1000 | Trials per condition
     3:10 `range-m` must be above 0, found 0 | expected a number above 0 | -
     4:11 unknown value `utilty` for `strategy` | not one of the known values | did you mean `utility`? (known: nearest-frontier, utility)
     5:1 unknown key `extra` | not a key of this document | known keys: at, color, factors, name, nested, range-m, raw, sensor, strategy, trials, world

@@ -88,12 +88,16 @@ pub(super) fn cross(doc: &ManifestDoc, faults: &mut Faults<'_>) -> (Vec<Factor>,
     if cells.is_empty() {
         faults.at_key("/exclude", "no condition is left", "everything is excluded");
     }
+    // Values written twice have been told.
+    let mut seen = BTreeSet::new();
+    cells.retain(|cell| seen.insert(cell.clone()));
     let mut slugs: BTreeMap<String, &Condition> = BTreeMap::new();
     for cell in &cells {
         if let Some(other) = slugs.insert(cell.slug().to_ascii_lowercase(), cell) {
             let message = format!("the conditions `{other}` and `{cell}` have the same file name");
             let fault = faults.key_fault("/factors", message).label("in these factors");
             faults.push(fault.help("use values that differ in their letters and digits"));
+            break;
         }
     }
     (factors, cells)
@@ -110,7 +114,7 @@ fn check_name(name: &str, pointer: &str, faults: &mut Faults<'_>) {
         let fault = faults
             .key_fault(pointer, format!("`{name}` cannot be the name of a factor"))
             .label("expected lower-case letters, digits and single hyphens");
-        faults.push(fault);
+        faults.push(fault.help(format!("for example `{}`", kebab(name))));
     }
     if RESERVED.contains(&name) {
         let message = format!("`{name}` is a column of every table and cannot name a factor");
@@ -181,6 +185,14 @@ fn include(
     }
 }
 
+/// A name like `name` that [`is_kebab`], to suggest.
+pub(super) fn kebab(name: &str) -> String {
+    let lower = name.to_ascii_lowercase();
+    let parts: Vec<&str> =
+        lower.split(|c: char| !c.is_ascii_alphanumeric()).filter(|p| !p.is_empty()).collect();
+    if parts.is_empty() { "a-name".to_owned() } else { parts.join("-") }
+}
+
 /// Whether `name` is of lower-case letters, digits and single hyphens between them.
 pub(super) fn is_kebab(name: &str) -> bool {
     name.split('-').all(|part| {
@@ -192,7 +204,7 @@ pub(super) fn is_kebab(name: &str) -> bool {
 pub(super) fn known_or_near(word: &str, known: &[&str]) -> String {
     match suggestion(word, known.iter().copied()) {
         Some(near) => format!("did you mean `{near}`? (known: {})", known.join(", ")),
-        None if known.is_empty() => "none is known".to_owned(),
+        None if known.is_empty() => "there is none".to_owned(),
         None => format!("known: {}", known.join(", ")),
     }
 }

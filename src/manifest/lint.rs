@@ -2,7 +2,7 @@
 
 use super::faults::Faults;
 use super::priors::UsedPrior;
-use super::resolve::{UsedWorld, WALLS};
+use super::worlds::WALLS;
 use crate::geometry::{Outline, Point};
 use crate::grid::{Cell, Occupancy, OccupancyGrid};
 use crate::math;
@@ -17,20 +17,12 @@ const ALIGNED_WITHIN: f64 = 0.3;
 const ALIGNED_SHARE: f64 = 0.5;
 
 /// Collects what is wrong or suspicious about one condition.
-pub(super) fn check(
-    setup: &Setup,
-    world: &UsedWorld,
-    prior: Option<&UsedPrior>,
-    faults: &mut Faults<'_>,
-) {
+pub(super) fn check(setup: &Setup, prior: Option<&UsedPrior>, faults: &mut Faults<'_>) {
     sensors(setup, faults);
     start(setup, faults);
     units(setup, faults);
     if let Some(prior) = prior {
         resolution(setup, prior, faults);
-        if !prior.own && setup.robot.lidar.is_some() {
-            alignment(setup, world, prior, faults);
-        }
     }
 }
 
@@ -114,9 +106,10 @@ fn resolution(setup: &Setup, prior: &UsedPrior, faults: &mut Faults<'_>) {
     }
 }
 
-fn alignment(setup: &Setup, world: &UsedWorld, prior: &UsedPrior, faults: &mut Faults<'_>) {
+/// Holds the walls of a prior map against those of the world.
+pub(super) fn alignment(setup: &Setup, prior: &UsedPrior, faults: &mut Faults<'_>) {
     let Some(lidar) = &setup.robot.lidar else { return };
-    let solids = &world.world.solids;
+    let solids = &setup.world.solids;
     let has_walls = solids.iter().any(|solid| solid.layer == WALLS);
     let outlines: Vec<Outline> = solids
         .iter()

@@ -17,6 +17,7 @@ mod priors;
 mod published;
 mod readers;
 mod resolve;
+mod worlds;
 
 pub use choice::{By, Choice, DependentFactor, FactorDoc, Levels, Ordered};
 pub use crossing::Factor;
@@ -34,3 +35,6 @@ pub use resolve::resolve;
 pub fn schema() -> serde_json::Value {
     crate::document::schema_of::<ManifestDoc>()
 }
+
+#[cfg(test)]
+mod tests;

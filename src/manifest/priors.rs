@@ -2,12 +2,14 @@
 
 use super::choice::Choice;
 use super::crossing::known_or_near;
-use super::document::{DerivedFrom, MapPrior, OwnWorld, PriorDoc, PriorFrame, UnknownAs, WorldDoc};
+use super::document::{DerivedFrom, MapPrior, OwnWorld, PriorDoc, PriorFrame, UnknownAs};
 use super::faults::step;
 use super::inputs::{joined, normalised};
 use super::readers::{self, Derived};
-use super::resolve::{Known, Resolver, UsedWorld};
+use super::resolve::{Known, Resolver};
+use super::worlds::UsedWorld;
 use crate::digest::{Hasher, MeaningDigest};
+use crate::document::suggestion;
 use crate::geometry::{Point, Pose};
 use crate::grid::{GridFrame, Occupancy, OccupancyGrid};
 use crate::json;
@@ -21,6 +23,10 @@ use std::sync::Arc;
 /// The factor that chooses among prior maps, and the choice of none.
 const FACTOR: &str = "prior";
 const NONE: &str = "none";
+
+/// Something could not be had; the faults say why.
+#[derive(Debug)]
+pub(super) struct Told;
 
 /// A prior map as a condition uses it.
 #[derive(Clone)]
@@ -64,7 +70,10 @@ impl Resolver<'_> {
                 self.faults.push(fault.help(known_or_near(name, &known)));
             }
         }
-        for name in doc.prior_maps.keys().filter(|name| chosen.iter().all(|(_, c)| c != *name)) {
+        // A misspelled name is one fault, not two.
+        let meant: Vec<&str> =
+            chosen.iter().filter_map(|(_, name)| suggestion(name, known.iter().copied())).collect();
+        for name in doc.prior_maps.keys().filter(|name| !meant.contains(&name.as_str())) {
             let fault = self
                 .faults
                 .key_fault(
@@ -76,8 +85,10 @@ impl Resolver<'_> {
         }
     }
 
-    /// The prior map of `condition`: `Some(None)` where it has none, `None` where it could not be had, which
-    /// has been told.
+    /// The prior map of `condition`, where it has one.
+    ///
+    /// # Errors
+    /// Where it could not be had.
     pub(super) fn prior(
         &mut self,
         condition: &Condition,
@@ -85,73 +96,61 @@ impl Resolver<'_> {
         robot: &Robot,
         start: Pose,
         parameters: &Parameters,
-    ) -> Option<Option<UsedPrior>> {
+    ) -> Result<Option<UsedPrior>, Told> {
         let doc = self.doc;
         let name = condition.value(FACTOR).or(doc.prior.as_deref()).unwrap_or(NONE);
         if name == NONE {
-            return Some(None);
+            return Ok(None);
         }
-        let choice: &Choice<PriorDoc> = doc.prior_maps.get(name)?;
-        let (prior, pointer) = self.choose(choice, &step("/prior-maps", name), condition)?;
+        let choice: &Choice<PriorDoc> = doc.prior_maps.get(name).ok_or(Told)?;
+        let (prior, pointer) =
+            self.choose(choice, &step("/prior-maps", name), condition).ok_or(Told)?;
         let derived = |kind: Derived, from: &'_ DerivedFrom, resolution: Option<f64>| {
             (kind, from.clone(), resolution.unwrap_or(parameters.mapping.resolution_m))
         };
         let (kind, from, resolution) = match prior {
-            PriorDoc::Map(map) => return self.map(map, &pointer, start).map(Some),
-            PriorDoc::FloorPlan(p) => {
-                derived(Derived::FloorPlanOf, &p.floor_plan_of, p.resolution_m)
-            }
-            PriorDoc::Footprint(p) => {
-                derived(Derived::FootprintOf, &p.footprint_of, p.resolution_m)
-            }
+            PriorDoc::Map(map) => return self.map(map, &pointer, start).map(Some).ok_or(Told),
+            PriorDoc::FloorPlan(p) => derived(Derived::FloorPlan, &p.floor_plan_of, p.resolution_m),
+            PriorDoc::Footprint(p) => derived(Derived::Footprint, &p.footprint_of, p.resolution_m),
             PriorDoc::BoundingBox(p) => {
-                derived(Derived::BoundingBoxOf, &p.bounding_box_of, p.resolution_m)
+                derived(Derived::BoundingBox, &p.bounding_box_of, p.resolution_m)
             }
         };
-        let key = json!(kind).as_str().unwrap_or_default().to_owned();
         let own = matches!(from, DerivedFrom::Own(OwnWorld::World));
         let of = match &from {
             DerivedFrom::Own(OwnWorld::World) => world.clone(),
-            DerivedFrom::Other(other) => self.other_world(other, &pointer, &key, condition)?,
+            DerivedFrom::Other(other) => {
+                let place = step(&pointer, kind.key());
+                self.world(other, &place, condition).ok_or(Told)?
+            }
         };
         let described = json!({
-            key.as_str(): if own { json!("world") } else { of.described.clone() },
+            kind.key(): if own { json!("world") } else { of.described.clone() },
             "resolution-m": resolution,
         });
         // Without a scanner there is no height to cut at; the lint says so.
         let height = robot.lidar.as_ref().map_or(0.0, |lidar| lidar.height);
         let cache = json!([described, of.meaning, height]).to_string();
-        let known = match self.priors.get(&cache) {
-            Some(known) => known.clone(),
-            None => {
-                let plan = Plan { height, resolution, layers: None };
-                let known: Known<OccupancyGrid> = match kind.draw(&of.world, plan) {
-                    Ok(grid) => {
-                        let meaning = meaning(&grid);
-                        Some((Arc::new(grid), meaning))
-                    }
-                    Err(problem) => {
-                        let fault = self.faults.fault(&pointer, problem).label("derived here");
-                        self.faults.push(fault);
-                        None
-                    }
-                };
-                self.priors.insert(cache, known.clone());
-                known
-            }
+        let known = if let Some(known) = self.priors.get(&cache) {
+            known.clone()
+        } else {
+            let plan = Plan { height, resolution, layers: None };
+            let known: Known<OccupancyGrid> = match kind.draw(&of.world, plan) {
+                Ok(grid) => {
+                    let meaning = meaning(&grid);
+                    Some((Arc::new(grid), meaning))
+                }
+                Err(problem) => {
+                    let fault = self.faults.fault(&pointer, problem).label("derived here");
+                    self.faults.push(fault);
+                    None
+                }
+            };
+            self.priors.insert(cache, known.clone());
+            known
         };
-        let (grid, meaning) = known?;
-        Some(Some(UsedPrior { grid, meaning, described, pointer, own }))
-    }
-
-    fn other_world(
-        &mut self,
-        doc: &WorldDoc,
-        pointer: &str,
-        key: &str,
-        condition: &Condition,
-    ) -> Option<UsedWorld> {
-        self.world(doc, &step(pointer, key), condition)
+        let (grid, meaning) = known.ok_or(Told)?;
+        Ok(Some(UsedPrior { grid, meaning, described, pointer, own }))
     }
 
     fn map(&mut self, doc: &MapPrior, pointer: &str, start: Pose) -> Option<UsedPrior> {
@@ -175,13 +174,12 @@ impl Resolver<'_> {
             return None;
         }
         let cache = json!([described, self.faults.written_in(&place), shift]).to_string();
-        let known = match self.priors.get(&cache) {
-            Some(known) => known.clone(),
-            None => {
-                let known = self.read_map(doc, &place, shift);
-                self.priors.insert(cache, known.clone());
-                known
-            }
+        let known = if let Some(known) = self.priors.get(&cache) {
+            known.clone()
+        } else {
+            let known = self.read_map(doc, &place, shift);
+            self.priors.insert(cache, known.clone());
+            known
         };
         let (grid, meaning) = known?;
         let pointer = pointer.to_owned();

@@ -1,6 +1,6 @@
 //! The paper's own numbers, and the tables and figures that ask for them.
 
-use super::crossing::{Factor, is_kebab, known_or_near};
+use super::crossing::{Factor, is_kebab, kebab, known_or_near};
 use super::document::ManifestDoc;
 use super::faults::{Faults, step};
 use crate::document::{Diagnostic, Source, suggestion};
@@ -101,7 +101,8 @@ pub(super) fn check_requests(
     for (pointer, id) in tables.chain(figures) {
         if !is_kebab(id) {
             let label = "expected lower-case letters, digits and single hyphens";
-            faults.at(&pointer, format!("`{id}` cannot be an id"), label);
+            let fault = faults.fault(&pointer, format!("`{id}` cannot be an id")).label(label);
+            faults.push(fault.help(format!("for example `{}`", kebab(id))));
         }
         if !ids.insert(id) {
             faults.at(&pointer, format!("the id `{id}` is used twice"), "choose another one");

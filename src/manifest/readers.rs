@@ -7,27 +7,35 @@ use crate::world::floor_plan::{self, Plan};
 use crate::world::{World, document, map_server, sdf};
 
 /// What is derived from a world as prior knowledge.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Derived {
     /// The floor plan.
-    FloorPlanOf,
+    FloorPlan,
     /// The floor plan without what stands inside.
-    FootprintOf,
+    Footprint,
     /// The box around it.
-    BoundingBoxOf,
+    BoundingBox,
 }
 
 impl Derived {
+    /// The key that asks for it in a manifest.
+    pub(super) fn key(self) -> &'static str {
+        match self {
+            Self::FloorPlan => "floor-plan-of",
+            Self::Footprint => "footprint-of",
+            Self::BoundingBox => "bounding-box-of",
+        }
+    }
+
     /// Draws it from `world`.
     ///
     /// # Errors
     /// Nothing to draw or too much, in words.
     pub(super) fn draw(self, world: &World, plan: Plan<'_>) -> Result<OccupancyGrid, String> {
         match self {
-            Self::FloorPlanOf => floor_plan::floor_plan(world, plan),
-            Self::FootprintOf => floor_plan::footprint(world, plan),
-            Self::BoundingBoxOf => floor_plan::bounding_box(world, plan),
+            Self::FloorPlan => floor_plan::floor_plan(world, plan),
+            Self::Footprint => floor_plan::footprint(world, plan),
+            Self::BoundingBox => floor_plan::bounding_box(world, plan),
         }
         .map_err(|error| error.to_string())
     }
@@ -35,8 +43,8 @@ impl Derived {
 
 /// A world, by the ending of its file's name: all its layers, or its walls and those of `layers`.
 pub(super) fn world(source: &Source, layers: Option<&[String]>) -> Result<World, Vec<Diagnostic>> {
-    let name = source.name.to_ascii_lowercase();
-    if name.ends_with(".world") || name.ends_with(".sdf") {
+    let extension = source.name.rsplit('.').next().unwrap_or_default().to_ascii_lowercase();
+    if extension == "world" || extension == "sdf" {
         sdf::read(source)
     } else {
         document::read(source, layers)

@@ -1,16 +1,18 @@
 //! From a manifest as written to an experiment: every name looked up, every file read, every fault collected.
 
 use super::choice::{By, Choice};
-use super::crossing::{Factor, cross, is_kebab, known_or_near};
-use super::document::{ManifestDoc, StartDoc, WorldDoc};
+use super::crossing::{Factor, cross, is_kebab, kebab, known_or_near};
+use super::document::{ManifestDoc, StartDoc};
 use super::experiment::{Assumption, Experiment, Meanings};
 use super::faults::{Faults, step};
 use super::inputs::{InputFiles, Inputs, WrittenIn, joined, normalised};
 use super::parameters::WrappedValue;
-use super::{lint, overrides, published, readers};
+use super::worlds::UsedWorld;
+use super::{lint, overrides, published};
 use crate::digest::MeaningDigest;
 use crate::document::{Diagnostic, Parsed, Source, parse_tree, read};
 use crate::geometry::Pose;
+use crate::grid::OccupancyGrid;
 use crate::robot::{Robot, urdf};
 use crate::studies::prior_map::{self, Parameters};
 use crate::studies::{Condition, Setup, StudyKind};
@@ -18,7 +20,7 @@ use crate::table::Table;
 use crate::units::Radians;
 use crate::world::World;
 use serde_json::{Value, json};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// Resolves the manifest `source`, changed by `overrides` (`PATH=VALUE`), with the files that `inputs` hands
@@ -43,22 +45,18 @@ pub fn resolve(
         robots: BTreeMap::new(),
         worlds: BTreeMap::new(),
         priors: BTreeMap::new(),
+        aligned: BTreeSet::new(),
     };
-    let resolved = resolver.run(overrides);
+    let mut experiment = resolver.run(overrides);
     let Resolver { faults, files, .. } = resolver;
     let broken = faults.any_error();
     let faults = faults.finish();
-    match resolved {
-        Some(mut experiment) if !broken => {
-            experiment.inputs = files.finish(&doc.license_of);
-            Ok((experiment, faults))
-        }
-        _ => Err(faults),
+    if broken {
+        return Err(faults);
     }
+    experiment.inputs = files.finish(&doc.license_of);
+    Ok((experiment, faults))
 }
-
-/// The layer of a world that always stands.
-pub(super) const WALLS: &str = "walls";
 
 /// A thing that was read and what it means; `None` where it could not be, which has been told.
 pub(super) type Known<T> = Option<(Arc<T>, MeaningDigest)>;
@@ -71,25 +69,20 @@ pub(super) struct Resolver<'a> {
     files: InputFiles<'a>,
     pub(super) factors: Vec<Factor>,
     robots: BTreeMap<(String, WrittenIn), Known<Robot>>,
-    worlds: BTreeMap<String, Known<World>>,
-    pub(super) priors: BTreeMap<String, Known<crate::grid::OccupancyGrid>>,
-}
-
-/// A world as a condition uses it.
-#[derive(Clone)]
-pub(super) struct UsedWorld {
-    pub(super) world: Arc<World>,
-    pub(super) meaning: MeaningDigest,
-    /// File and layers, as written.
-    pub(super) described: Value,
+    pub(super) worlds: BTreeMap<String, Known<World>>,
+    pub(super) priors: BTreeMap<String, Known<OccupancyGrid>>,
+    /// Pairs of world and prior that have been held against each other.
+    aligned: BTreeSet<(MeaningDigest, MeaningDigest, String)>,
 }
 
 impl Resolver<'_> {
-    fn run(&mut self, overrides: &[String]) -> Option<Experiment> {
+    fn run(&mut self, overrides: &[String]) -> Experiment {
         let doc = self.doc;
         if !is_kebab(&doc.name) {
             let label = "expected lower-case letters, digits and single hyphens";
-            self.faults.at("/name", format!("`{}` cannot be a name", doc.name), label);
+            let fault = self.faults.fault("/name", format!("`{}` cannot be a name", doc.name));
+            let help = format!("for example `{}`", kebab(&doc.name));
+            self.faults.push(fault.label(label).help(help));
         }
         let (factors, conditions) = cross(doc, &mut self.faults);
         self.factors.clone_from(&factors);
@@ -111,7 +104,7 @@ impl Resolver<'_> {
             described.push(description);
         }
         let StudyKind::PriorMap = doc.study;
-        Some(Experiment {
+        Experiment {
             name: doc.name.clone(),
             title: doc.title.clone(),
             cite: doc.cite.clone(),
@@ -138,7 +131,7 @@ impl Resolver<'_> {
             overrides: overrides.to_vec(),
             inputs: Vec::new(),
             document: self.faults.tree.clone(),
-        })
+        }
     }
 
     fn check_shared_noise(&mut self) {
@@ -212,7 +205,7 @@ impl Resolver<'_> {
         // Every part has told its faults by now; the prior needs them all.
         let (parameters, (robot, robot_meaning), world, start) =
             (parameters?, robot?, world?, start?);
-        let prior = self.prior(&condition, &world, &robot, start, &parameters)?;
+        let prior = self.prior(&condition, &world, &robot, start, &parameters).ok()?;
         let setup = prior_map::Setup::new(
             Arc::clone(&world.world),
             robot,
@@ -220,7 +213,14 @@ impl Resolver<'_> {
             start,
             parameters,
         );
-        lint::check(&setup, &world, prior.as_ref(), &mut self.faults);
+        lint::check(&setup, prior.as_ref(), &mut self.faults);
+        if let Some(prior) = prior.as_ref().filter(|prior| !prior.own) {
+            // Conditions share worlds and priors; holding one against the other once is enough.
+            let pair = (world.meaning, prior.meaning, prior.pointer.clone());
+            if self.aligned.insert(pair) {
+                lint::alignment(&setup, prior, &mut self.faults);
+            }
+        }
         let meanings = Meanings {
             robot: robot_meaning,
             world: world.meaning,
@@ -326,92 +326,6 @@ impl Resolver<'_> {
         });
         self.robots.insert(key, known.clone());
         known
-    }
-
-    /// The world that `doc`, written at `pointer`, is for `condition`.
-    pub(super) fn world(
-        &mut self,
-        doc: &WorldDoc,
-        pointer: &str,
-        condition: &Condition,
-    ) -> Option<UsedWorld> {
-        let (file, file_pointer) = self.choose(&doc.file, &format!("{pointer}/file"), condition)?;
-        let layers = match &doc.layers {
-            None => None,
-            Some(layers) => Some(self.choose(layers, &format!("{pointer}/layers"), condition)?),
-        };
-        let described = json!({
-            "file": normalised(file),
-            "layers": layers.as_ref().map(|(layers, _)| layers),
-        });
-        let written_in = self.faults.written_in(&file_pointer);
-        let key = json!([described, written_in]).to_string();
-        let known = match self.worlds.get(&key) {
-            Some(known) => known.clone(),
-            None => {
-                let known = self.read_world(file, &file_pointer, layers.as_ref());
-                self.worlds.insert(key, known.clone());
-                known
-            }
-        };
-        let (world, meaning) = known?;
-        Some(UsedWorld { world, meaning, described })
-    }
-
-    fn read_world(
-        &mut self,
-        file: &str,
-        pointer: &str,
-        layers: Option<&(&Vec<String>, String)>,
-    ) -> Known<World> {
-        let source = self.text(file, pointer)?;
-        let mut world = match readers::world(&source, None) {
-            Ok(world) => world,
-            Err(faults) => {
-                self.faults.extend(faults);
-                return None;
-            }
-        };
-        for warning in &world.warnings {
-            let fault = self.faults.fault(pointer, warning.clone()).label("in this world");
-            self.faults.push(fault.warning());
-        }
-        if let Some((layers, pointer)) = layers {
-            world = self.choose_layers(world, &source, layers, pointer);
-        }
-        let meaning = world.meaning();
-        Some((Arc::new(world), meaning))
-    }
-
-    /// `world` with its walls and `layers` alone; faults where there is no such layer.
-    fn choose_layers(
-        &mut self,
-        mut world: World,
-        source: &Source,
-        layers: &[String],
-        pointer: &str,
-    ) -> World {
-        let known: Vec<String> = world.layers().iter().map(|l| (*l).to_owned()).collect();
-        let unknown = |layer: &String| !known.contains(layer);
-        if layers.iter().any(unknown) {
-            // A layer may be there and hold nothing.
-            if let Ok(world) = readers::world(source, Some(layers))
-                && source.name.ends_with(".yaml")
-            {
-                return world;
-            }
-        }
-        for (i, layer) in layers.iter().enumerate().filter(|(_, layer)| unknown(layer)) {
-            let known: Vec<&str> = known.iter().map(String::as_str).collect();
-            let fault = self
-                .faults
-                .fault(&format!("{pointer}/{i}"), format!("unknown layer `{layer}`"))
-                .label(format!("not a layer of `{}`", source.name))
-                .help(known_or_near(layer, &known));
-            self.faults.push(fault);
-        }
-        world.solids.retain(|solid| solid.layer == WALLS || layers.contains(&solid.layer));
-        world
     }
 
     fn start(&mut self, world: Option<&UsedWorld>, condition: &Condition) -> Option<Pose> {

@@ -102,7 +102,7 @@ impl Selection {
                     hint: hint(name, known),
                 });
             };
-            for value in values.iter().filter(|value| !factor.values.contains(value)) {
+            if let Some(value) = values.iter().find(|value| !factor.values.contains(value)) {
                 let known = factor.values.iter().map(String::as_str).collect();
                 return Err(SelectionError::UnknownValue {
                     name: name.clone(),

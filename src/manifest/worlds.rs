@@ -1,0 +1,112 @@
+//! The worlds of a manifest's conditions: which file, which layers.
+
+use super::crossing::known_or_near;
+use super::document::WorldDoc;
+use super::inputs::normalised;
+use super::readers;
+use super::resolve::{Known, Resolver};
+use crate::digest::MeaningDigest;
+use crate::document::Source;
+use crate::studies::Condition;
+use crate::world::World;
+use serde_json::{Value, json};
+use std::sync::Arc;
+
+/// The layer of a world that always stands.
+pub(super) const WALLS: &str = "walls";
+
+/// A world as a condition uses it.
+#[derive(Clone)]
+pub(super) struct UsedWorld {
+    pub(super) world: Arc<World>,
+    pub(super) meaning: MeaningDigest,
+    /// File and layers, as written.
+    pub(super) described: Value,
+}
+
+impl Resolver<'_> {
+    /// The world that `doc`, written at `pointer`, is for `condition`.
+    pub(super) fn world(
+        &mut self,
+        doc: &WorldDoc,
+        pointer: &str,
+        condition: &Condition,
+    ) -> Option<UsedWorld> {
+        let (file, file_pointer) = self.choose(&doc.file, &format!("{pointer}/file"), condition)?;
+        let layers = match &doc.layers {
+            None => None,
+            Some(layers) => Some(self.choose(layers, &format!("{pointer}/layers"), condition)?),
+        };
+        let described = json!({
+            "file": normalised(file),
+            "layers": layers.as_ref().map(|(layers, _)| layers),
+        });
+        let written_in = self.faults.written_in(&file_pointer);
+        let key = json!([described, written_in]).to_string();
+        let known = if let Some(known) = self.worlds.get(&key) {
+            known.clone()
+        } else {
+            let known = self.read_world(file, &file_pointer, layers.as_ref());
+            self.worlds.insert(key, known.clone());
+            known
+        };
+        let (world, meaning) = known?;
+        Some(UsedWorld { world, meaning, described })
+    }
+
+    fn read_world(
+        &mut self,
+        file: &str,
+        pointer: &str,
+        layers: Option<&(&Vec<String>, String)>,
+    ) -> Known<World> {
+        let source = self.text(file, pointer)?;
+        let mut world = match readers::world(&source, None) {
+            Ok(world) => world,
+            Err(faults) => {
+                self.faults.extend(faults);
+                return None;
+            }
+        };
+        for warning in &world.warnings {
+            let fault = self.faults.fault(pointer, warning.clone()).label("in this world");
+            self.faults.push(fault.warning());
+        }
+        if let Some((layers, pointer)) = layers {
+            world = self.choose_layers(world, &source, layers, pointer);
+        }
+        let meaning = world.meaning();
+        Some((Arc::new(world), meaning))
+    }
+
+    /// `world` with its walls and `layers` alone; faults where there is no such layer.
+    fn choose_layers(
+        &mut self,
+        mut world: World,
+        source: &Source,
+        layers: &[String],
+        pointer: &str,
+    ) -> World {
+        let known: Vec<String> = world.layers().iter().map(|l| (*l).to_owned()).collect();
+        let unknown = |layer: &String| !known.contains(layer);
+        if layers.iter().any(unknown) {
+            // A layer may be there and hold nothing.
+            if let Ok(world) = readers::world(source, Some(layers))
+                && source.name.ends_with(".yaml")
+            {
+                return world;
+            }
+        }
+        for (i, layer) in layers.iter().enumerate().filter(|(_, layer)| unknown(layer)) {
+            let known: Vec<&str> = known.iter().map(String::as_str).collect();
+            let fault = self
+                .faults
+                .fault(&format!("{pointer}/{i}"), format!("unknown layer `{layer}`"))
+                .label(format!("not a layer of `{}`", source.name))
+                .help(known_or_near(layer, &known));
+            self.faults.push(fault);
+        }
+        world.solids.retain(|solid| solid.layer == WALLS || layers.contains(&solid.layer));
+        world
+    }
+}
