@@ -53,6 +53,7 @@ pub mod verify;
 // Layer 8: what people look at.
 pub mod report;
 
-// The shell: files, clock and environment.
+// The shell: files, clock, environment and the command line.
+pub mod cli;
 pub mod provenance;
 pub mod store;

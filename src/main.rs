@@ -1,3 +1,7 @@
-//! The `reenact` command.
+//! The `reenact` command: see `reenact --help`, or the library's documentation for how it is made.
 
-fn main() {}
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    ExitCode::from(reenact::cli::run(std::env::args_os()).code())
+}

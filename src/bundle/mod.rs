@@ -8,6 +8,7 @@
 //! and back, trusting nothing; [`Bundle`] reads an opened tree by meaning.
 
 pub mod archive;
+pub mod assemble;
 pub mod bag;
 mod content;
 mod crate_actions;

@@ -21,6 +21,7 @@ pub(super) fn check(setup: &Setup, prior: Option<&UsedPrior>, faults: &mut Fault
     sensors(setup, faults);
     start(setup, faults);
     units(setup, faults);
+    median(setup, faults);
     if let Some(prior) = prior {
         resolution(setup, prior, faults);
     }
@@ -68,6 +69,16 @@ fn start(setup: &Setup, faults: &mut Faults<'_>) {
 
 fn spot(point: Point) -> String {
     format!("({:.2}, {:.2}) m", point.x, point.y)
+}
+
+/// A median over an even number of beams would invent a range between two.
+fn median(setup: &Setup, faults: &mut Faults<'_>) {
+    let beams = setup.parameters.navigation.obstacle_median_beams;
+    if beams.is_multiple_of(2) {
+        let pointer = "/parameters/navigation/obstacle-median-beams";
+        let message = format!("`navigation.obstacle-median-beams` must be odd, found {beams}");
+        faults.at(pointer, message, "expected 1, 3, 5, ...");
+    }
 }
 
 /// Values that look as if they were written in another unit, by the unit in their key.

@@ -5,6 +5,7 @@
 //! has. Pure: files come through [`Inputs`].
 
 mod choice;
+mod claims;
 mod crossing;
 mod document;
 mod experiment;
@@ -20,6 +21,7 @@ mod resolve;
 mod worlds;
 
 pub use choice::{By, Choice, DependentFactor, FactorDoc, Levels, Ordered};
+pub use claims::check_claims;
 pub use crossing::Factor;
 pub use document::{
     Alpha, Author, BoundingBoxOf, Cite, DerivedFrom, FloorPlanOf, FootprintOf, ManifestDoc,

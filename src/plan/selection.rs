@@ -87,6 +87,31 @@ impl Selection {
         Ok(selection)
     }
 
+    /// The selection as a bundle keeps it.
+    pub fn to_json(&self) -> serde_json::Value {
+        serde_json::json!({"only": self.only, "trials": self.trials, "shard": self.shard})
+    }
+
+    /// Reads what [`Self::to_json`] wrote.
+    ///
+    /// # Errors
+    /// Where it is something else, in words.
+    pub fn from_json(written: &serde_json::Value) -> Result<Self, String> {
+        #[derive(serde::Deserialize)]
+        #[serde(deny_unknown_fields)]
+        struct Written {
+            only: BTreeMap<String, Vec<String>>,
+            trials: Option<u32>,
+            shard: Option<(u32, u32)>,
+        }
+        let Written { only, trials, shard } =
+            serde_json::from_value(written.clone()).map_err(|e| format!("selection: {e}"))?;
+        match shard {
+            Some((i, n)) if i == 0 || i > n => Err(format!("selection: no shard {i} of {n}")),
+            _ => Ok(Self { only, trials, shard }),
+        }
+    }
+
     /// Whether anything of a plan is left out (or, with `--trials`, changed).
     pub fn is_partial(&self) -> bool {
         *self != Self::default()

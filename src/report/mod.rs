@@ -5,6 +5,7 @@
 
 mod agreement;
 mod content;
+mod gather;
 mod inline_svg;
 mod pack;
 pub mod page;
@@ -19,6 +20,7 @@ pub use content::{
     Assumption, Citation, ClaimRow, Command, Figure, Headline, InputRow, Measured, OutcomeCount,
     ReportCell, ReportContent, ReportRow, ReportTable,
 };
+pub use gather::content_of;
 pub use page::page;
 pub use replay::replay_page;
 pub use still::still_svg;

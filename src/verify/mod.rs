@@ -11,6 +11,7 @@ mod fixity;
 mod ladder;
 mod pipeline;
 mod reexecution;
+mod replan;
 mod report;
 
 #[cfg(test)]
@@ -20,3 +21,4 @@ pub use finding::{Finding, Level, Severity};
 pub use ladder::{Options, Report, Verdict, climb};
 pub use pipeline::{Pipeline, PlannedTrial, Replanned};
 pub use reexecution::Sample;
+pub use replan::{Reenactment, plan_of};

@@ -116,6 +116,7 @@ parameters!(
         #[schemars(extend("exclusiveMinimum" = 0))]
         robot_radius_m: f64 = 0.25,
         /// The operator sees each range as the median of this many neighbouring beams, odd; 1 as they are.
+        #[schemars(range(min = 1))]
         obstacle_median_beams: u32 = 1,
         /// A target counts as reached within this distance (m), above 0.
         #[schemars(extend("exclusiveMinimum" = 0))]

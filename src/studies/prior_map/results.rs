@@ -142,8 +142,15 @@ impl Findings<'_> {
         columns.extend(["coverage-percent".to_owned(), wanted.by.clone()]);
         columns.extend(
             [
-                "mean", "sd", "n", "trials", "difference-percent", "published", "published-sd",
-                "published-n", "published-difference-percent",
+                "mean",
+                "sd",
+                "n",
+                "trials",
+                "difference-percent",
+                "published",
+                "published-sd",
+                "published-n",
+                "published-difference-percent",
             ]
             .map(str::to_owned),
         );
@@ -254,7 +261,8 @@ impl Findings<'_> {
             .filter(|t| t.metric == wanted.against && t.by == wanted.by)
             .flat_map(|t| self.coverage_cells(t))
             .filter(|cell| {
-                cell.by == name && cell.rows.iter().all(|row| !fixed.iter().any(|f| f.0 == row.0 && f != row))
+                cell.by == name
+                    && cell.rows.iter().all(|row| !fixed.iter().any(|f| f.0 == row.0 && f != row))
             })
             .filter_map(|cell| {
                 let (x, sd, _) = cell.published?;
@@ -292,7 +300,10 @@ impl Findings<'_> {
     }
 
     fn factor_values(&self, condition: &Condition) -> Vec<Value> {
-        self.factors.iter().map(|(name, _)| condition.value(name).map(str::to_owned).into()).collect()
+        self.factors
+            .iter()
+            .map(|(name, _)| condition.value(name).map(str::to_owned).into())
+            .collect()
     }
 }
 

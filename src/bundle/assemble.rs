@@ -1,0 +1,147 @@
+//! From a plan and its records to everything a bundle says: the one function that `run` seals with and
+//! `verify` derives with.
+
+use super::content::{Author, BundleContent, Citation, SealedCondition, SealedInput};
+use crate::claims::{self, Claim};
+use crate::plan::{ENGINE_VERSION, Plan, Selection};
+use crate::studies::prior_map::results::Findings;
+use crate::studies::{Outcome, TrialRecord};
+use serde_json::{Value, json};
+
+/// The content of the bundle of `plan`, whose trials yielded `records` (in plan order).
+///
+/// # Errors
+/// Where a claim cannot be judged at all, in words; resolution has refused such manifests before.
+pub fn assemble(
+    plan: &Plan,
+    study_yaml: &[u8],
+    selection: &Selection,
+    records: &[TrialRecord],
+) -> Result<BundleContent, String> {
+    let experiment = &plan.experiment;
+    let mut resolved = plan.resolved_json();
+    if plan.partial
+        && let Value::Object(map) = &mut resolved
+    {
+        map.insert("selection".to_owned(), selection.to_json());
+    }
+    let inputs = experiment.inputs.iter().map(|input| SealedInput {
+        name: input.name.clone(),
+        as_written: input.as_written.clone(),
+        bytes: input.bytes.to_vec(),
+        license: input.license.clone(),
+    });
+    let cite = experiment.cite.as_ref().map(|cite| Citation {
+        text: cite
+            .section
+            .as_ref()
+            .map_or_else(|| cite.paper.clone(), |section| format!("{}, {section}", cite.paper)),
+        url: cite.doi.as_ref().map(|doi| format!("https://doi.org/{doi}")),
+    });
+    let description = match &experiment.cite {
+        Some(cite) => format!("{}. Re-enacts {}.", experiment.title, cite.paper),
+        None => format!("{}.", experiment.title),
+    };
+    Ok(BundleContent {
+        name: experiment.name.clone(),
+        title: experiment.title.clone(),
+        description,
+        cite,
+        authors: experiment
+            .authors
+            .iter()
+            .map(|author| Author {
+                name: author.name.clone(),
+                affiliation: author.affiliation.clone(),
+                affiliation_url: None,
+                orcid: author.orcid.clone(),
+            })
+            .collect(),
+        license: experiment.license.clone().unwrap_or_else(|| "No licence stated".to_owned()),
+        seed: experiment.seed,
+        engine: ENGINE_VERSION.to_owned(),
+        study_yaml: study_yaml.to_vec(),
+        resolved,
+        inputs: inputs.collect(),
+        conditions: sealed_conditions(plan, records),
+        results: results(plan, records)?,
+        partial: plan.partial,
+    })
+}
+
+/// The verdicts on the claims of `plan`'s manifest, as `results/claims.json` holds them: none for partial runs.
+///
+/// # Errors
+/// Where a claim cannot be judged at all, in words.
+pub fn verdicts(plan: &Plan, records: &[TrialRecord]) -> Result<Vec<Value>, String> {
+    if plan.partial {
+        return Ok(Vec::new());
+    }
+    let experiment = &plan.experiment;
+    let context =
+        claims::Context::new(&experiment.published, &experiment.shared_noise, experiment.seed);
+    let factors = factors(plan);
+    let trials = findings(plan, records, &factors).trials();
+    experiment
+        .claims
+        .iter()
+        .map(|written| {
+            let claim: Claim =
+                serde_json::from_value(written.clone()).map_err(|e| format!("claim: {e}"))?;
+            Ok(claims::judge(&claim, &trials, &context)?.to_json())
+        })
+        .collect()
+}
+
+/// Factors with their values, as results name them.
+pub fn factors(plan: &Plan) -> Vec<(String, Vec<String>)> {
+    plan.experiment.factors.iter().map(|f| (f.name.clone(), f.values.clone())).collect()
+}
+
+/// What tables and figures of `plan` are made from.
+pub fn findings<'a>(
+    plan: &'a Plan,
+    records: &'a [TrialRecord],
+    factors: &'a [(String, Vec<String>)],
+) -> Findings<'a> {
+    Findings { factors, records, published: &plan.experiment.published }
+}
+
+fn sealed_conditions(plan: &Plan, records: &[TrialRecord]) -> Vec<SealedCondition> {
+    let mut conditions: Vec<SealedCondition> = Vec::new();
+    for (spec, record) in plan.trials.iter().zip(records) {
+        let slug = spec.condition.slug();
+        if conditions.last().is_none_or(|last| last.slug != slug) {
+            let label = spec.condition.to_string();
+            conditions.push(SealedCondition { slug, label, records: Vec::new(), failed: 0 });
+        }
+        if let Some(last) = conditions.last_mut() {
+            last.records.push(record.to_line());
+            last.failed += usize::from(record.outcome == Outcome::Panicked);
+        }
+    }
+    conditions
+}
+
+fn results(plan: &Plan, records: &[TrialRecord]) -> Result<Vec<(String, Vec<u8>)>, String> {
+    let factors = factors(plan);
+    let findings = findings(plan, records, &factors);
+    let mut files = vec![
+        ("trials.csv".to_owned(), findings.trials().to_csv().into_bytes()),
+        ("series.csv".to_owned(), findings.series().to_csv().into_bytes()),
+    ];
+    let experiment = &plan.experiment;
+    for request in &experiment.tables {
+        let path = |extension| format!("tables/{}.{extension}", request.id);
+        files.push((path("csv"), findings.coverage_table(request).to_csv().into_bytes()));
+        let print = findings.coverage_table_in_print(request).to_markdown();
+        files.push((path("md"), format!("# {}\n\n{print}", request.title).into_bytes()));
+    }
+    for request in &experiment.figures {
+        let chart = findings.coverage_figure(request, &experiment.tables);
+        files.push((format!("figures/{}.svg", request.id), chart.to_svg().into_bytes()));
+    }
+    let claims = json!(verdicts(plan, records)?);
+    files.push(("claims.json".to_owned(), (crate::json::canonical(&claims) + "\n").into_bytes()));
+    Ok(files)
+}

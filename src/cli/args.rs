@@ -1,0 +1,250 @@
+//! What can be typed.
+
+use clap::{Args, CommandFactory as _, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+/// Re-enact published robot-exploration experiments, exactly
+#[derive(Debug, Parser)]
+#[command(name = "reenact", version, max_term_width = 100, arg_required_else_help = true)]
+pub(super) struct Arguments {
+    #[command(subcommand)]
+    pub(super) command: Command,
+}
+
+/// The clap command, for completions and for the test that holds it together.
+pub fn command() -> clap::Command {
+    Arguments::command()
+}
+
+#[derive(Debug, Subcommand)]
+pub(super) enum Command {
+    /// Simulate every trial of a manifest and seal a bundle
+    Run(RunArgs),
+    /// Parse and resolve everything, simulate nothing, report every fault
+    Check(CheckArgs),
+    /// List the trials that would run, or explain one
+    Plan(PlanArgs),
+    /// Check a bundle: safe, intact, coherent, derived, re-executed
+    Verify(VerifyArgs),
+    /// Write a bundle as one offline HTML page
+    Report(ReportArgs),
+    /// Write a bundle in another form
+    Export(ExportArgs),
+    /// Re-enact archived trials with full recording
+    Replay(ReplayArgs),
+    /// Draw a robot, world, prior map or occupancy grid, and say what was understood
+    Show(ShowArgs),
+    /// Solve a constrained MDP given as JSON
+    SolveCmdp(SolveCmdpArgs),
+    /// Print the JSON Schema of manifests or worlds
+    Schema(SchemaArgs),
+    /// Print shell completions
+    Completions(CompletionsArgs),
+    /// Write a working starter manifest
+    Init(InitArgs),
+    /// Look after the store of finished trials
+    Cache(CacheArgs),
+}
+
+/// How answers are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum Format {
+    /// For people
+    Human,
+    /// One compact line of JSON per manifest or bundle
+    Json,
+    /// JUnit XML, for CI
+    Junit,
+}
+
+/// Which part of a study, and what is changed in it.
+#[derive(Debug, Args)]
+pub(super) struct SelectArgs {
+    /// Only conditions with these values (repeatable); the bundle says it is partial
+    #[arg(long, value_name = "FACTOR=VALUE[,VALUE]")]
+    pub(super) only: Vec<String>,
+    /// Trials per condition instead of the manifest's; the bundle says it is partial
+    #[arg(long, value_name = "N")]
+    pub(super) trials: Option<u32>,
+    /// Only every N-th trial, beginning with the I-th
+    #[arg(long, value_name = "I/N")]
+    pub(super) shard: Option<String>,
+    /// Replace a value of the manifest (repeatable), as in `--set world.file=PATH`
+    #[arg(long, value_name = "PATH=VALUE")]
+    pub(super) set: Vec<String>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct RunArgs {
+    /// Manifests to run, one after another
+    #[arg(required = true)]
+    pub(super) manifests: Vec<PathBuf>,
+    /// Threads [default: all processors]
+    #[arg(short, long, value_name = "N")]
+    pub(super) jobs: Option<usize>,
+    /// Where bundles land
+    #[arg(short, long, value_name = "DIR", default_value = "artifacts")]
+    pub(super) out: PathBuf,
+    #[command(flatten)]
+    pub(super) select: SelectArgs,
+    /// Neither read nor write the store of finished trials
+    #[arg(long)]
+    pub(super) no_cache: bool,
+    /// How the answer is written
+    #[arg(long, value_enum, default_value = "human")]
+    pub(super) format: Format,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct CheckArgs {
+    /// Manifests to check
+    #[arg(required = true)]
+    pub(super) manifests: Vec<PathBuf>,
+    /// Replace a value of the manifest (repeatable)
+    #[arg(long, value_name = "PATH=VALUE")]
+    pub(super) set: Vec<String>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct PlanArgs {
+    /// The manifest
+    pub(super) manifest: PathBuf,
+    #[command(flatten)]
+    pub(super) select: SelectArgs,
+    /// Print what the key of this trial is made of: 8 hex digits of it, or CONDITION/NUMBER
+    #[arg(long, value_name = "TRIAL")]
+    pub(super) explain: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct VerifyArgs {
+    /// The bundle: a zip or a folder
+    pub(super) bundle: PathBuf,
+    /// How far to climb: 0 safe, 1 intact, 2 coherent, 3 derived, 4 sampled, 5 re-executed in full
+    #[arg(long, value_name = "0..5", default_value_t = 3)]
+    pub(super) level: u8,
+    /// Trials to draw at level 4
+    #[arg(long, value_name = "N", default_value_t = 59)]
+    pub(super) sample: usize,
+    /// The reviewer's seed for drawing them [default: a fresh one, printed]
+    #[arg(long, value_name = "S")]
+    pub(super) sample_seed: Option<u64>,
+    /// Threads for re-execution [default: all processors]
+    #[arg(short, long, value_name = "N")]
+    pub(super) jobs: Option<usize>,
+    /// How the answer is written
+    #[arg(long, value_enum, default_value = "human")]
+    pub(super) format: Format,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ReportArgs {
+    /// The bundle
+    pub(super) bundle: PathBuf,
+    /// The page to write [default: the bundle's name with .html, in this folder]
+    #[arg(short, long, value_name = "FILE")]
+    pub(super) output: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ExportArgs {
+    /// The bundle
+    pub(super) bundle: PathBuf,
+    /// A zip without a top folder, as some importers want it
+    #[arg(long, group = "form")]
+    pub(super) flat: bool,
+    /// A zip of the RO-Crate alone
+    #[arg(long, group = "form")]
+    pub(super) rocrate: bool,
+    /// A folder
+    #[arg(long, group = "form")]
+    pub(super) dir: bool,
+    /// Where to write it [default: this folder]
+    #[arg(short, long, value_name = "DIR", default_value = ".")]
+    pub(super) out: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ReplayArgs {
+    /// The bundle
+    pub(super) bundle: PathBuf,
+    /// One trial, or two to play side by side: 8 hex digits of a key, or CONDITION/NUMBER
+    #[arg(required = true, num_args = 1..=2, value_name = "TRIAL")]
+    pub(super) trials: Vec<String>,
+    /// Write a page in which it plays
+    #[arg(long, value_name = "FILE")]
+    pub(super) html: Option<PathBuf>,
+    /// Write a still picture
+    #[arg(long, value_name = "FILE")]
+    pub(super) svg: Option<PathBuf>,
+    /// The instant of the still picture (s) [default: the end]
+    #[arg(long, value_name = "SECONDS", requires = "svg")]
+    pub(super) at: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ShowArgs {
+    /// A robot (URDF), world (YAML, SDF) or map (`map_server` YAML)
+    pub(super) file: PathBuf,
+    /// The drawing to write (.svg, or .png for grids) [default: the file's name with .svg, in this folder]
+    #[arg(short, long, value_name = "FILE")]
+    pub(super) output: Option<PathBuf>,
+    /// Cut worlds at this height (m)
+    #[arg(long, value_name = "METRES")]
+    pub(super) height: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct SolveCmdpArgs {
+    /// The problem: states, actions, absorbing, initial, transitions, primary, secondary
+    pub(super) file: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct SchemaArgs {
+    /// Of what
+    #[arg(value_enum, default_value = "manifest")]
+    pub(super) of: SchemaOf,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum SchemaOf {
+    /// Manifests
+    Manifest,
+    /// World YAML files
+    World,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct CompletionsArgs {
+    /// For which shell
+    pub(super) shell: clap_complete::Shell,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct InitArgs {
+    /// Name of the study: lower-case letters, digits and hyphens
+    pub(super) name: String,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct CacheArgs {
+    #[command(subcommand)]
+    pub(super) action: CacheAction,
+}
+
+#[derive(Debug, Clone, Copy, Subcommand)]
+pub(super) enum CacheAction {
+    /// Print where it is
+    Dir,
+    /// Print how many trials it holds and how large it is
+    Size,
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn the_command_line_holds_together() {
+        super::command().debug_assert();
+    }
+}

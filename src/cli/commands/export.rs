@@ -1,0 +1,30 @@
+//! `reenact export`: the same content in the forms that importers want.
+
+use crate::bundle::{Form, archive};
+use crate::cli::args::ExportArgs;
+use crate::cli::exit::{Exit, Failure};
+use crate::cli::load;
+use crate::cli::terminal::Terminal;
+
+/// Writes a bundle again.
+pub(in crate::cli) fn run(args: &ExportArgs, terminal: &Terminal) -> Result<Exit, Failure> {
+    let bundle = load::bundle(&args.bundle)?;
+    let stem = format!("{}-{}", bundle.name(), bundle.results_digest().short());
+    if args.dir {
+        let folder = args.out.join(&stem);
+        for (path, bytes) in bundle.tree() {
+            load::write(&folder.join(path), bytes)?;
+        }
+        terminal.result(&folder.display().to_string());
+        return Ok(Exit::Yes);
+    }
+    let (form, name) = match (args.flat, args.rocrate) {
+        (true, _) => (Form::Flat, format!("{stem}.flat.zip")),
+        (_, true) => (Form::Crate, format!("{stem}.crate.zip")),
+        _ => (Form::Bag, format!("{stem}.zip")),
+    };
+    let path = args.out.join(name);
+    load::write(&path, &archive::write(bundle.tree(), &stem, form))?;
+    terminal.result(&path.display().to_string());
+    Ok(Exit::Yes)
+}

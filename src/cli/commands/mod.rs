@@ -1,0 +1,16 @@
+//! One file per command.
+
+pub(super) mod cache;
+pub(super) mod check;
+pub(super) mod completions;
+pub(super) mod export;
+pub(super) mod init;
+pub(super) mod plan;
+pub(super) mod replay;
+pub(super) mod report;
+pub(super) mod run;
+pub(super) mod schema;
+pub(super) mod show;
+pub(super) mod solve_cmdp;
+mod tables;
+pub(super) mod verify;

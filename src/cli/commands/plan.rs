@@ -1,0 +1,63 @@
+//! `reenact plan`: the trials that would run, or what one trial's key is made of.
+
+use crate::cli::args::PlanArgs;
+use crate::cli::exit::{Exit, Failure};
+use crate::cli::load;
+use crate::cli::terminal::{Terminal, counted};
+use crate::provenance::{Environment, processors};
+use crate::runner::TrialStore as _;
+use crate::store::DirectoryStore;
+
+/// Lists or explains.
+pub(in crate::cli) fn run(
+    args: &PlanArgs,
+    environment: &Environment,
+    terminal: &Terminal,
+) -> Result<Exit, Failure> {
+    let loaded = load::manifest(&args.manifest, &args.select.set, terminal)?;
+    let (plan, _) = load::plan(loaded.experiment, &args.select)?;
+    if let Some(wanted) = &args.explain {
+        let spec = plan.find(wanted).map_err(Failure::not_understood)?;
+        terminal.result(&plan.explain(spec));
+        return Ok(Exit::Yes);
+    }
+    let store = DirectoryStore::new(environment.store().map_err(Failure::not_understood)?);
+    let mut text = String::new();
+    let (mut done, mut known_seconds) = (0, 0.0);
+    for spec in &plan.trials {
+        let record = store.get(&spec.key).map_err(Failure::failed)?;
+        let state = match &record {
+            Some(record) => {
+                done += 1;
+                known_seconds += record.sim_seconds;
+                format!("done  {}", record.outcome.name())
+            }
+            None => "to do".to_owned(),
+        };
+        text.push_str(&format!(
+            "{}  {}/{}  {state}\n",
+            spec.key.short(),
+            spec.condition.slug(),
+            spec.trial
+        ));
+    }
+    let left = plan.trials.len() - done;
+    text.push_str(&format!(
+        "{}: {done} done, {left} to do{}\n",
+        counted(plan.trials.len(), "trial"),
+        estimate(left, done, known_seconds)
+    ));
+    terminal.result(&text);
+    Ok(Exit::Yes)
+}
+
+/// How long the rest takes, where trials of this plan have been seen; a processor simulates some 300 times
+/// faster than real time.
+fn estimate(left: usize, done: usize, known_seconds: f64) -> String {
+    if left == 0 || done == 0 {
+        return String::new();
+    }
+    #[expect(clippy::cast_precision_loss, reason = "an estimate")]
+    let seconds = known_seconds / done as f64 * left as f64 / (300.0 * processors() as f64);
+    format!(", about {} s on this machine", seconds.ceil())
+}

@@ -1,0 +1,57 @@
+//! `reenact replay`: any archived trial again, with full recording.
+
+use crate::cli::args::ReplayArgs;
+use crate::cli::exit::{Exit, Failure};
+use crate::cli::load;
+use crate::cli::terminal::Terminal;
+use crate::report::{replay_page, still_svg};
+use crate::studies::recording::Recording;
+use crate::studies::{self, TrialRecord};
+use crate::verify::plan_of;
+
+/// Re-enacts one trial or two.
+pub(in crate::cli) fn run(args: &ReplayArgs, terminal: &Terminal) -> Result<Exit, Failure> {
+    if args.html.is_none() && args.svg.is_none() {
+        return Err(Failure::not_understood(
+            "say what to write: `--html FILE` for a page in which the trial plays, `--svg FILE` for a still",
+        ));
+    }
+    let bundle = load::bundle(&args.bundle)?;
+    let (plan, _) = plan_of(&bundle).map_err(Failure::not_understood)?;
+    let archived = bundle.records().map_err(|faults| {
+        let first = faults.first().map(ToString::to_string).unwrap_or_default();
+        Failure { exit: Exit::No, message: first }
+    })?;
+    let mut exit = Exit::Yes;
+    let mut played: Vec<(String, Recording)> = Vec::new();
+    let mut notes = Vec::new();
+    for wanted in &args.trials {
+        let spec = plan.find(wanted).map_err(Failure::not_understood)?;
+        let name = format!("{}/{}", spec.condition.slug(), spec.trial);
+        let (record, recording) = studies::reenact(spec);
+        let same = archived
+            .iter()
+            .find(|r| r.key == spec.key)
+            .is_some_and(|r| TrialRecord::to_line(r) == record.to_line());
+        if same {
+            notes.push(format!("{name}: the re-enacted record equals the archived one"));
+        } else {
+            exit = Exit::No;
+            notes.push(format!("{name}: the re-enacted record DIFFERS from the archived one"));
+        }
+        played.push((name, recording));
+    }
+    if let Some(path) = &args.html {
+        let trials: Vec<(String, &Recording)> =
+            played.iter().map(|(name, recording)| (name.clone(), recording)).collect();
+        let page = replay_page(&plan.experiment.title, &trials, &notes.join("; "));
+        load::write(path, page.as_bytes())?;
+        terminal.note(&format!("wrote {}", path.display()));
+    }
+    if let (Some(path), Some((_, recording))) = (&args.svg, played.first()) {
+        load::write(path, still_svg(recording, args.at).as_bytes())?;
+        terminal.note(&format!("wrote {}", path.display()));
+    }
+    terminal.result(&notes.join("\n"));
+    Ok(exit)
+}

@@ -1,0 +1,24 @@
+//! `reenact report`: one page of a bundle.
+
+use crate::cli::args::ReportArgs;
+use crate::cli::exit::{Exit, Failure};
+use crate::cli::load;
+use crate::cli::terminal::Terminal;
+use crate::report;
+use crate::verify::plan_of;
+use std::path::PathBuf;
+
+/// Writes the page.
+pub(in crate::cli) fn run(args: &ReportArgs, terminal: &Terminal) -> Result<Exit, Failure> {
+    let bundle = load::bundle(&args.bundle)?;
+    let (plan, _) = plan_of(&bundle).map_err(Failure::not_understood)?;
+    let content = report::content_of(&bundle, &plan)
+        .map_err(|message| Failure { exit: Exit::No, message })?;
+    let output = args.output.clone().unwrap_or_else(|| {
+        let stem = format!("{}-{}", bundle.name(), bundle.results_digest().short());
+        PathBuf::from(stem).with_extension("html")
+    });
+    load::write(&output, report::page(&content).as_bytes())?;
+    terminal.result(&output.display().to_string());
+    Ok(Exit::Yes)
+}

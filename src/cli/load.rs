@@ -1,0 +1,155 @@
+//! Manifests and bundles from disk.
+
+use super::args::SelectArgs;
+use super::exit::Failure;
+use super::terminal::{Terminal, counted};
+use crate::bundle::Bundle;
+use crate::bundle::archive::{Archive, Limits};
+use crate::document::{Severity, Source};
+use crate::manifest::{self, Experiment, Inputs, WrittenIn};
+use crate::plan::{Plan, Selection};
+use crate::store;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+/// A manifest that was understood.
+#[derive(Debug)]
+pub(super) struct Loaded {
+    pub(super) source: Source,
+    pub(super) experiment: Experiment,
+}
+
+/// Reads and resolves `manifest` with the values of `set` replaced; every fault goes to stderr.
+pub(super) fn manifest(
+    manifest: &Path,
+    set: &[String],
+    terminal: &Terminal,
+) -> Result<Loaded, Failure> {
+    let source = text(manifest)?;
+    let folder = manifest.parent().unwrap_or(Path::new("")).to_owned();
+    let (found, mut faults) = match manifest::resolve(&source, set, &Folder(folder)) {
+        Ok((experiment, warnings)) => {
+            let mut faults = warnings;
+            faults.extend(manifest::check_claims(&experiment));
+            (Some(experiment), faults)
+        }
+        Err(faults) => (None, faults),
+    };
+    faults.sort_by_key(|f| std::cmp::Reverse(f.severity));
+    terminal.diagnostics(&faults);
+    match found {
+        Some(experiment) if faults.iter().all(|f| f.severity == Severity::Warning) => {
+            Ok(Loaded { source, experiment })
+        }
+        _ => Err(Failure::not_understood(format!(
+            "{}: {}",
+            manifest.display(),
+            Terminal::count(&faults)
+        ))),
+    }
+}
+
+/// The plan of an experiment, or the part of it that is wanted.
+pub(super) fn plan(
+    experiment: Experiment,
+    select: &SelectArgs,
+) -> Result<(Plan, Selection), Failure> {
+    let selection = Selection::parse(&select.only, select.trials, select.shard.as_deref())
+        .map_err(Failure::not_understood)?;
+    let plan = if selection.is_partial() {
+        Plan::select(experiment, &selection).map_err(Failure::not_understood)?
+    } else {
+        Plan::of(experiment)
+    };
+    Ok((plan, selection))
+}
+
+/// Opens a bundle or says why not: what is wrong with its content stays data.
+pub(super) fn archive(path: &Path) -> Result<Result<Archive, Vec<crate::bundle::Fault>>, Failure> {
+    store::open_bundle(path, &Limits::default()).map_err(|e| unreadable(path, &e))
+}
+
+/// Reads a bundle whose content is needed.
+pub(super) fn bundle(path: &Path) -> Result<Bundle, Failure> {
+    let damaged = |what: String| Failure {
+        exit: super::Exit::No,
+        message: format!("{}: {what}; `reenact verify` tells everything", path.display()),
+    };
+    let archive = archive(path)?.map_err(|faults| {
+        let first = faults.first().map(ToString::to_string).unwrap_or_default();
+        damaged(format!("{} ({first})", counted(faults.len(), "fault")))
+    })?;
+    Bundle::open(archive).map_err(|e| damaged(e.to_string()))
+}
+
+/// Reads a text file.
+pub(super) fn text(path: &Path) -> Result<Source, Failure> {
+    let bytes = bytes(path)?;
+    let text = String::from_utf8(bytes).map_err(|e| {
+        let at = e.utf8_error().valid_up_to();
+        Failure::not_understood(format!(
+            "cannot read `{}`: expected UTF-8 text, found byte {at} that is not",
+            path.display()
+        ))
+    })?;
+    Ok(Source::new(path.display().to_string(), text))
+}
+
+/// Reads a file.
+pub(super) fn bytes(path: &Path) -> Result<Vec<u8>, Failure> {
+    store::read(path).map_err(|e| unreadable(path, &e))
+}
+
+/// Writes a file that the user named.
+pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let name = path.file_name().and_then(|n| n.to_str()).ok_or_else(|| {
+        Failure::not_understood(format!("`{}` is no name for a file", path.display()))
+    })?;
+    store::publish(folder, name, bytes)
+        .map(drop)
+        .map_err(|e| Failure::failed(format!("cannot write `{}`: {}", path.display(), reason(&e))))
+}
+
+/// A missing file is the user's; anything else is ours.
+fn unreadable(path: &Path, error: &std::io::Error) -> Failure {
+    let message = format!("cannot read `{}`: {}", path.display(), reason(error));
+    match error.kind() {
+        ErrorKind::NotFound | ErrorKind::IsADirectory | ErrorKind::PermissionDenied => {
+            Failure::not_understood(message)
+        }
+        _ => Failure::failed(message),
+    }
+}
+
+/// What went wrong, without the numbers of one operating system.
+fn reason(error: &std::io::Error) -> String {
+    match error.kind() {
+        ErrorKind::NotFound => "no such file".to_owned(),
+        ErrorKind::PermissionDenied => "no permission".to_owned(),
+        ErrorKind::IsADirectory => "it is a folder".to_owned(),
+        ErrorKind::StorageFull => "the disk is full".to_owned(),
+        _ => error.to_string(),
+    }
+}
+
+/// Inputs of a manifest in this folder.
+struct Folder(PathBuf);
+
+impl Inputs for Folder {
+    fn read(&self, as_written: &str, written_in: WrittenIn) -> Result<Vec<u8>, String> {
+        let beside = self.0.join(as_written);
+        let read = |path: &Path| store::read(path);
+        match written_in {
+            WrittenIn::Manifest => read(&beside).map_err(|e| reason(&e)),
+            // Given on the command line: from here, as a shell completes it, or else from the manifest.
+            WrittenIn::CommandLine => read(Path::new(as_written)).or_else(|here| {
+                read(&beside)
+                    .map_err(|_| format!("{}, neither here nor beside the manifest", reason(&here)))
+            }),
+        }
+    }
+}

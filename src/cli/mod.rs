@@ -1,0 +1,69 @@
+//! The command line: words in, exit code out. The shell around the library; nothing imports it.
+//!
+//! Results go to stdout, progress and diagnostics to stderr.
+
+mod args;
+mod commands;
+mod exit;
+mod load;
+mod progress;
+mod terminal;
+
+pub use args::command;
+pub use exit::Exit;
+
+use crate::provenance::Environment;
+use args::{Arguments, Command};
+use clap::Parser as _;
+use exit::Failure;
+use std::ffi::OsString;
+use terminal::Terminal;
+
+/// Runs the command that `words` (the first being the program's name) ask for.
+pub fn run(words: impl IntoIterator<Item = OsString>) -> Exit {
+    let arguments = match Arguments::try_parse_from(words) {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // clap sends help and version to stdout and mistakes to stderr.
+            let _ = error.print();
+            return if error.use_stderr() { Exit::NotUnderstood } else { Exit::Yes };
+        }
+    };
+    let environment = match Environment::read() {
+        Ok(environment) => environment,
+        Err(error) => {
+            Terminal::plain().error(&error.to_string());
+            return Exit::NotUnderstood;
+        }
+    };
+    let terminal = Terminal::new(&environment);
+    match dispatch(arguments.command, &environment, &terminal) {
+        Ok(exit) => exit,
+        Err(Failure { exit, message }) => {
+            terminal.failure(&message);
+            exit
+        }
+    }
+}
+
+fn dispatch(
+    command: Command,
+    environment: &Environment,
+    terminal: &Terminal,
+) -> Result<Exit, Failure> {
+    match command {
+        Command::Run(args) => commands::run::run(&args, environment, terminal),
+        Command::Check(args) => commands::check::run(&args, terminal),
+        Command::Plan(args) => commands::plan::run(&args, environment, terminal),
+        Command::Verify(args) => commands::verify::run(&args, terminal),
+        Command::Report(args) => commands::report::run(&args, terminal),
+        Command::Export(args) => commands::export::run(&args, terminal),
+        Command::Replay(args) => commands::replay::run(&args, terminal),
+        Command::Show(args) => commands::show::run(&args, terminal),
+        Command::SolveCmdp(args) => commands::solve_cmdp::run(&args, terminal),
+        Command::Schema(args) => Ok(commands::schema::run(&args, terminal)),
+        Command::Completions(args) => Ok(commands::completions::run(&args, terminal)),
+        Command::Init(args) => commands::init::run(&args, terminal),
+        Command::Cache(args) => commands::cache::run(&args, environment, terminal),
+    }
+}

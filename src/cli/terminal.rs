@@ -1,0 +1,89 @@
+//! Where words go: results to stdout, everything else to stderr; colour only where a person looks.
+
+use crate::document::{Diagnostic, Severity};
+use crate::provenance::Environment;
+use std::io::{IsTerminal as _, Write as _};
+
+/// The two streams of the process.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Terminal {
+    color: bool,
+    watched: bool,
+}
+
+impl Terminal {
+    pub(super) fn new(environment: &Environment) -> Self {
+        let watched = std::io::stderr().is_terminal();
+        Self { color: watched && !environment.no_color, watched }
+    }
+
+    pub(super) fn plain() -> Self {
+        Self { color: false, watched: false }
+    }
+
+    /// Whether a person watches stderr: bars are drawn for people only.
+    pub(super) fn is_watched(self) -> bool {
+        self.watched
+    }
+
+    pub(super) fn color(self) -> bool {
+        self.color
+    }
+
+    /// Writes a result. A reader who has gone away (a closed pipe) is no fault of ours.
+    #[expect(clippy::unused_self, reason = "all output goes through the terminal")]
+    pub(super) fn result(self, text: &str) {
+        let mut out = std::io::stdout().lock();
+        let _ = out.write_all(text.as_bytes());
+        if !text.ends_with('\n') {
+            let _ = out.write_all(b"\n");
+        }
+        let _ = out.flush();
+    }
+
+    /// Writes a note to stderr.
+    #[expect(clippy::unused_self, reason = "all output goes through the terminal")]
+    pub(super) fn note(self, text: &str) {
+        let _ = writeln!(std::io::stderr().lock(), "{}", text.trim_end_matches('\n'));
+    }
+
+    pub(super) fn error(self, message: &str) {
+        if self.color {
+            self.note(&format!("\u{1b}[1;31merror\u{1b}[0m: {message}"));
+        } else {
+            self.note(&format!("error: {message}"));
+        }
+    }
+
+    /// Writes why a command gave up: whole reports as they are, a bare sentence as an error.
+    pub(super) fn failure(self, message: &str) {
+        if message.contains('\n') { self.note(message) } else { self.error(message) }
+    }
+
+    /// Writes reports, separated by empty lines.
+    pub(super) fn diagnostics(self, diagnostics: &[Diagnostic]) {
+        for diagnostic in diagnostics {
+            self.note(&format!("{}\n", diagnostic.render(self.color)));
+            let _ = writeln!(std::io::stderr().lock());
+        }
+    }
+
+    /// `2 errors, 1 warning`.
+    pub(super) fn count(diagnostics: &[Diagnostic]) -> String {
+        let count = |severity| diagnostics.iter().filter(|d| d.severity == severity).count();
+        let (errors, warnings) = (count(Severity::Error), count(Severity::Warning));
+        let mut parts = Vec::new();
+        if errors > 0 {
+            parts.push(counted(errors, "error"));
+        }
+        if warnings > 0 {
+            parts.push(counted(warnings, "warning"));
+        }
+        parts.join(", ")
+    }
+}
+
+/// `1 trial`, `2 trials`.
+pub(super) fn counted(n: usize, thing: &str) -> String {
+    format!("{n} {thing}{}", if n == 1 { "" } else { "s" })
+}

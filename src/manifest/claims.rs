@@ -1,0 +1,57 @@
+//! The claims of a manifest, held against its factors, measures and published tables.
+
+use super::Experiment;
+use crate::claims::{self, Claim};
+use crate::document::Diagnostic;
+use crate::studies::prior_map::MILESTONES;
+
+/// Every fault of the experiment's claims.
+pub fn check_claims(experiment: &Experiment) -> Vec<Diagnostic> {
+    let tree = &experiment.document;
+    let mut faults = Vec::new();
+    let mut claims: Vec<Claim> = Vec::new();
+    for (i, written) in experiment.claims.iter().enumerate() {
+        match serde_json::from_value(written.clone()) {
+            Ok(claim) => claims.push(claim),
+            Err(e) => faults.push(
+                tree.fault(tree.place(&format!("/claims/{i}")), format!("claim: {e}"))
+                    .help("docs/claims.md shows every form with an example"),
+            ),
+        }
+    }
+    if !faults.is_empty() {
+        return faults;
+    }
+    let factors: Vec<_> =
+        experiment.factors.iter().map(|f| (f.name.clone(), f.values.clone())).collect();
+    let published: Vec<String> = experiment.published.keys().cloned().collect();
+    let problems = claims::check_all(&claims, &factors, &measures(), &published);
+    faults.extend(
+        problems.into_iter().map(|problem| tree.fault(tree.place("/claims"), problem.to_string())),
+    );
+    faults
+}
+
+/// What a claim about the prior-map study may speak of: the columns of `results/trials.csv`.
+fn measures() -> Vec<String> {
+    let mut names: Vec<String> = [
+        "success",
+        "outcome:explored",
+        "outcome:stuck",
+        "outcome:time-limit",
+        "distance-m",
+        "time-s",
+        "coverage-percent",
+        "turning-rad",
+        "decisions",
+        "frontiers-given-up",
+        "contacts",
+    ]
+    .map(str::to_owned)
+    .to_vec();
+    for percent in MILESTONES {
+        names.push(format!("distance-m-at-{percent}"));
+        names.push(format!("time-s-at-{percent}"));
+    }
+    names
+}

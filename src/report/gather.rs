@@ -1,0 +1,236 @@
+//! A report's content, gathered from a sealed bundle and the plan made again from it.
+
+use super::Agreement;
+use super::content::{
+    Assumption, Citation, ClaimRow, Command, Figure, Headline, InputRow, Measured, OutcomeCount,
+    ReportCell, ReportContent, ReportRow, ReportTable,
+};
+use crate::bundle::{Bundle, assemble, format};
+use crate::plan::Plan;
+use crate::studies::prior_map::results::{CoverageCell, Findings};
+use crate::studies::prior_map::{Metric, TableRequest};
+use crate::studies::{Outcome, TrialRecord};
+use serde_json::Value;
+
+/// What the page of `bundle` says, `plan` being the plan made again from it.
+///
+/// # Errors
+/// Where the records or verdicts cannot be read, in words.
+pub fn content_of(bundle: &Bundle, plan: &Plan) -> Result<ReportContent, String> {
+    let records = bundle
+        .records()
+        .map_err(|faults| faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))?;
+    let experiment = &plan.experiment;
+    let factors = assemble::factors(plan);
+    let findings = assemble::findings(plan, &records, &factors);
+    let cite = experiment.cite.as_ref();
+    Ok(ReportContent {
+        title: experiment.title.clone(),
+        citation: Citation {
+            paper: cite.map(|c| c.paper.clone()).unwrap_or_default(),
+            section: cite.and_then(|c| c.section.clone()).unwrap_or_default(),
+        },
+        authors: experiment.authors.iter().map(|a| a.name.clone()).collect(),
+        license: experiment.license.clone().unwrap_or_default(),
+        limits: limits(&records),
+        partial: plan.partial.then(|| {
+            "only part of the study was run (--only, --trials or --shard); no claim is judged"
+                .to_owned()
+        }),
+        headline: headline(bundle, plan, &records),
+        tables: experiment.tables.iter().map(|request| table(&findings, request, plan)).collect(),
+        figures: figures(bundle, plan),
+        claims: claims(bundle)?,
+        assumptions: experiment
+            .assumptions
+            .iter()
+            .map(|a| Assumption {
+                path: a.path.clone(),
+                value: text_of(&a.value),
+                why: a.why.clone(),
+            })
+            .collect(),
+        inputs: bundle
+            .inputs()
+            .iter()
+            .map(|input| InputRow {
+                role: role(&input.as_written).to_owned(),
+                written: input.as_written.clone(),
+                sealed: input.path.clone(),
+                sha256: input.sha256.hex(),
+            })
+            .collect(),
+        commands: commands(bundle),
+    })
+}
+
+fn limits(records: &[TrialRecord]) -> Vec<String> {
+    let mut limits = vec![
+        "Simulated in two dimensions with Reenact's own worlds and robots: numbers are an analogue of the paper's, \
+         whose runs used Gazebo and ROS."
+            .to_owned(),
+    ];
+    let unfinished = records.iter().filter(|r| r.outcome != Outcome::Explored).count();
+    if unfinished > 0 {
+        limits.push(format!(
+            "{unfinished} of {} trials did not explore everything; cells say how many trials are behind a mean.",
+            records.len()
+        ));
+    }
+    limits
+}
+
+fn headline(bundle: &Bundle, plan: &Plan, records: &[TrialRecord]) -> Headline {
+    let mut outcomes: Vec<OutcomeCount> = Vec::new();
+    for record in records {
+        let name = record.outcome.name();
+        match outcomes.iter_mut().find(|o| o.name == name) {
+            Some(outcome) => outcome.count += 1,
+            None => outcomes.push(OutcomeCount { name: name.to_owned(), count: 1 }),
+        }
+    }
+    outcomes.sort_by(|a, b| b.count.cmp(&a.count).then(a.name.cmp(&b.name)));
+    Headline {
+        study: plan.resolved_json()["study"].as_str().unwrap_or_default().to_owned(),
+        trials: records.len() as u64,
+        conditions: bundle.conditions().len() as u64,
+        outcomes,
+        sim_seconds: records.iter().map(|r| r.sim_seconds).sum(),
+        seed: plan.experiment.seed,
+        results_digest: bundle.results_digest().hex(),
+        bundle_id: bundle.bundle_id().map(|id| id.hex()).unwrap_or_default(),
+        engine_version: bundle.engine().to_owned(),
+    }
+}
+
+fn table(findings: &Findings<'_>, request: &TableRequest, plan: &Plan) -> ReportTable {
+    let wanted = &request.coverage_table;
+    let cells = findings.coverage_cells(wanted);
+    let mut columns: Vec<String> = Vec::new();
+    for cell in &cells {
+        if !columns.contains(&cell.by) {
+            columns.push(cell.by.clone());
+        }
+    }
+    // The page takes the first column for the baseline.
+    if let Some(baseline) = wanted.baseline.as_ref()
+        && let Some(i) = columns.iter().position(|c| *c == baseline.0)
+    {
+        columns.swap(0, i);
+    }
+    let rows = cells.chunks(columns.len().max(1)).map(|line| {
+        let label: Vec<String> = line
+            .iter()
+            .take(1)
+            .flat_map(|cell| {
+                let rows = cell.rows.iter().map(|(_, value)| value.clone());
+                rows.chain([format!("{} %", cell.percent)])
+            })
+            .collect();
+        let cell = |name: &String| {
+            line.iter().find(|c| c.by == *name).map(report_cell).unwrap_or_default()
+        };
+        ReportRow { label: label.join(", "), cells: columns.iter().map(cell).collect() }
+    });
+    let source = plan.experiment.cite.as_ref().and_then(|c| c.section.clone()).unwrap_or_default();
+    ReportTable {
+        id: request.id.clone(),
+        title: format!("{} (n = {} trials a cell)", request.title, plan.experiment.trials),
+        source: if wanted.published.is_some() { source } else { String::new() },
+        quantity: match wanted.metric {
+            Metric::DistanceM => "distance travelled (m)".to_owned(),
+            Metric::TimeS => "simulated time (s)".to_owned(),
+        },
+        decimals: 2,
+        row_header: "coverage".to_owned(),
+        rows: rows.collect(),
+        columns,
+    }
+}
+
+fn report_cell(cell: &CoverageCell) -> ReportCell {
+    let ours =
+        cell.ours.map(|s| Measured { mean: s.mean, sd: (s.n > 1).then_some(s.sd), n: Some(s.n) });
+    let published = cell.published.map(|(mean, sd, n)| {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a count of runs"
+        )]
+        let n = n.map(|n| n.max(0.0) as u64);
+        Measured { mean, sd, n }
+    });
+    ReportCell {
+        ours,
+        difference_percent: cell.difference_percent,
+        published,
+        published_difference_percent: cell.published_difference_percent,
+        agreement: Agreement::between(ours, published),
+    }
+}
+
+fn figures(bundle: &Bundle, plan: &Plan) -> Vec<Figure> {
+    plan.experiment
+        .figures
+        .iter()
+        .filter_map(|request| {
+            let bytes = bundle.result(&format!("figures/{}.svg", request.id))?;
+            let caption = "Median of the trials with a band from the 10th to the 90th percentile; hollow markers \
+                           are the paper's means with one standard deviation.";
+            Some(Figure {
+                id: request.id.clone(),
+                title: request.title.clone(),
+                caption: caption.to_owned(),
+                alt: format!("Line chart: {}", request.title),
+                svg: String::from_utf8_lossy(bytes).into_owned(),
+            })
+        })
+        .collect()
+}
+
+fn claims(bundle: &Bundle) -> Result<Vec<ClaimRow>, String> {
+    let Some(bytes) = bundle.result("claims.json") else { return Ok(Vec::new()) };
+    let verdicts: Vec<Value> =
+        serde_json::from_slice(bytes).map_err(|e| format!("results/claims.json: {e}"))?;
+    let text = |v: &Value, key: &str| v[key].as_str().unwrap_or_default().to_owned();
+    let row = |v: &Value| ClaimRow {
+        id: text(v, "id"),
+        says: text(v, "says"),
+        cite: text(v, "cite"),
+        verdict: text(v, "verdict"),
+        numbers: text(v, "summary"),
+        paper_table: text(v, "paper-table"),
+    };
+    Ok(verdicts.iter().map(row).collect())
+}
+
+fn commands(bundle: &Bundle) -> Vec<Command> {
+    let file = format!("{}-{}.zip", bundle.name(), bundle.results_digest().short());
+    let command = |purpose: &str, line: String| Command { purpose: purpose.to_owned(), line };
+    vec![
+        command(
+            "check every checksum and derive every table anew",
+            format!("reenact verify {file}"),
+        ),
+        command(
+            "execute every trial again, bit for bit",
+            format!("reenact verify --level 5 {file}"),
+        ),
+        command("run the study", format!("reenact run {}", format::STUDY)),
+    ]
+}
+
+fn role(as_written: &str) -> &'static str {
+    match as_written.rsplit('.').next() {
+        Some("urdf") => "robot",
+        Some("csv") => "published",
+        Some("world" | "sdf") => "world",
+        Some("png" | "pgm") => "prior",
+        _ if as_written.contains("world") => "world",
+        _ => "input",
+    }
+}
+
+fn text_of(value: &Value) -> String {
+    value.as_str().map_or_else(|| value.to_string(), str::to_owned)
+}

@@ -1,0 +1,106 @@
+//! The pipeline that `run` goes, gone again from a bundle: manifest, plan, trials, results.
+
+use super::{Pipeline, PlannedTrial, Replanned};
+use crate::bundle::{Bundle, BundleContent, assemble};
+use crate::document::Source;
+use crate::manifest::{self, Inputs, WrittenIn};
+use crate::plan::{ENGINE_VERSION, Plan, Selection};
+use crate::runner::{RunError, Scheduler, Silent};
+use crate::studies::{self, TrialRecord, TrialSpec};
+
+/// This program's own pipeline.
+#[derive(Debug)]
+pub struct Reenactment {
+    scheduler: Scheduler,
+}
+
+impl Reenactment {
+    /// The pipeline on `jobs` threads.
+    ///
+    /// # Errors
+    /// Where the system does not give them.
+    pub fn new(jobs: usize) -> Result<Self, RunError> {
+        Ok(Self { scheduler: Scheduler::new(jobs)? })
+    }
+}
+
+impl Pipeline for Reenactment {
+    fn engine(&self) -> &str {
+        ENGINE_VERSION
+    }
+
+    fn replan<'a>(&'a self, bundle: &'a Bundle) -> Result<Box<dyn Replanned + 'a>, String> {
+        let (plan, selection) = plan_of(bundle)?;
+        Ok(Box::new(Study { bundle, plan, selection, scheduler: &self.scheduler }))
+    }
+}
+
+/// Plans the study of `bundle` again, from its manifest, inputs, overrides and selection alone.
+///
+/// # Errors
+/// Where they do not make a plan, in words.
+pub fn plan_of(bundle: &Bundle) -> Result<(Plan, Selection), String> {
+    let study = bundle.resolved();
+    let overrides: Vec<String> = serde_json::from_value(study["overrides"].clone())
+        .map_err(|e| format!("overrides: {e}"))?;
+    let selection = match study.get("selection") {
+        Some(written) => Selection::from_json(written)?,
+        None => Selection::default(),
+    };
+    let text = std::str::from_utf8(bundle.study_yaml())
+        .map_err(|_| "study.yaml is not UTF-8 text".to_owned())?;
+    let source = Source::new("study.yaml", text);
+    let (experiment, _) = manifest::resolve(&source, &overrides, &Sealed(bundle))
+        .map_err(|faults| faults.iter().map(|f| f.render(false)).collect::<String>())?;
+    let plan = if selection.is_partial() {
+        Plan::select(experiment, &selection).map_err(|e| e.to_string())?
+    } else {
+        Plan::of(experiment)
+    };
+    Ok((plan, selection))
+}
+
+/// The inputs sealed in a bundle.
+struct Sealed<'a>(&'a Bundle);
+
+impl Inputs for Sealed<'_> {
+    fn read(&self, as_written: &str, _: WrittenIn) -> Result<Vec<u8>, String> {
+        self.0
+            .input(as_written)
+            .map(<[u8]>::to_vec)
+            .ok_or_else(|| "the bundle holds no such input".to_owned())
+    }
+}
+
+struct Study<'a> {
+    bundle: &'a Bundle,
+    plan: Plan,
+    selection: Selection,
+    scheduler: &'a Scheduler,
+}
+
+impl Replanned for Study<'_> {
+    fn trials(&self) -> Vec<PlannedTrial> {
+        let planned = |spec: &TrialSpec| PlannedTrial {
+            key: spec.key,
+            slug: spec.condition.slug(),
+            trial: spec.trial,
+        };
+        self.plan.trials.iter().map(planned).collect()
+    }
+
+    fn content(&self) -> Result<BundleContent, String> {
+        let records = self.bundle.records().map_err(|faults| {
+            faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
+        })?;
+        assemble::assemble(&self.plan, self.bundle.study_yaml(), &self.selection, &records)
+    }
+
+    fn execute(&self, indices: &[usize]) -> Vec<String> {
+        let specs: Vec<TrialSpec> = indices.iter().map(|&i| self.plan.trials[i].clone()).collect();
+        self.scheduler
+            .run(&specs, &studies::execute, None, &Silent)
+            .map(|records| records.iter().map(TrialRecord::to_line).collect())
+            .unwrap_or_default()
+    }
+}
