@@ -23,7 +23,7 @@ pub(super) struct Loaded {
 pub(super) fn manifest(
     manifest: &Path,
     set: &[String],
-    terminal: &Terminal,
+    terminal: Terminal,
 ) -> Result<Loaded, Failure> {
     let source = text(manifest)?;
     let folder = manifest.parent().unwrap_or(Path::new("")).to_owned();

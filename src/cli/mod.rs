@@ -37,7 +37,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> Exit {
         }
     };
     let terminal = Terminal::new(&environment);
-    match dispatch(arguments.command, &environment, &terminal) {
+    match dispatch(arguments.command, &environment, terminal) {
         Ok(exit) => exit,
         Err(Failure { exit, message }) => {
             terminal.failure(&message);
@@ -49,7 +49,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> Exit {
 fn dispatch(
     command: Command,
     environment: &Environment,
-    terminal: &Terminal,
+    terminal: Terminal,
 ) -> Result<Exit, Failure> {
     match command {
         Command::Run(args) => commands::run::run(&args, environment, terminal),

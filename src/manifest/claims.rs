@@ -26,9 +26,7 @@ pub fn check_claims(experiment: &Experiment) -> Vec<Diagnostic> {
         experiment.factors.iter().map(|f| (f.name.clone(), f.values.clone())).collect();
     let published: Vec<String> = experiment.published.keys().cloned().collect();
     let problems = claims::check_all(&claims, &factors, &measures(), &published);
-    faults.extend(
-        problems.into_iter().map(|problem| tree.fault(tree.place("/claims"), problem.to_string())),
-    );
+    faults.extend(problems.into_iter().map(|problem| tree.fault(tree.place("/claims"), problem)));
     faults
 }
 

@@ -10,7 +10,7 @@ use crate::store::DirectoryStore;
 pub(in crate::cli) fn run(
     args: &CacheArgs,
     environment: &Environment,
-    terminal: &Terminal,
+    terminal: Terminal,
 ) -> Result<Exit, Failure> {
     let root = environment.store().map_err(Failure::not_understood)?;
     match args.action {

@@ -7,7 +7,7 @@ use crate::cli::load;
 use crate::cli::terminal::Terminal;
 
 /// Writes a bundle again.
-pub(in crate::cli) fn run(args: &ExportArgs, terminal: &Terminal) -> Result<Exit, Failure> {
+pub(in crate::cli) fn run(args: &ExportArgs, terminal: Terminal) -> Result<Exit, Failure> {
     let bundle = load::bundle(&args.bundle)?;
     let stem = format!("{}-{}", bundle.name(), bundle.results_digest().short());
     if args.dir {

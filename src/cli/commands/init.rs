@@ -11,7 +11,7 @@ const WORLD: &str = include_str!("../../../worlds/basic.yaml");
 const ROBOT: &str = include_str!("../../../robots/kobuki.urdf");
 
 /// Writes the starter study `NAME/NAME.yaml` with its robot and world.
-pub(in crate::cli) fn run(args: &InitArgs, terminal: &Terminal) -> Result<Exit, Failure> {
+pub(in crate::cli) fn run(args: &InitArgs, terminal: Terminal) -> Result<Exit, Failure> {
     let name = &args.name;
     let plain = |b: u8| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'-';
     if !name.starts_with(|c: char| c.is_ascii_lowercase()) || !name.bytes().all(plain) {

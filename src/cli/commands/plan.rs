@@ -12,7 +12,7 @@ use crate::store::DirectoryStore;
 pub(in crate::cli) fn run(
     args: &PlanArgs,
     environment: &Environment,
-    terminal: &Terminal,
+    terminal: Terminal,
 ) -> Result<Exit, Failure> {
     let loaded = load::manifest(&args.manifest, &args.select.set, terminal)?;
     let (plan, _) = load::plan(loaded.experiment, &args.select)?;

@@ -10,7 +10,7 @@ use crate::studies::{self, TrialRecord};
 use crate::verify::plan_of;
 
 /// Re-enacts one trial or two.
-pub(in crate::cli) fn run(args: &ReplayArgs, terminal: &Terminal) -> Result<Exit, Failure> {
+pub(in crate::cli) fn run(args: &ReplayArgs, terminal: Terminal) -> Result<Exit, Failure> {
     if args.html.is_none() && args.svg.is_none() {
         return Err(Failure::not_understood(
             "say what to write: `--html FILE` for a page in which the trial plays, `--svg FILE` for a still",

@@ -9,7 +9,7 @@ use crate::verify::plan_of;
 use std::path::PathBuf;
 
 /// Writes the page.
-pub(in crate::cli) fn run(args: &ReportArgs, terminal: &Terminal) -> Result<Exit, Failure> {
+pub(in crate::cli) fn run(args: &ReportArgs, terminal: Terminal) -> Result<Exit, Failure> {
     let bundle = load::bundle(&args.bundle)?;
     let (plan, _) = plan_of(&bundle).map_err(Failure::not_understood)?;
     let content = report::content_of(&bundle, &plan)

@@ -20,7 +20,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 pub(in crate::cli) fn run(
     args: &RunArgs,
     environment: &Environment,
-    terminal: &Terminal,
+    terminal: Terminal,
 ) -> Result<Exit, Failure> {
     if args.jobs == Some(0) {
         return Err(Failure::not_understood("`--jobs` must be at least 1, found 0"));
@@ -40,7 +40,7 @@ fn run_one(
     manifest: &Path,
     args: &RunArgs,
     environment: &Environment,
-    terminal: &Terminal,
+    terminal: Terminal,
 ) -> Result<Exit, Failure> {
     let clock = RunClock::start();
     let loaded = load::manifest(manifest, &args.select.set, terminal)?;
@@ -67,14 +67,14 @@ fn execute(
     scheduler: &Scheduler,
     args: &RunArgs,
     environment: &Environment,
-    terminal: &Terminal,
+    terminal: Terminal,
 ) -> Result<(Vec<TrialRecord>, usize), Failure> {
     let kept = if args.no_cache {
         None
     } else {
         Some(DirectoryStore::new(environment.store().map_err(Failure::not_understood)?))
     };
-    let progress = Progress::new(*terminal);
+    let progress = Progress::new(terminal);
     let cached = AtomicUsize::new(0);
     let observer = |event: &RunEvent<'_>| {
         if let RunEvent::Started { cached: known, .. } = event {
@@ -118,7 +118,7 @@ impl Done {
         Ok(verdicts.iter().filter_map(id_and_verdict).collect())
     }
 
-    fn tell(&self, terminal: &Terminal) {
+    fn tell(&self, terminal: Terminal) {
         let mut text = format!("{}\n", self.plan.experiment.title);
         if self.plan.partial {
             text.push_str("PARTIAL: part of the study only; no claim is judged\n");

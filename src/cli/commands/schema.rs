@@ -6,7 +6,7 @@ use crate::cli::terminal::Terminal;
 use crate::{document, manifest, world};
 
 /// Prints a JSON Schema.
-pub(in crate::cli) fn run(args: &SchemaArgs, terminal: &Terminal) -> Exit {
+pub(in crate::cli) fn run(args: &SchemaArgs, terminal: Terminal) -> Exit {
     let schema = match args.of {
         SchemaOf::Manifest => manifest::schema(),
         SchemaOf::World => document::schema_of::<world::document::WorldDoc>(),

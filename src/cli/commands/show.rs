@@ -8,7 +8,7 @@ use crate::report::show;
 use std::path::{Path, PathBuf};
 
 /// Draws one file.
-pub(in crate::cli) fn run(args: &ShowArgs, terminal: &Terminal) -> Result<Exit, Failure> {
+pub(in crate::cli) fn run(args: &ShowArgs, terminal: Terminal) -> Result<Exit, Failure> {
     let bytes = load::bytes(&args.file)?;
     let folder = args.file.parent().unwrap_or(Path::new(""));
     let name = args.file.display().to_string();

@@ -7,7 +7,7 @@ use crate::cli::terminal::Terminal;
 use crate::cmdp::{DocumentError, solve_document};
 
 /// Solves one problem; `infeasible` is an answer like any other.
-pub(in crate::cli) fn run(args: &SolveCmdpArgs, terminal: &Terminal) -> Result<Exit, Failure> {
+pub(in crate::cli) fn run(args: &SolveCmdpArgs, terminal: Terminal) -> Result<Exit, Failure> {
     let source = load::text(&args.file)?;
     match solve_document(&source.text) {
         Ok(line) => {

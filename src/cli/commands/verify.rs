@@ -8,7 +8,7 @@ use crate::provenance::{processors, unforeseen_seed};
 use crate::verify::{Level, Options, Reenactment, Verdict, climb};
 
 /// Verifies one bundle.
-pub(in crate::cli) fn run(args: &VerifyArgs, terminal: &Terminal) -> Result<Exit, Failure> {
+pub(in crate::cli) fn run(args: &VerifyArgs, terminal: Terminal) -> Result<Exit, Failure> {
     let level = Level::from_number(args.level).ok_or_else(|| {
         Failure::not_understood(format!("`--level` goes from 0 to 5, found {}", args.level))
     })?;

@@ -210,18 +210,15 @@ impl Findings<'_> {
             fixed.push((wanted.by.clone(), value.clone()));
             self.curve(wanted, &fixed, value, tables)
         });
-        let (x_title, along) = match wanted.against {
-            Metric::TimeS => ("time (s)", "time"),
-            Metric::DistanceM => ("distance travelled (m)", "distance"),
+        let x_title = match wanted.against {
+            Metric::TimeS => "time (s)",
+            Metric::DistanceM => "distance travelled (m)",
         };
         LineChart {
             title: request.title.clone(),
             x_title: x_title.to_owned(),
             y_title: "coverage (%)".to_owned(),
-            meaning: format!(
-                "Coverage over {along}: median of the trials, band from the 10th to the 90th percentile; hollow \
-                 markers are the paper's means with one standard deviation."
-            ),
+            meaning: "median of trials, band 10th to 90th percentile".to_owned(),
             series: series.collect(),
         }
     }
