@@ -13,17 +13,22 @@ pub(super) fn coverage_table(findings: &Findings<'_>, request: &TableRequest) ->
     };
     let width = cells.iter().map(|c| name(c).chars().count()).max().unwrap_or(0).max(5);
     let mut text = format!("{}\n", request.title);
-    text.push_str(&format!(
-        "  coverage  {:width$}  {:>16} {:>6}   {:>16} {:>6}\n",
-        request.coverage_table.by, "ours", "", "paper's", ""
+    let papers = if cells.iter().any(|c| c.published.is_some()) { "paper's" } else { "" };
+    let mut line = |line: String| {
+        text.push_str(line.trim_end());
+        text.push('\n');
+    };
+    line(format!(
+        "  coverage  {:width$}  {:>16} {:>6}   {papers:>16}",
+        request.coverage_table.by, "ours", ""
     ));
     let mut last = None;
     for cell in &cells {
         let percent =
             if last == Some(cell.percent) { String::new() } else { format!("{} %", cell.percent) };
         last = Some(cell.percent);
-        text.push_str(&format!(
-            "  {percent:>8}  {:width$}  {:>16} {:>6}   {:>16} {:>6}{}\n",
+        line(format!(
+            "  {percent:>8}  {:width$}  {:>16} {:>6}   {:>16} {:>6}{}",
             name(cell),
             cell.ours.map_or_else(
                 || "not reached".to_owned(),

@@ -1,0 +1,275 @@
+//! The command line as people meet it: whole texts and exit codes.
+
+use assert_cmd::Command;
+use std::path::{Path, PathBuf};
+use tempfile::TempDir;
+
+/// A folder with a starter study in it, and a store of its own.
+struct Desk {
+    folder: TempDir,
+}
+
+/// What a command answered.
+#[derive(Debug, PartialEq)]
+struct Answer {
+    stdout: String,
+    stderr: String,
+    code: i32,
+}
+
+impl Desk {
+    fn new() -> Self {
+        let desk = Self { folder: tempfile::tempdir().unwrap() };
+        assert_eq!(desk.run(&["init", "demo"]).stdout, "reenact run demo/demo.yaml\n");
+        desk
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn write(&self, name: &str, text: &str) {
+        std::fs::write(self.path(name), text).unwrap();
+    }
+
+    fn run(&self, words: &[&str]) -> Answer {
+        let output = Command::cargo_bin("reenact")
+            .unwrap()
+            .args(words)
+            .current_dir(self.folder.path())
+            .env("REENACT_STORE", self.path("store"))
+            .env("SOURCE_DATE_EPOCH", "1600000000")
+            .output()
+            .unwrap();
+        Answer {
+            stdout: String::from_utf8(output.stdout).unwrap(),
+            stderr: String::from_utf8(output.stderr).unwrap(),
+            code: output.status.code().unwrap(),
+        }
+    }
+
+    /// Runs one short trial and gives its bundle.
+    fn bundle(&self) -> String {
+        let answer = self.run(&["run", "demo/demo.yaml", "--only", "prior=none", "--trials", "1"]);
+        assert_eq!((answer.stderr.as_str(), answer.code), ("", 0));
+        answer.stdout.lines().last().unwrap().to_owned()
+    }
+}
+
+/// `text` with every number of wall time and every digest replaced, widths kept.
+fn redacted(text: &str) -> String {
+    let mut words: Vec<String> = Vec::new();
+    for word in text.split(' ') {
+        let hex = |w: &str| w.len() >= 8 && w.bytes().all(|b| b.is_ascii_hexdigit());
+        words.push(match word.rsplit_once(':') {
+            Some((head, digest)) if hex(digest.split('\n').next().unwrap_or("")) => {
+                let rest = digest.split_once('\n').map_or(String::new(), |r| format!("\n{}", r.1));
+                format!("{head}:DIGEST{rest}")
+            }
+            _ => word.to_owned(),
+        });
+    }
+    let text = words.join(" ");
+    let (before, after) = text.split_once("simulated in ").unwrap_or((&text, ""));
+    let after =
+        after.split_once(" s,").map_or(String::new(), |r| format!("simulated in T s,{}", r.1));
+    let name = |line: &str| {
+        if line.starts_with("artifacts/") {
+            "artifacts/demo-XXXXXXXX.zip".to_owned()
+        } else {
+            line.to_owned()
+        }
+    };
+    (before.to_owned() + &after).lines().map(name).collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn a_run_prints_the_table_the_digest_and_the_bundle() {
+    let desk = Desk::new();
+    let answer = desk.run(&["run", "demo/demo.yaml", "--only", "prior=none", "--trials", "1"]);
+    assert_eq!((answer.stderr.as_str(), answer.code), ("", 0));
+    insta::assert_snapshot!(redacted(&answer.stdout));
+    let last: Vec<&str> = answer.stdout.lines().rev().take(2).collect();
+    assert!(last[1].starts_with("results sha256:") && last[1].len() == 15 + 64);
+    let short = &last[1][15..23];
+    assert_eq!(last[0], format!("artifacts/demo-{short}.zip"));
+    assert!(desk.path(last[0]).exists());
+}
+
+#[test]
+fn json_is_one_line_with_the_documented_keys_and_a_second_run_is_cached() {
+    let desk = Desk::new();
+    let bundle = desk.bundle();
+    let words =
+        ["run", "demo/demo.yaml", "--only", "prior=none", "--trials", "1", "--format", "json"];
+    let answer = desk.run(&words);
+    assert_eq!((answer.stdout.lines().count(), answer.code), (1, 0));
+    let line: serde_json::Value = serde_json::from_str(&answer.stdout).unwrap();
+    let keys: Vec<&str> = line.as_object().unwrap().keys().map(String::as_str).collect();
+    assert_eq!(
+        keys,
+        [
+            "bundle",
+            "bundle_id",
+            "cached",
+            "claims",
+            "failed",
+            "partial",
+            "results_digest",
+            "sim_seconds",
+            "study_digest",
+            "trials",
+            "wall_seconds",
+        ]
+    );
+    assert_eq!(
+        (&line["cached"], &line["failed"], &line["partial"]),
+        (&1.into(), &0.into(), &true.into())
+    );
+    let path = PathBuf::from(line["bundle"].as_str().unwrap());
+    assert!(path.is_absolute() && path.ends_with(&bundle));
+}
+
+#[test]
+fn a_bundle_verifies_to_the_top_and_replays_to_the_same_record() {
+    let desk = Desk::new();
+    let bundle = desk.bundle();
+    let answer = desk.run(&["verify", &bundle, "--level", "5"]);
+    assert_eq!(answer.code, 0, "{answer:?}");
+    insta::assert_snapshot!(redacted(&answer.stdout));
+    let answer =
+        desk.run(&["replay", &bundle, "none/0", "--html", "replay.html", "--svg", "still.svg"]);
+    assert_eq!(
+        answer,
+        Answer {
+            stdout: "none/0: the re-enacted record equals the archived one\n".into(),
+            stderr: "wrote replay.html\nwrote still.svg\n".into(),
+            code: 0,
+        }
+    );
+    let answer = desk.run(&["report", &bundle, "-o", "report.html"]);
+    assert_eq!((answer.stdout.as_str(), answer.code), ("report.html\n", 0));
+    for (page, holds) in
+        [("replay.html", "<canvas"), ("report.html", "Distance travelled"), ("still.svg", "<svg")]
+    {
+        let text = std::fs::read_to_string(desk.path(page)).unwrap();
+        assert!(text.contains(holds), "{page}");
+    }
+}
+
+#[test]
+fn a_changed_number_is_found_and_named() {
+    let desk = Desk::new();
+    let bundle = desk.bundle();
+    let folder = desk.run(&["export", &bundle, "--dir", "-o", "out"]).stdout.trim().to_owned();
+    let table = desk.path(&folder).join("data/results/trials.csv");
+    let text = std::fs::read_to_string(&table).unwrap();
+    std::fs::write(&table, text.replace("explored", "stuck")).unwrap();
+    let answer = desk.run(&["verify", &folder]);
+    assert_eq!(answer.code, 1);
+    let last: Vec<&str> = answer.stdout.lines().rev().take(2).collect();
+    assert_eq!(
+        last,
+        [
+            "reached level 0 (safe) of level 3 (derived): the bundle is not what it says",
+            "error at level 3: data/results/trials.csv: expected `explored` in row 1, column `outcome`, as the \
+             records give, found `stuck`",
+        ]
+    );
+}
+
+#[test]
+fn every_fault_of_a_manifest_is_told_at_its_place() {
+    let desk = Desk::new();
+    let manifest = std::fs::read_to_string(desk.path("demo/demo.yaml")).unwrap();
+    desk.write(
+        "demo/demo.yaml",
+        &manifest.replace("trials: 5", "trails: 5").replace("floor-plan-of:", "floor-plan-off:"),
+    );
+    let answer = desk.run(&["check", "demo/demo.yaml"]);
+    assert_eq!((answer.stdout.as_str(), answer.code), ("", 2));
+    insta::assert_snapshot!(answer.stderr);
+}
+
+#[test]
+fn requests_that_are_not_understood_end_with_2() {
+    let desk = Desk::new();
+    for (words, says) in [
+        (vec!["check", "nope.yaml"], "error: cannot read `nope.yaml`: no such file\n"),
+        (vec!["verify", "nope.zip"], "error: cannot read `nope.zip`: no such file\n"),
+        (
+            vec!["run", "demo/demo.yaml", "--only", "prior=flor-plan"],
+            "error: `flor-plan` is not a value of the factor `prior`: did you mean `floor-plan`? (known: none, \
+             floor-plan)\n",
+        ),
+        (
+            vec!["run", "demo/demo.yaml", "--jobs", "0"],
+            "error: `--jobs` must be at least 1, found 0\n",
+        ),
+        (
+            vec!["plan", "demo/demo.yaml", "--explain", "none/77"],
+            "error: no trial `none/77` in this plan; it begins with `none/0`\n",
+        ),
+        (vec!["init", "demo"], "error: `demo` exists already; choose another name\n"),
+    ] {
+        let answer = desk.run(&words);
+        assert_eq!((answer.stderr.as_str(), answer.code), (says, 2), "{words:?}");
+        assert_eq!(answer.stdout, "", "{words:?}");
+    }
+    assert_eq!(desk.run(&["frobnicate"]).code, 2);
+    assert_eq!(desk.run(&["--help"]).code, 0);
+}
+
+#[test]
+fn an_unreadable_archive_is_an_answer_not_a_failure() {
+    let desk = Desk::new();
+    desk.write("x.zip", "hello");
+    let answer = desk.run(&["verify", "x.zip"]);
+    assert_eq!(answer.code, 1);
+    assert!(answer.stdout.starts_with("  0 safe      failed\n"), "{}", answer.stdout);
+}
+
+#[test]
+fn show_says_what_was_understood() {
+    let desk = Desk::new();
+    let answer = desk.run(&["show", "demo/apartment.yaml", "-o", "world.svg"]);
+    assert_eq!((answer.stderr.as_str(), answer.code), ("wrote world.svg\n", 0));
+    insta::assert_snapshot!(redacted(&answer.stdout));
+    assert!(std::fs::read_to_string(desk.path("world.svg")).unwrap().contains("</svg>"));
+}
+
+#[test]
+fn a_constrained_mdp_is_solved_refused_or_infeasible() {
+    let desk = Desk::new();
+    let problem = r#"{"states": ["here", "goal"], "actions": ["walk", "run"], "absorbing": [1], "initial": [[0, 1.0]],
+ "transitions": [[0, 0, 1, 1.0], [0, 1, 1, 1.0]], "primary": [[0, 0, 4.0], [0, 1, 1.0]],
+ "secondary": [{"name": "risk", "bound": 0.5, "costs": [[0, 1, 1.0]]}]}"#;
+    desk.write("p.json", problem);
+    let answer = desk.run(&["solve-cmdp", "p.json"]);
+    let solved =
+        r#"{"status":"optimal","primary":2.5,"secondary":[0.5],"policy":[[0,0,0.5],[0,1,0.5]]}"#;
+    assert_eq!((answer.stdout.trim_end(), answer.code), (solved, 0));
+    desk.write("i.json", &problem.replace("[[0, 1, 1.0]]}", "[[0, 0, 1.0], [0, 1, 1.0]]}"));
+    let answer = desk.run(&["solve-cmdp", "i.json"]);
+    assert!(answer.stdout.contains(r#""status":"infeasible""#) && answer.code == 0, "{answer:?}");
+    desk.write("b.json", &problem.replace("\"absorbing\": [1]", "\"absorbing\": [7]"));
+    let answer = desk.run(&["solve-cmdp", "b.json"]);
+    let says = "error: b.json: absorbing[0]: state 7 does not exist; expected an index below 2\n";
+    assert_eq!((answer.stderr.as_str(), answer.code), (says, 2));
+}
+
+/// The small bundle in the repository, as a reviewer of years to come would check it.
+#[test]
+fn the_published_quickstart_bundle_still_verifies() {
+    let bundle = Path::new(env!("CARGO_MANIFEST_DIR")).join("artifacts/quickstart-published.zip");
+    let desk = Desk::new();
+    let words =
+        ["verify", bundle.to_str().unwrap(), "--level", "4", "--sample", "2", "--sample-seed", "1"];
+    let answer = desk.run(&words);
+    assert_eq!(
+        answer.code, 0,
+        "{}\nwhere trials were meant to change, publish the quickstart's bundle anew \
+        (SOURCE_DATE_EPOCH=0 reenact run manifests/quickstart.yaml) and say so in CHANGELOG.md",
+        answer.stdout
+    );
+}
