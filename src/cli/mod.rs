@@ -17,6 +17,7 @@ use args::{Arguments, Command};
 use clap::Parser as _;
 use exit::Failure;
 use std::ffi::OsString;
+use std::panic::catch_unwind;
 use terminal::Terminal;
 
 /// Runs the command that `words` (the first being the program's name) ask for.
@@ -37,13 +38,30 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> Exit {
         }
     };
     let terminal = Terminal::new(&environment);
-    match dispatch(arguments.command, &environment, terminal) {
-        Ok(exit) => exit,
-        Err(Failure { exit, message }) => {
+    silence_panicking_trials();
+    match catch_unwind(|| dispatch(arguments.command, &environment, terminal)) {
+        Ok(Ok(exit)) => exit,
+        Ok(Err(Failure { exit, message })) => {
             terminal.failure(&message);
             exit
         }
+        Err(_) => {
+            terminal.error("this is a bug in reenact: please report it with the lines above");
+            Exit::Failed
+        }
     }
+}
+
+/// A panicking trial becomes a record with its cause, which is told with the results: the usual report would
+/// say it twice, in the middle of the progress bar.
+fn silence_panicking_trials() {
+    let usual = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        let is_trial = std::thread::current().name().is_some_and(|n| n.starts_with("trial-"));
+        if !is_trial {
+            usual(panic);
+        }
+    }));
 }
 
 fn dispatch(

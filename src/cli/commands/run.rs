@@ -25,8 +25,6 @@ pub(in crate::cli) fn run(
     if args.jobs == Some(0) {
         return Err(Failure::not_understood("`--jobs` must be at least 1, found 0"));
     }
-    // A panicking trial becomes a record with its cause: the default report would say it twice.
-    std::panic::set_hook(Box::new(|_| {}));
     let mut exit = Exit::Yes;
     for manifest in &args.manifests {
         if run_one(manifest, args, environment, terminal)? == Exit::Failed {
