@@ -1,0 +1,24 @@
+//! The quickstart's plan: the same world, robot and parameters for every benchmark.
+
+use reenact::manifest::{self, Inputs, WrittenIn};
+use reenact::plan::Plan;
+use std::path::{Path, PathBuf};
+
+/// Files relative to the manifests.
+struct Files(PathBuf);
+
+impl Inputs for Files {
+    fn read(&self, as_written: &str, _: WrittenIn) -> Result<Vec<u8>, String> {
+        std::fs::read(self.0.join(as_written)).map_err(|error| error.to_string())
+    }
+}
+
+/// All trials of `manifests/quickstart.yaml`.
+pub(crate) fn plan() -> Plan {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("manifests");
+    let text = std::fs::read_to_string(folder.join("quickstart.yaml")).expect("it is shipped");
+    let source = reenact::document::Source::new("quickstart.yaml", text);
+    let (experiment, _) = manifest::resolve(&source, &[], &Files(folder))
+        .unwrap_or_else(|faults| panic!("the quickstart has {} faults", faults.len()));
+    Plan::of(experiment)
+}

@@ -1,0 +1,27 @@
+//! A manifest of anyone, with a robot and a world that exist.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use reenact::document::Source;
+use reenact::manifest::{self, Inputs, WrittenIn};
+
+struct Shipped;
+
+impl Inputs for Shipped {
+    fn read(&self, as_written: &str, _: WrittenIn) -> Result<Vec<u8>, String> {
+        match as_written.rsplit('/').next() {
+            Some("kobuki.urdf") => Ok(include_bytes!("../../robots/kobuki.urdf").to_vec()),
+            Some("basic.yaml") => Ok(include_bytes!("../../worlds/basic.yaml").to_vec()),
+            _ => Err("no such file".to_owned()),
+        }
+    }
+}
+
+fuzz_target!(|text: &str| {
+    if let Err(faults) = manifest::resolve(&Source::new("fuzz.yaml", text), &[], &Shipped) {
+        assert!(!faults.is_empty(), "a refusal says why");
+        for fault in faults {
+            fault.render(false);
+        }
+    }
+});
