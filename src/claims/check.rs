@@ -6,6 +6,7 @@ use super::expect::Expect;
 use super::metric::{Metric, WALL_TIME};
 use super::power::Assume;
 use super::terms::{Censored, Order, Pairs, Sides, Statistic, Test};
+use crate::document::suggestion;
 
 /// All faults of a manifest's claims: those of each ([`Claim::check`]) and ids used twice.
 pub fn check_all(
@@ -26,12 +27,8 @@ pub fn check_all(
 
 /// What there is, and the nearest name to what was asked for.
 fn unknown<'a>(kind: &str, name: &str, known: impl Iterator<Item = &'a String> + Clone) -> String {
-    let near = known
-        .clone()
-        .map(|k| (strsim::jaro_winkler(k, name), k))
-        .filter(|(likeness, _)| *likeness > 0.8)
-        .max_by(|a, b| a.0.total_cmp(&b.0))
-        .map(|(_, k)| format!("; did you mean `{k}`?"))
+    let near = suggestion(name, known.clone().map(String::as_str))
+        .map(|near| format!("; did you mean `{near}`?"))
         .unwrap_or_default();
     let all: Vec<&str> = known.map(String::as_str).collect();
     format!("unknown {kind} `{name}`{near} (known: {})", all.join(", "))
