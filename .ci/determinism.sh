@@ -18,7 +18,6 @@ all=(release jobs-1 jobs-2 shuffled elsewhere dev opt0 qemu64 aarch64)
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-: >"$work/table"
 
 # Prints the results digest of a run; all further arguments are the command that runs the program.
 digest() {
@@ -37,12 +36,10 @@ jobs-2() { ensure_release && digest "$work/reenact-release" run --no-cache --job
 # The second condition first, then one trial of the first, then the whole study from what the store has and has not.
 shuffled() {
   ensure_release
-  local store=$work/store
-  REENACT_STORE=$store "$work/reenact-release" run "${study[@]}" --only prior=floor-plan --out "$work/out" >"$work/log"
-  REENACT_STORE=$store "$work/reenact-release" run "${study[@]}" --only prior=none --trials 1 --out "$work/out" \
-    >>"$work/log" 2>&1 ||
-    REENACT_STORE=$store "$work/reenact-release" run "${study[0]}" --only prior=none --trials 1 --out "$work/out" >>"$work/log"
-  REENACT_STORE=$store digest "$work/reenact-release" run
+  local run=(env "REENACT_STORE=$work/store" "$work/reenact-release" run)
+  "${run[@]}" "${study[@]}" --only prior=floor-plan --out "$work/parts" >"$work/log" || return 1
+  "${run[@]}" "${study[0]}" --trials 1 --only prior=none --out "$work/parts" >>"$work/log" || return 1
+  digest "${run[@]}"
 }
 # Another directory and other ways to write numbers, letters and hours.
 elsewhere() {
@@ -52,13 +49,16 @@ elsewhere() {
   (cd "$work/başka yer" &&
     LC_ALL=tr_TR.UTF-8 LANG=tr_TR.UTF-8 TZ=Asia/Kathmandu digest "$work/reenact-release" run --no-cache)
 }
+# Built as a side effect of a test, whose dependencies are those that `cargo test` has built already; `cargo build` would
+# select other features and build them again.
+build_dev() { cargo test --quiet --no-run --test architecture; }
 # Optimised a little, with debug assertions and overflow checks.
 dev() {
-  cargo build --quiet && keep dev "$target/debug/reenact" && digest "$work/reenact-dev" run --no-cache
+  build_dev && keep dev "$target/debug/reenact" && digest "$work/reenact-dev" run --no-cache
 }
 # Our code not optimised at all. The dependencies keep the dev profile's optimisation, so they are not built again.
 opt0() {
-  CARGO_PROFILE_DEV_OPT_LEVEL=0 cargo build --quiet && keep opt0 "$target/debug/reenact" &&
+  CARGO_PROFILE_DEV_OPT_LEVEL=0 build_dev && keep opt0 "$target/debug/reenact" &&
     digest "$work/reenact-opt0" run --no-cache
 }
 # An x86-64 CPU of 2003: no FMA, AVX or SSE4.
@@ -83,6 +83,6 @@ for platform in "$@"; do
   elif [ "$found" != "$expected" ]; then
     word=DIFFERENT failed=1
   fi
-  printf '%-10s %-72s %5d s  %s\n' "$platform" "${found:-none}" $((SECONDS - began)) "$word" | tee -a "$work/table"
+  printf '%-10s %-72s %5d s  %s\n' "$platform" "${found:-none}" $((SECONDS - began)) "$word"
 done
 exit $failed
