@@ -135,7 +135,7 @@ fn check(file: &str, text: &str, studies: &[String]) -> Vec<Violation> {
             ["crate", imported, ..] => {
                 layers(file, &module, imported, |rule, remedy| fault(*line, rule, remedy));
                 mind_and_studies(file, &module, &names[1..], studies, |rule, remedy| {
-                    fault(*line, rule, remedy)
+                    fault(*line, rule, remedy);
                 });
             }
             [foreign, ..] => {
