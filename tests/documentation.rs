@@ -1,6 +1,7 @@
 //! Documentation that rots is worse than none: links point somewhere, and every command is mentioned.
 
-use reenact::cli;
+use reenact::document::Source;
+use reenact::{cli, world};
 use std::path::{Path, PathBuf};
 
 fn root() -> &'static Path {
@@ -87,4 +88,13 @@ fn the_readme_mentions_every_command() {
         .filter(|name| !readme.contains(&format!("`{name}`")))
         .collect();
     assert_eq!(missing, Vec::<String>::new());
+}
+
+#[test]
+fn the_example_of_a_world_is_one() {
+    let page = std::fs::read_to_string(root().join("docs/world.md")).unwrap();
+    let example = page.split("```yaml\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
+    let world = world::document::read(&Source::new("docs/world.md", example), None).unwrap();
+    assert_eq!(world.layers(), ["furniture", "walls"]);
+    assert_eq!(world.warnings, Vec::<String>::new());
 }
