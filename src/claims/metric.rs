@@ -6,7 +6,7 @@ use std::fmt;
 pub const SUCCESS: [&str; 2] = ["reached", "explored"];
 
 /// The outcome of a trial that the engine failed to run: no result of any kind.
-pub const FAILED: &str = "failed";
+pub const FAILED: &str = "panicked";
 
 /// How the names of metrics begin that depend on the machine, not on the study.
 pub const WALL_TIME: &str = "wall-time";

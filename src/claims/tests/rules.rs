@@ -306,7 +306,7 @@ fn nothing_is_judged_on_too_little_or_on_failed_runs() {
     let mut failed = as_printed();
     let place = failed.column("outcome").unwrap();
     let last = failed.rows.len() - 1;
-    failed.rows[last][place] = "failed".into();
+    failed.rows[last][place] = "panicked".into();
     let found = verdict_on(&failed, "{between: {metric: success, where: {start: C}, high: 0.9}}");
     assert_eq!(found.reason, "1 of 1000 trials of (start=C) failed to run");
     let none =

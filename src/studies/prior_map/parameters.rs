@@ -70,8 +70,8 @@ parameters!(
 parameters!(
     /// Building the map from scans, in GMapping's manner.
     Mapping {
-        /// Number of particles; 1 is mapping with known poses, as the simulated study really ran.
-        #[schemars(range(min = 1))]
+        /// Number of particles: 1, mapping with known poses, as the simulated study really ran. More are not there yet.
+        #[schemars(range(min = 1, max = 1))]
         particles: u32 = 1,
         /// Side of a map cell (m), above 0.
         #[schemars(extend("exclusiveMinimum" = 0))]
