@@ -232,7 +232,7 @@ mod tests {
     }
 
     const TRIALS: &str = "key,start,strategy,trial,outcome,time-s\n\
-        k1,A,random,0,reached,10.5\nk2,A,random,1,late,\nk3,A,frontier,0,failed,\nk4,B,random,0,collided,3\n";
+        k1,A,random,0,reached,10.5\nk2,A,random,1,late,\nk3,A,frontier,0,panicked,\nk4,B,random,0,collided,3\n";
 
     #[test]
     fn trials_are_grouped_and_never_dropped() {

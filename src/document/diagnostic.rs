@@ -149,7 +149,12 @@ pub fn suggestion<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> O
     known
         .into_iter()
         .map(|candidate| (strsim::damerau_levenshtein(word, candidate), candidate))
-        .filter(|(distance, candidate)| *distance <= 1 + candidate.chars().count() / 4)
+        .filter(|(distance, candidate)| {
+            let length = word.chars().count();
+            // Begun and not ended; or near, with something of the word left: `D` is no slip for `A`.
+            let is_begun = length >= 3 && candidate.starts_with(word);
+            is_begun || (*distance <= 1 + candidate.chars().count() / 4 && *distance < length)
+        })
         .min()
         .map(|(_, candidate)| candidate)
 }
@@ -200,5 +205,7 @@ error: unknown key `trails`
     fn near_words_are_suggested_and_far_ones_are_not() {
         assert_eq!(suggestion("footprnt", ["floor-plan", "footprint"]), Some("footprint"));
         assert_eq!(suggestion("zebra", ["floor-plan", "footprint"]), None);
+        assert_eq!(suggestion("D", ["A", "B"]), None);
+        assert_eq!(suggestion("succes", ["success-percent"]), Some("success-percent"));
     }
 }
