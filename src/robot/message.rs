@@ -56,3 +56,25 @@ pub struct Odometry {
     /// Velocity (m/s, rad/s).
     pub twist: Twist,
 }
+
+/// A tag that a logical camera detects (after `gazebo_msgs`' `LogicalCameraImage`): an opaque id, a colour, and where it
+/// is as seen from the robot.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Detection {
+    /// Opaque id: equal ids are the same tag, and nothing else can be told from one.
+    pub id: String,
+    /// Colour, by name.
+    pub color: String,
+    /// Where it stands and faces, in the robot's base frame (m, rad).
+    pub pose: Pose,
+}
+
+/// What a compass reads: the heading of the base frame's x axis, counter-clockwise from east (rad, in -pi..=pi), with the
+/// sensor's error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CompassReading {
+    /// When it was read.
+    pub stamp: Tick,
+    /// Heading (rad).
+    pub heading: f64,
+}

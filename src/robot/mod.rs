@@ -1,12 +1,12 @@
 //! The body as described (footprint, drive, sensors), and the messages between body and mind.
 //!
-//! A mind (mapping, navigation, strategies) sees [`Scan`] and [`Odometry`] and answers with [`Twist`];
-//! nothing else crosses.
+//! A mind (mapping, navigation, strategies) sees [`Scan`], [`Odometry`], [`Detection`]s and [`CompassReading`]s and answers
+//! with [`Twist`]; nothing else crosses.
 
 mod message;
 pub mod urdf;
 
-pub use message::{Odometry, Scan, Twist};
+pub use message::{CompassReading, Detection, Odometry, Scan, Twist};
 
 use crate::digest::{MeaningDigest, Sha256Digest};
 use crate::geometry::{Outline, Pose};
