@@ -3,6 +3,7 @@
 //! A study is a folder here and one arm of [`Setup`]; the two never import one another. What all of them
 //! share, the trial's identity and its record, is in this module.
 
+pub mod deadline;
 pub mod prior_map;
 mod record;
 pub mod recording;

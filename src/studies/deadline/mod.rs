@@ -1,0 +1,15 @@
+//! The deadline study: J. L. Susa Rincon, S. Carpin, "Time-constrained exploration using toposemantic spatial models: a
+//! reproducible approach", IEEE Robotics & Automation Magazine 26(3), 2019, pages 78 to 87.
+
+#[cfg(test)]
+mod building;
+pub mod exploration;
+pub mod intersection;
+pub mod navigation;
+pub mod planner;
+mod rules;
+pub mod schedule;
+pub mod strategy;
+pub mod toposemantic_map;
+
+pub use rules::{Rules, UnplannedSpeed};
