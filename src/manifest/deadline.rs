@@ -43,13 +43,8 @@ impl Resolver<'_> {
             Some(needed) => Some(needed?),
             None => None,
         };
-        let setup = deadline::Setup {
-            world: Arc::clone(&world.world),
-            robot,
-            start,
-            calibration,
-            parameters,
-        };
+        let shared = Arc::clone(&world.world);
+        let setup = deadline::Setup::new(shared, robot, start, calibration, parameters);
         lint::check_deadline(&setup, &mut self.faults);
         let meanings = Meanings { robot: robot_meaning, world: world.meaning, prior: None };
         let described = json!({ "robot": robot_file, "world": world.described });
