@@ -31,8 +31,10 @@ fn circle(bencher: divan::Bencher<'_, '_>, reads_scans: bool) {
             solid: &solid,
             robot,
             lidar: lidar.clone(),
+            camera: None,
+            compass: None,
             start: setup.start(),
-            drive_noise: DriveNoise { linear: 0.0, angular: 0.0, correlation: Seconds(0.5) },
+            drive_noise: DriveNoise::NONE,
             odometry_noise: OdometryNoise { distance: 0.0, heading: 0.0 },
         };
         let mut sim = Simulator::new(scene, &Seeds::new(1, vec![]));
