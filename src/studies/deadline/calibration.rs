@@ -1,7 +1,7 @@
 //! The six (time, failure) pairs of the planner's maneuvers (section 6, "Maneuvers"), measured by a calibration
 //! experiment of isolated passages and handed to the study as an input.
 
-use super::mission::Task;
+use super::parameters::Task;
 use crate::cmdp::build::{Expectation, Maneuvers, Motion, Speed};
 use crate::stats::distribution::student_t_quantile;
 use crate::stats::proportion::{Proportion, wilson};
@@ -253,7 +253,7 @@ fn pair<'a>(
         passages += 1;
         collided += u64::from(record.outcome == Outcome::Collided);
         if record.outcome == Outcome::Reached {
-            times.push(record.sim_seconds);
+            times.extend(record.measures.get("time-s").copied().flatten());
         }
     }
     let reached = times.len() as u64;
@@ -282,6 +282,20 @@ fn pair<'a>(
     })
 }
 
+/// The name of a maneuver in measures: `door-left-slow`.
+pub fn maneuver_name(motion: Motion, speed: Speed) -> String {
+    let motion = match motion {
+        Motion::Corridor => "corridor",
+        Motion::DoorLeft => "door-left",
+        Motion::DoorRight => "door-right",
+    };
+    let speed = match speed {
+        Speed::Slow => "slow",
+        Speed::Fast => "fast",
+    };
+    format!("{motion}-{speed}")
+}
+
 /// The name of a motion or speed in files.
 fn name(value: &impl serde::Serialize) -> String {
     json!(value).as_str().unwrap_or_default().to_owned()
@@ -292,16 +306,16 @@ mod tests {
     use super::*;
     use crate::digest::{Sha256Digest, TrialKey};
 
-    fn record(outcome: Outcome, sim_seconds: f64) -> TrialRecord {
+    fn record(outcome: Outcome, time_s: f64) -> TrialRecord {
         TrialRecord {
             key: TrialKey(Sha256Digest::of("a passage")),
             condition: Vec::new(),
             trial: 0,
             outcome,
             cause: String::new(),
-            measures: std::collections::BTreeMap::new(),
+            measures: [("time-s".to_owned(), Some(time_s))].into(),
             series: Vec::new(),
-            sim_seconds,
+            sim_seconds: time_s,
             chain: Vec::new(),
         }
     }

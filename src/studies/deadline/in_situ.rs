@@ -1,7 +1,6 @@
 //! The six maneuvers as the calibration measured them, beside what became of them in the study's own trials.
 
-use super::calibration::{MOTIONS, Pair, SPEEDS};
-use super::mission::maneuver_name;
+use super::calibration::{MOTIONS, Pair, SPEEDS, maneuver_name};
 use super::requests::ManeuverTable;
 use crate::stats::proportion::{Proportion, wilson};
 use crate::studies::TrialRecord;

@@ -23,8 +23,8 @@ pub mod toposemantic_map;
 
 pub use calibration::Calibration;
 pub use in_situ::ManeuverRow;
-pub use mission::{Task, measures, run, tag_scheme};
-pub use parameters::{Mission, Parameters, Passage, Sensing};
+pub use mission::{measures, run, tag_scheme};
+pub use parameters::{ErrorShape, Hiding, Mission, Parameters, Passage, Sensing, Task};
 pub use requests::{ManeuverTable, OutcomeTable, Percent, Quantity};
 pub use rules::{Rules, UnplannedSpeed};
 

@@ -1,7 +1,6 @@
 //! Parameters of the deadline study. Those the paper states have its values as default; what it leaves out has a default
 //! here and, in our manifests, a `why`.
 
-use super::mission::Task;
 use crate::cmdp::build::{Motion, Speed};
 use crate::studies::parameters;
 use schemars::JsonSchema;
@@ -12,6 +11,12 @@ parameters!(
     Parameters {
         /// Errors of actuators and sensors, and what the camera sees.
         sensing: Sensing = Sensing::default(),
+        /// What the tags mean to the Intersection Detection System.
+        perception: Perception = Perception::default(),
+        /// How maneuvers are driven.
+        pilot: PilotRule = PilotRule::default(),
+        /// How the robot explores, plans and hurries.
+        rules: Rules = Rules::default(),
         /// What a trial is and when it ends.
         mission: Mission = Mission::default(),
         /// The maneuver of an isolated passage; nothing to an exploration.
@@ -20,22 +25,64 @@ parameters!(
 );
 
 parameters!(
-    /// Errors of actuators and sensors (section 6: 25 % on velocity commands, 5 % on orientation readings).
+    /// Errors of actuators and sensors (section 6: "a 25% error is added to linear and angular velocity commands, and a 5%
+    /// error is added to orientation readings"), and what the camera sees. The paper says neither how the errors are
+    /// distributed nor how long one lasts.
     Sensing {
         /// Standard deviation of the Gaussian noise on ranges (m), 0 or more; `null` is the robot's own.
         #[schemars(range(min = 0.0))]
         range_noise_sd_m: Option<f64> = None,
-        /// Size of the error of the executed linear speed, as a share of the command, 0 to 1.
+        /// How the errors of the drive are distributed.
+        drive_noise: ErrorShape = ErrorShape::Uniform,
+        /// Size of the error of the executed linear speed, as a share of the command, 0 to 1: a bound where uniform, a
+        /// standard deviation where Gaussian.
         #[schemars(range(min = 0.0, max = 1.0))]
         drive_noise_linear: f64 = 0.25,
         /// Size of the error of the executed angular speed, as a share of the command, 0 to 1.
         #[schemars(range(min = 0.0, max = 1.0))]
         drive_noise_angular: f64 = 0.25,
-        /// How long one error of the drive lasts (s), above 0.
+        /// How long one error of the drive lasts (s), above 0: 0.1 is white at the control rate, 12 about one a maneuver.
         #[schemars(extend("exclusiveMinimum" = 0))]
         drive_noise_correlation_s: f64 = 0.1,
+        /// How the errors of the compass are distributed; each reading has its own.
+        compass_noise: ErrorShape = ErrorShape::Uniform,
+        /// Size of the error of the compass (degrees), 0 or more: 5 % of half a turn.
+        #[schemars(range(min = 0.0, max = 180.0))]
+        compass_noise_deg: f64 = 9.0,
+        /// Whether walls hide tags from the logical camera; Gazebo's sees through them.
+        occlusion: Hiding = Hiding::None,
     }
 );
+
+/// How an error is distributed around zero.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ErrorShape {
+    /// Uniform between minus and plus its size.
+    Uniform,
+    /// Normal, its size the standard deviation.
+    Gaussian,
+}
+
+/// What hides tags from the logical camera.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Hiding {
+    /// Nothing.
+    None,
+    /// Walls.
+    Walls,
+}
+
+/// What a trial is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Task {
+    /// Algorithm 3: explore until the goal is reached.
+    Exploration,
+    /// One isolated maneuver, to measure what it takes.
+    Passage,
+}
 
 parameters!(
     /// What a trial is and when it ends.
@@ -45,6 +92,10 @@ parameters!(
         /// The global temporal deadline T (s), above 0.
         #[schemars(extend("exclusiveMinimum" = 0))]
         deadline_s: f64 = 680.0,
+        /// A trial that misses its deadline counts as stalled, not late, where it had found no new vertex for this long (s)
+        /// before it, above 0.
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        stalled_after_s: f64 = 300.0,
     }
 );
 

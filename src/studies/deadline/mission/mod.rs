@@ -7,10 +7,8 @@ mod tally;
 #[cfg(test)]
 mod tests;
 
-pub(super) use tally::name as maneuver_name;
-
-use super::Setup;
-use super::calibration::{MOTIONS, SPEEDS};
+use super::calibration::{MOTIONS, SPEEDS, maneuver_name};
+use super::{Setup, Task};
 use crate::geometry::Outline;
 use crate::robot::Lidar;
 use crate::studies::recording::Recording;
@@ -18,19 +16,7 @@ use crate::studies::state_chain::StateChain;
 use crate::studies::{Outcome, TrialRecord, TrialSpec};
 use crate::units::{Seconds, Tick};
 use crate::world::topology::{TagScheme, Topology};
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-
-/// What a trial is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Task {
-    /// Algorithm 3: explore until the goal is reached.
-    Exploration,
-    /// One isolated maneuver, to measure what it takes.
-    Passage,
-}
 
 /// What claims and tables may speak of besides outcomes: the columns of `results/trials.csv`.
 pub fn measures() -> Vec<String> {
@@ -60,7 +46,7 @@ pub fn measures() -> Vec<String> {
     .to_vec();
     for motion in MOTIONS {
         for speed in SPEEDS {
-            let name = tally::name(motion, speed);
+            let name = maneuver_name(motion, speed);
             let kinds = ["passages", "arrived", "collisions", "total-s"];
             names.extend(kinds.map(|kind| format!("{name}-{kind}")));
         }
@@ -146,15 +132,18 @@ impl Ending {
     }
 }
 
+/// The record of a trial whose clock `began` at that tick.
 fn record(
     spec: &TrialSpec,
     ending: Ending,
+    began: Tick,
     mut measures: BTreeMap<String, Option<f64>>,
     chain: &StateChain,
 ) -> TrialRecord {
     let Seconds(seconds) = ending.at.seconds();
     // As in Table 1, a time belongs to trials that arrived.
-    let time = (ending.outcome == Outcome::Reached).then_some(seconds);
+    let time = Tick(ending.at.0 - began.0).seconds().get();
+    let time = (ending.outcome == Outcome::Reached).then_some(time);
     measures.insert("time-s".to_owned(), time);
     TrialRecord {
         key: spec.key,

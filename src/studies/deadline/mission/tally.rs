@@ -1,25 +1,11 @@
 //! What is counted over a trial: maneuvers by motion and speed, and how plans stood to their deadlines.
 
 use crate::cmdp::build::{Motion, Speed};
-use crate::studies::deadline::calibration::{MOTIONS, SPEEDS};
+use crate::studies::deadline::calibration::{MOTIONS, SPEEDS, maneuver_name};
 use crate::studies::deadline::exploration::Explorer;
 use crate::studies::deadline::planner::Status;
 use crate::units::{Seconds, Tick};
 use std::collections::BTreeMap;
-
-/// The name of a maneuver in measures: `door-left-slow`.
-pub(super) fn name(motion: Motion, speed: Speed) -> String {
-    let motion = match motion {
-        Motion::Corridor => "corridor",
-        Motion::DoorLeft => "door-left",
-        Motion::DoorRight => "door-right",
-    };
-    let speed = match speed {
-        Speed::Slow => "slow",
-        Speed::Fast => "fast",
-    };
-    format!("{motion}-{speed}")
-}
 
 /// How one maneuver went over a trial.
 #[derive(Debug, Clone, Copy, Default)]
@@ -75,7 +61,7 @@ impl Tally {
         let mut totals = [(0, 0); 2];
         for (row, motion) in self.counts.iter().zip(MOTIONS) {
             for ((count, speed), total) in row.iter().zip(SPEEDS).zip(&mut totals) {
-                let name = name(motion, speed);
+                let name = maneuver_name(motion, speed);
                 put(format!("{name}-passages"), f64::from(count.begun));
                 put(format!("{name}-arrived"), f64::from(count.arrived));
                 put(format!("{name}-collisions"), f64::from(count.collided));

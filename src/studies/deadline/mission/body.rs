@@ -1,0 +1,207 @@
+//! The robot below its decisions: the simulator with its sensors, the pilot, and the Intersection Detection System between
+//! them.
+
+use super::Prepared;
+use crate::geometry::{Cardinal, Pose};
+use crate::navigation::maneuver::{self, CONTROL_PERIOD, Leg, Pilot, Sense, SpeedLimits};
+use crate::robot::{CompassReading, Detection, Scan};
+use crate::rng::Seeds;
+use crate::sim::{
+    CameraScene, CompassNoise, Distribution, DriveNoise, Occlusion, OdometryNoise, Scene, Simulator,
+};
+use crate::studies::deadline::intersection::{Intersection, Opening};
+use crate::studies::deadline::intersection_detection::IntersectionDetection;
+use crate::studies::deadline::{ErrorShape, Hiding, Setup};
+use crate::cmdp::build::Speed;
+use crate::studies::recording::{Frame, Recording};
+use crate::studies::state_chain::StateChain;
+use crate::units::{Radians, Seconds, Tick};
+
+/// What happened within a control period.
+#[derive(Debug)]
+pub(super) enum Happening {
+    /// Nothing that anyone must decide on.
+    OnTheWay,
+    /// The body touches something.
+    Contact,
+    /// The robot is at a vertex.
+    Arrived(Intersection),
+}
+
+/// A robot in a building.
+pub(super) struct Body<'a> {
+    sim: Simulator,
+    scan: Scan,
+    detections: Vec<Detection>,
+    pilot: Pilot,
+    limits: [SpeedLimits; 2],
+    detection: IntersectionDetection,
+    chain: StateChain,
+    /// Vertices arrived at, for the chain.
+    arrivals: u64,
+    recording: Option<&'a mut Recording>,
+}
+
+impl<'a> Body<'a> {
+    /// The robot of `setup` at `start`, about to look around.
+    pub(super) fn new(
+        setup: &Setup,
+        prepared: &Prepared,
+        start: Pose,
+        seeds: &Seeds,
+        mut recording: Option<&'a mut Recording>,
+    ) -> Self {
+        let sensing = &setup.parameters.sensing;
+        let robot = &setup.robot;
+        let scene = Scene {
+            visible: &prepared.visible,
+            solid: &prepared.solid,
+            robot,
+            lidar: prepared.lidar.clone(),
+            camera: robot.camera.clone().map(|camera| CameraScene {
+                camera,
+                tags: &setup.world.tags,
+                occlusion: match sensing.occlusion {
+                    Hiding::None => Occlusion::None,
+                    Hiding::Walls => Occlusion::Walls,
+                },
+            }),
+            compass: robot.compass.clone().map(|compass| {
+                let noise = CompassNoise {
+                    distribution: distribution(sensing.compass_noise),
+                    heading: Radians::from_degrees(sensing.compass_noise_deg).get(),
+                };
+                (compass, noise)
+            }),
+            start,
+            drive_noise: DriveNoise {
+                distribution: distribution(sensing.drive_noise),
+                linear: sensing.drive_noise_linear,
+                angular: sensing.drive_noise_angular,
+                correlation: Seconds(sensing.drive_noise_correlation_s),
+            },
+            // Nothing reads odometry in this study: the paper's robot has compass, laser and camera only.
+            odometry_noise: OdometryNoise { distance: 0.0, heading: 0.0 },
+        };
+        let sim = Simulator::new(scene, seeds);
+        if let Some(recording) = &mut recording {
+            recording.world.clone_from(&prepared.visible);
+            recording.footprint = robot.footprint.clone();
+        }
+        let rule = setup.parameters.pilot.clone();
+        Self {
+            scan: sim.blank_scan(),
+            sim,
+            detections: Vec::new(),
+            limits: [rule.slow, rule.fast],
+            pilot: Pilot::new(rule, &robot.footprint),
+            detection: IntersectionDetection::new(&setup.parameters.perception),
+            chain: StateChain::default(),
+            arrivals: 0,
+            recording,
+        }
+    }
+
+    /// The clock.
+    pub(super) fn now(&self) -> Tick {
+        self.sim.now()
+    }
+
+    /// True distance travelled (m), for measuring.
+    pub(super) fn travelled(&self) -> f64 {
+        self.sim.travelled()
+    }
+
+    /// Sum of the absolute turns (rad), for measuring.
+    pub(super) fn turned(&self) -> f64 {
+        self.sim.turned()
+    }
+
+    /// The chain of state hashes so far.
+    pub(super) fn chain(&self) -> &StateChain {
+        &self.chain
+    }
+
+    /// Begins to look around, to see the vertex the robot stands at.
+    pub(super) fn look_around(&mut self) {
+        self.pilot.look_around();
+    }
+
+    /// Leaves the vertex by `exit`.
+    pub(super) fn leave(&mut self, exit: Cardinal, opening: Opening, speed: Speed) {
+        self.detection.leave(exit);
+        self.pilot.begin(Leg {
+            direction: exit.heading(),
+            opening: match opening {
+                Opening::Corridor => maneuver::Opening::Corridor,
+                Opening::Door => maneuver::Opening::Door,
+            },
+            limits: match speed {
+                Speed::Slow => self.limits[0],
+                Speed::Fast => self.limits[1],
+            },
+        });
+    }
+
+    /// Writes a line of text into the recording.
+    pub(super) fn note(&mut self, event: impl FnOnce() -> String) {
+        let frame = self.frame();
+        if let Some(recording) = &mut self.recording {
+            recording.frames.push(Frame { event: Some(event()), ..frame });
+        }
+    }
+
+    /// Drives for one control period: sense, steer, move.
+    pub(super) fn step(&mut self) -> Happening {
+        self.sim.read_scan(&mut self.scan);
+        self.sim.read_detections(&mut self.detections);
+        let blind = CompassReading { stamp: self.sim.now(), heading: 0.0 };
+        let compass = self.sim.read_compass().unwrap_or(blind);
+        self.detection.observe(&self.detections, compass, self.pilot.heading());
+        if let Some(here) = self.detection.arrived() {
+            self.arrivals += 1;
+            return Happening::Arrived(here);
+        }
+        let target = self.detection.target();
+        let twist = self.pilot.control(&Sense { scan: &self.scan, compass, target });
+        self.sim.command(twist);
+        self.sim.advance_to(self.sim.now() + CONTROL_PERIOD);
+        self.note_state();
+        if self.sim.is_touching() { Happening::Contact } else { Happening::OnTheWay }
+    }
+
+    fn note_state(&mut self) {
+        let now = self.sim.now();
+        if self.chain.is_due(now) {
+            let (pose, travelled) = (self.sim.true_pose(), self.sim.travelled());
+            let arrivals = self.arrivals;
+            self.chain.push(|hasher| {
+                for number in [pose.x, pose.y, pose.heading, travelled] {
+                    hasher.update(number.to_bits().to_le_bytes());
+                }
+                hasher.update(now.0.to_le_bytes());
+                hasher.update(arrivals.to_le_bytes());
+            });
+        }
+        let frame = self.frame();
+        if let Some(recording) = &mut self.recording {
+            recording.frames.push(frame);
+        }
+    }
+
+    fn frame(&self) -> Frame {
+        Frame {
+            time_s: self.sim.now().seconds().get(),
+            pose: self.sim.true_pose(),
+            distance_m: self.sim.travelled(),
+            ..Frame::default()
+        }
+    }
+}
+
+fn distribution(shape: ErrorShape) -> Distribution {
+    match shape {
+        ErrorShape::Uniform => Distribution::Uniform,
+        ErrorShape::Gaussian => Distribution::Gaussian,
+    }
+}

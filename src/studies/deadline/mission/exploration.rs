@@ -1,0 +1,125 @@
+//! Algorithm 3 in a building: the mind decides at vertices, the body drives between them.
+
+use super::body::{Body, Happening};
+use super::tally::{self, Tally};
+use super::{Ending, Prepared, record};
+use crate::cmdp::build::Maneuvers;
+use crate::studies::deadline::exploration::{Explorer, Next};
+use crate::studies::deadline::Setup;
+use crate::studies::recording::Recording;
+use crate::studies::{Outcome, TrialRecord, TrialSpec};
+use crate::units::{Seconds, Tick};
+use std::collections::BTreeMap;
+
+/// Explores until the goal is reached, the body touches something or the time is up.
+pub(super) fn run(
+    spec: &TrialSpec,
+    setup: &Setup,
+    prepared: &Prepared,
+    recording: Option<&mut Recording>,
+) -> TrialRecord {
+    let Some(calibration) = &setup.calibration else {
+        return TrialRecord::panicked(spec, "the planner has no calibration".to_owned());
+    };
+    let mut exploration = Exploration::new(spec, setup, prepared, calibration.maneuvers(), recording);
+    let ending = exploration.run();
+    let mut measures = BTreeMap::new();
+    measures.insert("distance-m".to_owned(), Some(exploration.body.travelled()));
+    measures.insert("turning-rad".to_owned(), Some(exploration.body.turned()));
+    exploration.tally.measures(&mut measures);
+    tally::decided(&exploration.mind, &mut measures);
+    record(spec, ending, Tick(0), measures, exploration.body.chain())
+}
+
+struct Exploration<'a> {
+    mind: Explorer,
+    body: Body<'a>,
+    tally: Tally,
+    deadline: Tick,
+    patience: Tick,
+    /// When a vertex was last new.
+    discovered: Tick,
+}
+
+impl<'a> Exploration<'a> {
+    fn new(
+        spec: &TrialSpec,
+        setup: &Setup,
+        prepared: &Prepared,
+        expectations: Maneuvers,
+        recording: Option<&'a mut Recording>,
+    ) -> Self {
+        let mission = &setup.parameters.mission;
+        Self {
+            mind: Explorer::new(
+                &setup.parameters.rules,
+                expectations,
+                mission.deadline_s,
+                &spec.seeds,
+            ),
+            body: Body::new(setup, prepared, setup.start, &spec.seeds, recording),
+            tally: Tally::default(),
+            deadline: Tick::at_or_after(Seconds(mission.deadline_s)),
+            patience: Tick::at_or_after(Seconds(mission.stalled_after_s)),
+            discovered: Tick(0),
+        }
+    }
+
+    fn run(&mut self) -> Ending {
+        self.body.look_around();
+        loop {
+            match self.body.step() {
+                Happening::OnTheWay => {}
+                Happening::Contact => {
+                    self.tally.collide();
+                    return Ending::plain(Outcome::Collided, self.body.now());
+                }
+                Happening::Arrived(here) => {
+                    let now = self.body.now();
+                    self.tally.arrive(now);
+                    let known = self.mind.map().len();
+                    let next = self.mind.arrive(now.seconds().get(), &here);
+                    if self.mind.map().len() > known {
+                        self.discovered = now;
+                    }
+                    match next {
+                        Next::GlobalSuccess => return Ending::plain(Outcome::Reached, now),
+                        Next::GiveUp(why) if now < self.deadline => {
+                            let cause = why.to_string();
+                            return Ending { outcome: Outcome::Stalled, cause, at: now };
+                        }
+                        Next::GiveUp(_) => {}
+                        Next::Leave(leave) => {
+                            self.tally.begin(leave.motion, leave.speed, now);
+                            self.body.leave(leave.exit, leave.opening, leave.speed);
+                            let mind = &self.mind;
+                            self.body.note(|| told(mind));
+                        }
+                    }
+                }
+            }
+            if self.body.now() >= self.deadline {
+                let idle = self.deadline.0 - self.discovered.0.min(self.deadline.0);
+                let stalled = idle >= self.patience.0;
+                let outcome = if stalled { Outcome::Stalled } else { Outcome::Late };
+                return Ending::plain(outcome, self.body.now());
+            }
+        }
+    }
+}
+
+/// What the mind is about to do, in words.
+fn told(mind: &Explorer) -> String {
+    let Some(last) = mind.moves().last() else { return String::new() };
+    let map = mind.map();
+    let from = map.label(last.from);
+    let plan = mind.decisions().last().map_or_else(String::new, |decision| {
+        format!(
+            " to {}, {} edges within {} s",
+            map.label(decision.target()),
+            decision.deadline.edges,
+            decision.deadline.seconds
+        )
+    });
+    format!("at {from}: {:?} {:?}{plan}", last.leave.motion, last.leave.speed)
+}

@@ -1,0 +1,123 @@
+//! One isolated maneuver, from a random vertex of the building where it is possible to the next: what the planner's
+//! expectations are measured by.
+
+use super::body::{Body, Happening};
+use super::tally::Tally;
+use super::{Ending, Prepared, record};
+use crate::cmdp::build::Motion;
+use crate::geometry::{Cardinal, Pose};
+use crate::rng::Stream;
+use crate::studies::deadline::Setup;
+use crate::studies::deadline::intersection::Opening;
+use crate::studies::recording::Recording;
+use crate::studies::{Outcome, TrialRecord, TrialSpec};
+use crate::units::{Radians, Seconds, Tick};
+use crate::world::topology::{self, Topology};
+use std::collections::BTreeMap;
+
+/// Control periods that a passage stands still before it begins.
+const SETTLING: u32 = 10;
+
+/// A directed edge of the true graph.
+#[derive(Debug, Clone, Copy)]
+struct Way {
+    from: usize,
+    to: usize,
+    direction: Cardinal,
+    opening: Opening,
+}
+
+/// Drives one maneuver and measures it.
+pub(super) fn run(
+    spec: &TrialSpec,
+    setup: &Setup,
+    prepared: &Prepared,
+    recording: Option<&mut Recording>,
+) -> TrialRecord {
+    let passage = &setup.parameters.passage;
+    let topology = &prepared.topology;
+    let ways = ways(topology, passage.motion);
+    let mut stream = spec.seeds.stream("passage");
+    if ways.is_empty() {
+        let cause = format!("the building has no way for the motion {:?}", passage.motion);
+        return TrialRecord::panicked(spec, cause);
+    }
+    let way = ways[pick(&mut stream, ways.len())];
+    let start = start(topology, way, setup, &mut stream);
+    let mut body = Body::new(setup, prepared, start, &spec.seeds, recording);
+    let mut tally = Tally::default();
+    // The pilot keeps its heading from leg to leg: standing still it finds it, as it would have on the leg before.
+    for _ in 0..SETTLING {
+        body.step();
+    }
+    let began = body.now();
+    body.leave(way.direction, way.opening, passage.speed);
+    tally.begin(passage.motion, passage.speed, body.now());
+    let limit = began + Tick::at_or_after(Seconds(passage.time_limit_s));
+    let ending = loop {
+        match body.step() {
+            Happening::Contact => {
+                tally.collide();
+                break Ending::plain(Outcome::Collided, body.now());
+            }
+            Happening::Arrived(here) => {
+                let there = &topology.vertices[way.to].tag;
+                if here.tags.contains(there) {
+                    tally.arrive(body.now());
+                    break Ending::plain(Outcome::Reached, body.now());
+                }
+                let cause = "arrived at another vertex".to_owned();
+                break Ending { outcome: Outcome::Stalled, cause, at: body.now() };
+            }
+            Happening::OnTheWay if body.now() >= limit => {
+                break Ending::plain(Outcome::Late, body.now());
+            }
+            Happening::OnTheWay => {}
+        }
+    };
+    let mut measures = BTreeMap::new();
+    measures.insert("distance-m".to_owned(), Some(body.travelled()));
+    measures.insert("turning-rad".to_owned(), Some(body.turned()));
+    tally.measures(&mut measures);
+    record(spec, ending, began, measures, body.chain())
+}
+
+/// The directed edges that ask for `motion`: the side of a door is S(e), as the planner names it.
+fn ways(topology: &Topology, motion: Motion) -> Vec<Way> {
+    let mut ways = Vec::new();
+    for (from, vertex) in topology.vertices.iter().enumerate() {
+        for exit in &vertex.exits {
+            // S: facing north for edges E-W, west is left; facing west for edges N-S, south is left.
+            let left = matches!(exit.direction, Cardinal::West | Cardinal::South);
+            let (asked, opening) = match exit.opening {
+                topology::Opening::Corridor => (Motion::Corridor, Opening::Corridor),
+                topology::Opening::Door if left => (Motion::DoorLeft, Opening::Door),
+                topology::Opening::Door => (Motion::DoorRight, Opening::Door),
+            };
+            if asked == motion {
+                ways.push(Way { from, to: exit.to, direction: exit.direction, opening });
+            }
+        }
+    }
+    ways
+}
+
+/// Where a passage begins: near its vertex, as if the robot had just come by one of its exits, any of them alike.
+fn start(topology: &Topology, way: Way, setup: &Setup, stream: &mut Stream) -> Pose {
+    let passage = &setup.parameters.passage;
+    let vertex = &topology.vertices[way.from];
+    let came_by = vertex.exits[pick(stream, vertex.exits.len())].direction;
+    let along = stream.between(-passage.offset_m, passage.offset_m);
+    let across = stream.between(-passage.offset_m, passage.offset_m);
+    let error = Radians::from_degrees(passage.heading_error_deg).get();
+    let heading = came_by.opposite().heading();
+    let offset = Pose::new(along, across, stream.between(-error, error));
+    Pose::new(vertex.at.x, vertex.at.y, heading).compose(offset)
+}
+
+/// One of `count` places, any of them alike.
+fn pick(stream: &mut Stream, count: usize) -> usize {
+    #[expect(clippy::cast_possible_truncation, reason = "below a usize")]
+    let place = stream.below(count as u64) as usize;
+    place
+}
