@@ -8,7 +8,6 @@ mod quickstart;
 use reenact::geometry::{Outline, Point, Pose};
 use reenact::robot::Lidar;
 use reenact::sim::WallSweep;
-use reenact::studies::Setup;
 
 struct Case {
     visible: Vec<Outline>,
@@ -18,10 +17,10 @@ struct Case {
 
 fn case() -> Case {
     let plan = quickstart::plan();
-    let Setup::PriorMap(setup) = &plan.trials[0].setup;
-    let lidar = setup.robot.lidar.clone().expect("the robot has a lidar");
-    let visible = setup.world.slice(lidar.height);
-    Case { visible, sensor: setup.start.compose(lidar.mount), lidar }
+    let setup = &plan.trials[0].setup;
+    let lidar = setup.robot().lidar.clone().expect("the robot has a lidar");
+    let visible = setup.world().slice(lidar.height);
+    Case { visible, sensor: setup.start().compose(lidar.mount), lidar }
 }
 
 /// Every side of every outline for every beam. The walls of this world are polygons.

@@ -8,7 +8,6 @@ mod quickstart;
 use reenact::rng::Seeds;
 use reenact::robot::Twist;
 use reenact::sim::{DriveNoise, OdometryNoise, Scene, Simulator};
-use reenact::studies::Setup;
 use reenact::units::{Seconds, Tick};
 
 const SIMULATED: u32 = 20;
@@ -20,19 +19,22 @@ fn main() {
 #[divan::bench(args = [true, false], sample_count = 20, sample_size = 1)]
 fn circle(bencher: divan::Bencher<'_, '_>, reads_scans: bool) {
     let plan = quickstart::plan();
-    let Setup::PriorMap(setup) = &plan.trials[0].setup;
-    let lidar = setup.robot.lidar.clone().expect("the robot has a lidar");
-    let visible = setup.world.slice(lidar.height);
-    let solid = setup.world.contact(setup.robot.body_z[0], setup.robot.body_z[1]);
+    let setup = &plan.trials[0].setup;
+    let robot = setup.robot();
+    let lidar = robot.lidar.clone().expect("the robot has a lidar");
+    let visible = setup.world().slice(lidar.height);
+    let solid = setup.world().contact(robot.body_z[0], robot.body_z[1]);
     let end = Tick::at_or_after(Seconds(f64::from(SIMULATED)));
     bencher.counter(divan::counter::ItemsCount::new(SIMULATED)).bench_local(|| {
         let scene = Scene {
             visible: &visible,
             solid: &solid,
-            robot: &setup.robot,
+            robot,
             lidar: lidar.clone(),
-            start: setup.start,
-            drive_noise: DriveNoise { linear: 0.0, angular: 0.0, correlation: Seconds(0.5) },
+            camera: None,
+            compass: None,
+            start: setup.start(),
+            drive_noise: DriveNoise::NONE,
             odometry_noise: OdometryNoise { distance: 0.0, heading: 0.0 },
         };
         let mut sim = Simulator::new(scene, &Seeds::new(1, vec![]));

@@ -1,9 +1,11 @@
 //! Manifests from the outside: faults told whole, and identities that depend on nothing but meaning.
 
 use proptest::prelude::*;
+use reenact::cmdp::build::{Expectation, Maneuvers};
 use reenact::document::{Diagnostic, Source};
 use reenact::manifest::{self, Experiment, Inputs, WrittenIn};
 use reenact::plan::{ENGINE_VERSION, Plan, Selection};
+use reenact::studies::deadline::Calibration;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -13,11 +15,18 @@ struct Beside(PathBuf);
 impl Inputs for Beside {
     fn read(&self, as_written: &str, written_in: WrittenIn) -> Result<Vec<u8>, String> {
         match written_in {
-            WrittenIn::CommandLine => Err("no such file".to_owned()),
+            WrittenIn::CommandLine | WrittenIn::Calibration => Err("no such file".to_owned()),
             WrittenIn::Manifest => {
                 std::fs::read(self.0.join(as_written)).map_err(|_| "no such file".to_owned())
             }
         }
+    }
+
+    /// Numbers that stand in for a run.
+    fn calibrate(&self, _: &str, _: &str, _: WrittenIn) -> Result<Vec<u8>, String> {
+        let pair = [Expectation { time_s: 10.0, failure: 0.01 }; 2];
+        let pairs = Maneuvers { corridor: pair, door_left: pair, door_right: pair };
+        Ok(Calibration::assumed(&pairs).to_csv().into_bytes())
     }
 }
 
@@ -233,20 +242,16 @@ parameters:
         .conditions
         .iter()
         .map(|(condition, setup)| {
-            let reenact::studies::Setup::PriorMap(setup) = setup;
-            let range = setup.parameters.sensing.range_m;
             format!(
-                "{} x={} {range:?} {}",
+                "{} x={} {} {}",
                 condition.slug(),
-                setup.start.x,
-                setup.world.layers().len()
+                setup.start().x,
+                setup.parameters()["sensing"]["range-m"],
+                setup.world().layers().len()
             )
         })
         .collect();
-    assert_eq!(
-        seen,
-        ["false_10 x=2 Some(10.0) 1", "true_30 x=3 Some(30.0) 2", "true_10 x=3 Some(10.0) 2"]
-    );
+    assert_eq!(seen, ["false_10 x=2 10.0 1", "true_30 x=3 30.0 2", "true_10 x=3 10.0 2"]);
     let why: Vec<_> =
         experiment.assumptions.iter().map(|a| format!("{}: {}", a.path, a.why)).collect();
     assert_eq!(
@@ -365,7 +370,7 @@ fn noise_is_shared_where_declared_and_only_there() {
 
 #[test]
 fn schemas_name_every_key() {
-    let schema = manifest::schema();
+    let schema = manifest::schema(None);
     let parameters = schema.to_string();
     for key in ["prior-maps", "shared-noise", "range-noise-sd-m", "floor-plan-of", "coverage-table"]
     {

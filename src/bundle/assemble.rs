@@ -4,8 +4,10 @@
 use super::content::{Author, BundleContent, Citation, SealedCondition, SealedInput};
 use crate::claims::{self, Claim};
 use crate::plan::{ENGINE_VERSION, Plan, Selection};
-use crate::studies::prior_map::results::Findings;
-use crate::studies::{Outcome, TrialRecord};
+use crate::studies::prior_map::CoverageTable;
+use crate::studies::{
+    FigureLayout, Findings, Outcome, StudyKind, TableLayout, TableRequest, TrialRecord,
+};
 use serde_json::{Value, json};
 
 /// The content of the bundle of `plan`, whose trials yielded `records` (in plan order).
@@ -104,7 +106,9 @@ pub fn findings<'a>(
     records: &'a [TrialRecord],
     factors: &'a [(String, Vec<String>)],
 ) -> Findings<'a> {
-    Findings { factors, records, published: &plan.experiment.published }
+    let experiment = &plan.experiment;
+    let calibration = experiment.conditions.iter().find_map(|(_, setup)| setup.calibration());
+    Findings { factors, records, published: &experiment.published, calibration }
 }
 
 fn sealed_conditions(plan: &Plan, records: &[TrialRecord]) -> Vec<SealedCondition> {
@@ -123,23 +127,57 @@ fn sealed_conditions(plan: &Plan, records: &[TrialRecord]) -> Vec<SealedConditio
     conditions
 }
 
+/// The tables whose published numbers a coverage curve can show.
+fn coverage_tables(tables: &[TableRequest]) -> Vec<&CoverageTable> {
+    tables
+        .iter()
+        .filter_map(|request| match &request.layout {
+            TableLayout::CoverageTable(table) => Some(table),
+            TableLayout::OutcomeTable(_) | TableLayout::ManeuverTable(_) => None,
+        })
+        .collect()
+}
+
 fn results(plan: &Plan, records: &[TrialRecord]) -> Result<Vec<(String, Vec<u8>)>, String> {
     let factors = factors(plan);
     let findings = findings(plan, records, &factors);
-    let mut files = vec![
-        ("trials.csv".to_owned(), findings.trials().to_csv().into_bytes()),
-        ("series.csv".to_owned(), findings.series().to_csv().into_bytes()),
-    ];
+    let mut files = vec![("trials.csv".to_owned(), findings.trials().to_csv().into_bytes())];
     let experiment = &plan.experiment;
+    match experiment.kind {
+        StudyKind::PriorMap => {
+            files.push(("series.csv".to_owned(), findings.series().to_csv().into_bytes()));
+        }
+        StudyKind::Deadline => {}
+    }
     for request in &experiment.tables {
         let path = |extension| format!("tables/{}.{extension}", request.id);
-        files.push((path("csv"), findings.coverage_table(request).to_csv().into_bytes()));
-        let print = findings.coverage_table_in_print(request).to_markdown();
-        files.push((path("md"), format!("# {}\n\n{print}", request.title).into_bytes()));
+        let (tidy, print) = match &request.layout {
+            TableLayout::CoverageTable(wanted) => {
+                (findings.coverage_table(wanted), findings.coverage_table_in_print(wanted))
+            }
+            TableLayout::OutcomeTable(wanted) => {
+                (findings.outcome_table(wanted), findings.outcome_table_in_print(wanted))
+            }
+            TableLayout::ManeuverTable(wanted) => {
+                let table = findings.maneuver_table(wanted);
+                (table.clone(), table)
+            }
+        };
+        files.push((path("csv"), tidy.to_csv().into_bytes()));
+        let print = format!("# {}\n\n{}", request.title, print.to_markdown());
+        files.push((path("md"), print.into_bytes()));
     }
     for request in &experiment.figures {
-        let chart = findings.coverage_figure(request, &experiment.tables);
-        files.push((format!("figures/{}.svg", request.id), chart.to_svg().into_bytes()));
+        let svg = match &request.layout {
+            FigureLayout::CoverageCurve(curve) => {
+                let tables = coverage_tables(&experiment.tables);
+                findings.coverage_figure(&request.title, curve, &tables).to_svg()
+            }
+            FigureLayout::OutcomeBars(bars) => {
+                findings.outcome_figure(&request.title, bars).to_svg()
+            }
+        };
+        files.push((format!("figures/{}.svg", request.id), svg.into_bytes()));
     }
     let claims = json!(verdicts(plan, records)?);
     files.push(("claims.json".to_owned(), (crate::json::canonical(&claims) + "\n").into_bytes()));

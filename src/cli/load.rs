@@ -1,6 +1,7 @@
 //! Manifests and bundles from disk.
 
 use super::args::SelectArgs;
+use super::calibrate::Calibrator;
 use super::exit::Failure;
 use super::terminal::{Terminal, counted};
 use crate::bundle::Bundle;
@@ -23,18 +24,20 @@ pub(super) struct Loaded {
 pub(super) fn manifest(
     manifest: &Path,
     set: &[String],
+    calibrator: Calibrator<'_>,
     terminal: Terminal,
 ) -> Result<Loaded, Failure> {
     let source = text(manifest)?;
     let folder = manifest.parent().unwrap_or(Path::new("")).to_owned();
-    let (found, mut faults) = match manifest::resolve(&source, set, &Folder(folder)) {
-        Ok((experiment, warnings)) => {
-            let mut faults = warnings;
-            faults.extend(manifest::check_claims(&experiment));
-            (Some(experiment), faults)
-        }
-        Err(faults) => (None, faults),
-    };
+    let (found, mut faults) =
+        match manifest::resolve(&source, set, &Folder { folder, calibrator, terminal }) {
+            Ok((experiment, warnings)) => {
+                let mut faults = warnings;
+                faults.extend(manifest::check_claims(&experiment));
+                (Some(experiment), faults)
+            }
+            Err(faults) => (None, faults),
+        };
     faults.sort_by_key(|f| std::cmp::Reverse(f.severity));
     terminal.diagnostics(&faults);
     match found {
@@ -137,19 +140,38 @@ fn reason(error: &std::io::Error) -> String {
 }
 
 /// Inputs of a manifest in this folder.
-struct Folder(PathBuf);
+struct Folder<'a> {
+    folder: PathBuf,
+    calibrator: Calibrator<'a>,
+    terminal: Terminal,
+}
 
-impl Inputs for Folder {
+impl Inputs for Folder<'_> {
     fn read(&self, as_written: &str, written_in: WrittenIn) -> Result<Vec<u8>, String> {
-        let beside = self.0.join(as_written);
+        let beside = self.folder.join(as_written);
         let read = |path: &Path| store::read(path);
         match written_in {
-            WrittenIn::Manifest => read(&beside).map_err(|e| reason(&e)),
+            WrittenIn::Manifest | WrittenIn::Calibration => read(&beside).map_err(|e| reason(&e)),
             // Given on the command line: from here, as a shell completes it, or else from the manifest.
             WrittenIn::CommandLine => read(Path::new(as_written)).or_else(|here| {
                 read(&beside)
                     .map_err(|_| format!("{}, neither here nor beside the manifest", reason(&here)))
             }),
         }
+    }
+
+    fn calibrate(
+        &self,
+        as_written: &str,
+        _sealed_as: &str,
+        written_in: WrittenIn,
+    ) -> Result<Vec<u8>, String> {
+        let here = Path::new(as_written);
+        let manifest = if written_in == WrittenIn::CommandLine && here.exists() {
+            here.to_owned()
+        } else {
+            self.folder.join(as_written)
+        };
+        self.calibrator.csv(&manifest, self.terminal)
     }
 }

@@ -3,6 +3,7 @@
 //! Results go to stdout, progress and diagnostics to stderr.
 
 mod args;
+mod calibrate;
 mod commands;
 mod exit;
 mod load;

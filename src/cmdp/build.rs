@@ -15,6 +15,8 @@
 
 use super::lexicographic::{Outcome, SolveError, Unmeetable, solve_with};
 use super::model::{Cmdp, CmdpBuilder};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 /// What a vertex is: its semantic label's kind.
@@ -56,7 +58,10 @@ pub struct Topology {
 }
 
 /// The study's three elementary motions.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
+)]
+#[serde(rename_all = "kebab-case")]
 pub enum Motion {
     /// Go through a corridor.
     Corridor,
@@ -67,7 +72,10 @@ pub enum Motion {
 }
 
 /// How a motion is executed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
+)]
+#[serde(rename_all = "kebab-case")]
 pub enum Speed {
     /// Slowly.
     Slow,

@@ -21,7 +21,7 @@
 use super::lexicographic::{MAX_STATES, Outcome, SolveError, solve};
 use super::model::{Cmdp, CmdpBuilder, EntryError, ModelError};
 use crate::json::canonical;
-use serde_json::{Map, Value};
+use serde_json::{Map, Value, json};
 use thiserror::Error;
 
 /// Why a document has no answer.
@@ -148,6 +148,43 @@ pub fn write(cmdp: &Cmdp, outcome: &Outcome) -> String {
         secondary.join(","),
         policy.join(",")
     )
+}
+
+/// The model as a document that [`read`] takes, with names for its states and actions: one line of JSON. The names
+/// are for people.
+///
+/// # Panics
+/// Where there is not one name per state and per action.
+pub fn write_model(cmdp: &Cmdp, states: &[String], actions: &[String]) -> String {
+    assert_eq!((states.len(), actions.len()), (cmdp.states(), cmdp.actions()), "a name for each");
+    let cost = |k: usize| -> Vec<Value> {
+        let positive = cmdp.pairs().iter().filter(|pair| pair.costs[k] > 0.0);
+        positive.map(|pair| json!([pair.state, pair.action, pair.costs[k]])).collect()
+    };
+    let absorbing: Vec<usize> = (0..cmdp.states()).filter(|x| cmdp.is_absorbing(*x)).collect();
+    let transitions: Vec<Value> = cmdp
+        .pairs()
+        .iter()
+        .flat_map(|pair| {
+            let row = |(y, p): &(usize, f64)| json!([pair.state, pair.action, y, p]);
+            pair.successors.iter().map(row).collect::<Vec<_>>()
+        })
+        .collect();
+    let secondary: Vec<Value> = cmdp
+        .secondary()
+        .iter()
+        .enumerate()
+        .map(|(i, s)| json!({"name": s.name, "bound": s.bound, "costs": cost(i + 1)}))
+        .collect();
+    canonical(&json!({
+        "states": states,
+        "actions": actions,
+        "absorbing": absorbing,
+        "initial": cmdp.initial(),
+        "transitions": transitions,
+        "primary": cost(0),
+        "secondary": secondary,
+    }))
 }
 
 fn malformed(place: impl Into<String>, fault: impl Into<String>) -> DocumentError {

@@ -90,6 +90,17 @@ impl Cmdp {
     pub fn secondary(&self) -> &[Secondary] {
         &self.secondary
     }
+
+    /// The same model with another bound on secondary cost `index`.
+    ///
+    /// # Panics
+    /// Where there is no such cost, or the bound is negative or not finite.
+    #[must_use]
+    pub fn with_bound(mut self, index: usize, bound: f64) -> Self {
+        assert!(bound.is_finite() && bound >= 0.0, "a bound is a finite number >= 0, not {bound}");
+        self.secondary[index].bound = bound;
+        self
+    }
 }
 
 /// What is wrong with one entry; a document puts the entry's path in front.

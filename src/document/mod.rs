@@ -61,7 +61,19 @@ pub fn parse<T: DeserializeOwned + JsonSchema>(
 pub fn parse_tree<T: DeserializeOwned + JsonSchema>(
     tree: Tree,
 ) -> Result<Parsed<T>, Vec<Diagnostic>> {
-    let faults = check(&schema_of::<T>(), &tree);
+    let schema = schema_of::<T>();
+    parse_tree_by(tree, &schema)
+}
+
+/// Takes a tree to a `T` by a schema that is narrower than the type's own.
+///
+/// # Errors
+/// As [`parse_tree`].
+pub fn parse_tree_by<T: DeserializeOwned>(
+    tree: Tree,
+    schema: &serde_json::Value,
+) -> Result<Parsed<T>, Vec<Diagnostic>> {
+    let faults = check(schema, &tree);
     if !faults.is_empty() {
         return Err(faults);
     }

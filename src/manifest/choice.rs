@@ -1,6 +1,6 @@
 //! Values that may depend on a factor, and mappings whose order counts.
 
-use crate::studies::prior_map::FactorValue;
+use crate::studies::FactorValue;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};

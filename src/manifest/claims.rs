@@ -4,6 +4,7 @@ use super::Experiment;
 use crate::claims::{self, Claim};
 use crate::document::Diagnostic;
 use crate::studies::prior_map::MILESTONES;
+use crate::studies::{StudyKind, deadline};
 
 /// Every fault of the experiment's claims.
 pub fn check_claims(experiment: &Experiment) -> Vec<Diagnostic> {
@@ -25,13 +26,21 @@ pub fn check_claims(experiment: &Experiment) -> Vec<Diagnostic> {
     let factors: Vec<_> =
         experiment.factors.iter().map(|f| (f.name.clone(), f.values.clone())).collect();
     let published: Vec<String> = experiment.published.keys().cloned().collect();
-    let problems = claims::check_all(&claims, &factors, &measures(), &published);
+    let measures = measures(experiment.kind);
+    let problems = claims::check_all(&claims, &factors, &measures, &published);
     faults.extend(problems.into_iter().map(|problem| tree.fault(tree.place("/claims"), problem)));
     faults
 }
 
-/// What a claim about the prior-map study may speak of: the columns of `results/trials.csv`.
-fn measures() -> Vec<String> {
+/// What a claim or table of a study may speak of: success, outcomes and the columns of `results/trials.csv`.
+pub(super) fn measures(kind: StudyKind) -> Vec<String> {
+    match kind {
+        StudyKind::PriorMap => prior_map_measures(),
+        StudyKind::Deadline => deadline::measures(),
+    }
+}
+
+fn prior_map_measures() -> Vec<String> {
     let mut names: Vec<String> = [
         "success",
         "outcome:explored",

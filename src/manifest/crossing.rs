@@ -5,7 +5,7 @@ use super::document::ManifestDoc;
 use super::faults::{Faults, step};
 use crate::document::suggestion;
 use crate::studies::Condition;
-use crate::studies::prior_map::FactorValue;
+use crate::studies::FactorValue;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// More conditions than any study has: a crossing gone wrong.

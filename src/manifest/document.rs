@@ -3,7 +3,7 @@
 use super::choice::{Choice, FactorDoc, Ordered};
 use super::parameters::ParametersDoc;
 use crate::studies::StudyKind;
-use crate::studies::prior_map::{FactorValue, FigureRequest, TableRequest};
+use crate::studies::{FactorValue, FigureRequest, TableRequest};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -63,7 +63,11 @@ pub struct ManifestDoc {
     /// Prior knowledge by name, for the factor `prior` to choose from.
     #[serde(default)]
     pub prior_maps: BTreeMap<String, Choice<PriorDoc>>,
-    /// Everything else a trial needs; every value may be plain, `{value, why}` or `{by, values, why}`.
+    /// Deadline study: the manifest whose isolated passages measure the planner's maneuvers. It is run first where its
+    /// trials are not in the store, and what they showed is sealed as an input.
+    #[serde(default)]
+    pub calibration: Option<String>,
+    /// Everything else a trial needs; every value may be plain, `{value, why}`, `{factor, why}` or `{by, values, why}`.
     #[serde(default)]
     pub parameters: ParametersDoc,
     /// The paper's own numbers by name: tidy CSV files.
@@ -127,6 +131,16 @@ pub enum StartDoc {
     Name(String),
     /// A pose in the world's frame.
     Pose(PoseDoc),
+    /// The start of the world that a factor's value names.
+    Factor(FactorRef),
+}
+
+/// The value of a factor itself.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FactorRef {
+    /// The factor.
+    pub factor: String,
 }
 
 /// A pose in the world's frame.

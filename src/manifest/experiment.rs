@@ -6,8 +6,8 @@ use super::inputs::Input;
 use crate::digest::MeaningDigest;
 use crate::document::Tree;
 use crate::json;
-use crate::studies::prior_map::{FigureRequest, TableRequest};
 use crate::studies::{Condition, Setup, StudyKind};
+use crate::studies::{FigureRequest, TableRequest};
 use crate::table::Table;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
@@ -93,19 +93,23 @@ impl Experiment {
             .zip(&self.meanings)
             .zip(&self.described)
             .map(|(((condition, setup), meanings), described)| {
-                let Setup::PriorMap(setup) = setup;
-                json!({
+                let start = setup.start();
+                let mut entry = json!({
                     "condition": levels(condition),
                     "slug": condition.slug(),
                     "described": described,
                     "meanings": meanings,
                     "start": {
-                        "x-m": setup.start.x,
-                        "y-m": setup.start.y,
-                        "heading-rad": setup.start.heading,
+                        "x-m": start.x,
+                        "y-m": start.y,
+                        "heading-rad": start.heading,
                     },
-                    "parameters": setup.parameters,
-                })
+                    "parameters": setup.parameters(),
+                });
+                if let Value::Object(entry) = &mut entry {
+                    entry.extend(setup.further());
+                }
+                entry
             })
             .collect();
         let inputs: Vec<Value> = self

@@ -3,7 +3,7 @@
 use super::crossing::{Factor, known_or_near};
 use super::inputs::WrittenIn;
 use crate::document::{Diagnostic, Severity, Tree};
-use crate::studies::prior_map::FactorValue;
+use crate::studies::FactorValue;
 
 /// Faults of one manifest.
 pub(super) struct Faults<'a> {

@@ -12,6 +12,8 @@ pub enum WrittenIn {
     Manifest,
     /// On the command line: relative to where the command was given.
     CommandLine,
+    /// Nowhere: made from the calibration manifest.
+    Calibration,
 }
 
 /// Who hands over the bytes of files: the file system, or a bundle.
@@ -21,6 +23,20 @@ pub trait Inputs {
     /// # Errors
     /// Why there are none, in words (`no such file`).
     fn read(&self, as_written: &str, written_in: WrittenIn) -> Result<Vec<u8>, String>;
+
+    /// What the passages of the calibration manifest `as_written` showed, as CSV; in bundles it is sealed as `sealed_as`.
+    ///
+    /// # Errors
+    /// Why there is none, in words.
+    fn calibrate(
+        &self,
+        as_written: &str,
+        sealed_as: &str,
+        written_in: WrittenIn,
+    ) -> Result<Vec<u8>, String> {
+        let _ = (sealed_as, written_in);
+        Err(format!("nobody here can run `{as_written}`"))
+    }
 }
 
 /// One file that was read.
@@ -58,6 +74,19 @@ impl<'a> InputFiles<'a> {
         self.files
             .entry((path.to_owned(), written_in))
             .or_insert_with(|| self.source.read(path, written_in).map(Into::into))
+            .clone()
+    }
+
+    /// What the calibration manifest `path` yields, kept as the input `sealed_as`.
+    pub(super) fn calibrate(
+        &mut self,
+        path: &str,
+        sealed_as: &str,
+        written_in: WrittenIn,
+    ) -> Result<Arc<[u8]>, String> {
+        self.files
+            .entry((sealed_as.to_owned(), WrittenIn::Calibration))
+            .or_insert_with(|| self.source.calibrate(path, sealed_as, written_in).map(Into::into))
             .clone()
     }
 

@@ -3,11 +3,14 @@
 use super::faults::Faults;
 use super::priors::UsedPrior;
 use super::worlds::WALLS;
-use crate::geometry::{Outline, Point};
+use crate::geometry::{Outline, Point, Pose};
 use crate::grid::{Cell, Occupancy, OccupancyGrid};
 use crate::math;
+use crate::robot::Robot;
+use crate::studies::deadline;
 use crate::studies::prior_map::Setup;
 use crate::units::Tick;
+use crate::world::World;
 use serde_json::Value;
 use std::f64::consts::TAU;
 
@@ -18,18 +21,25 @@ const ALIGNED_SHARE: f64 = 0.5;
 
 /// Collects what is wrong or suspicious about one condition.
 pub(super) fn check(setup: &Setup, prior: Option<&UsedPrior>, faults: &mut Faults<'_>) {
-    sensors(setup, faults);
-    start(setup, faults);
-    units(setup, faults);
+    scanner(&setup.robot, faults);
+    start(&setup.world, &setup.robot, setup.start, faults);
+    units(&serde_json::json!(setup.parameters), faults);
     median(setup, faults);
     if let Some(prior) = prior {
         resolution(setup, prior, faults);
     }
 }
 
-fn sensors(setup: &Setup, faults: &mut Faults<'_>) {
-    let name = &setup.robot.name;
-    let Some(lidar) = &setup.robot.lidar else {
+/// Collects what is wrong or suspicious about one condition of the deadline study.
+pub(super) fn check_deadline(setup: &deadline::Setup, faults: &mut Faults<'_>) {
+    scanner(&setup.robot, faults);
+    start(&setup.world, &setup.robot, setup.start, faults);
+    units(&serde_json::json!(setup.parameters), faults);
+}
+
+fn scanner(robot: &Robot, faults: &mut Faults<'_>) {
+    let name = &robot.name;
+    let Some(lidar) = &robot.lidar else {
         let fault = faults
             .fault("/robot", format!("the robot `{name}` has no range scanner"))
             .label("this study explores with one");
@@ -43,10 +53,10 @@ fn sensors(setup: &Setup, faults: &mut Faults<'_>) {
     }
 }
 
-fn start(setup: &Setup, faults: &mut Faults<'_>) {
-    let at = setup.start.position();
-    let solids = setup.world.contact(setup.robot.body_z[0], setup.robot.body_z[1]);
-    let radius = setup.robot.circumscribed_radius();
+fn start(world: &World, robot: &Robot, start: Pose, faults: &mut Faults<'_>) {
+    let at = start.position();
+    let solids = world.contact(robot.body_z[0], robot.body_z[1]);
+    let radius = robot.circumscribed_radius();
     let nearest = solids.iter().map(|s| s.distance(at)).fold(f64::INFINITY, f64::min);
     if nearest <= radius {
         let fault = faults
@@ -58,10 +68,10 @@ fn start(setup: &Setup, faults: &mut Faults<'_>) {
         );
         return;
     }
-    if !setup.world.bounds().contains(at) {
+    if !world.bounds().contains(at) {
         let fault = faults
             .fault("/start", format!("the robot starts outside the building at {}", spot(at)));
-        let bounds = setup.world.bounds();
+        let bounds = world.bounds();
         let help = format!("the world reaches from {} to {}", spot(bounds.min), spot(bounds.max));
         faults.push(fault.label("beyond every wall").help(help).warning());
     }
@@ -82,9 +92,8 @@ fn median(setup: &Setup, faults: &mut Faults<'_>) {
 }
 
 /// Values that look as if they were written in another unit, by the unit in their key.
-fn units(setup: &Setup, faults: &mut Faults<'_>) {
-    let Ok(Value::Object(groups)) = serde_json::to_value(&setup.parameters) else { return };
-    for (group, values) in &groups {
+fn units(parameters: &Value, faults: &mut Faults<'_>) {
+    for (group, values) in parameters.as_object().into_iter().flatten() {
         for (key, value) in values.as_object().into_iter().flatten() {
             let Some(value) = value.as_f64() else { continue };
             let slip = if key.ends_with("-rad-s") || key.ends_with("-m-s") {

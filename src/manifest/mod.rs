@@ -7,6 +7,7 @@
 mod choice;
 mod claims;
 mod crossing;
+mod deadline;
 mod document;
 mod experiment;
 mod faults;
@@ -24,18 +25,24 @@ pub use choice::{By, Choice, DependentFactor, FactorDoc, Levels, Ordered};
 pub use claims::check_claims;
 pub use crossing::Factor;
 pub use document::{
-    Alpha, Author, BoundingBoxOf, Cite, DerivedFrom, FloorPlanOf, FootprintOf, ManifestDoc,
-    MapPrior, OriginDoc, OwnWorld, PoseDoc, PriorDoc, PriorFrame, PublishedDoc, PublishedFile,
-    StartDoc, UnknownAs, WorldDoc,
+    Alpha, Author, BoundingBoxOf, Cite, DerivedFrom, FactorRef, FloorPlanOf, FootprintOf,
+    ManifestDoc, MapPrior, OriginDoc, OwnWorld, PoseDoc, PriorDoc, PriorFrame, PublishedDoc,
+    PublishedFile, StartDoc, UnknownAs, WorldDoc,
 };
 pub use experiment::{Assumption, Experiment, Meanings};
 pub use inputs::{Input, Inputs, WrittenIn};
 pub use parameters::ParametersDoc;
 pub use resolve::resolve;
 
-/// The JSON Schema (2020-12) of manifests.
-pub fn schema() -> serde_json::Value {
-    crate::document::schema_of::<ManifestDoc>()
+use crate::studies::StudyKind;
+
+/// The JSON Schema (2020-12) of manifests: of one study, or of any.
+pub fn schema(kind: Option<StudyKind>) -> serde_json::Value {
+    let mut schema = crate::document::schema_of::<ManifestDoc>();
+    if let Some(kind) = kind {
+        schema["properties"]["parameters"] = parameters::schema_of(kind);
+    }
+    schema
 }
 
 #[cfg(test)]

@@ -1,8 +1,9 @@
 //! A study's parameters as written: every value plain, with a reason, or by a factor.
 
-use crate::studies::prior_map::Parameters;
+use crate::studies::{StudyKind, deadline, prior_map};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Deserialize;
+use serde::de::DeserializeOwned;
 use serde_json::{Map, Value, json};
 use std::borrow::Cow;
 
@@ -34,13 +35,15 @@ pub(super) enum WrappedValue<'a> {
         /// Value of the factor to value of the parameter.
         values: &'a Map<String, Value>,
     },
+    /// The value of this factor itself.
+    Factor(&'a str),
 }
 
 impl ParametersDoc {
     /// All values that are not plain, in the order of their pointers.
-    pub(super) fn wrapped(&self) -> Vec<Wrapped<'_>> {
+    pub(super) fn wrapped(&self, kind: StudyKind) -> Vec<Wrapped<'_>> {
         let mut found = Vec::new();
-        collect(&self.0, &groups(), "/parameters", &mut found);
+        collect(&self.0, &groups(kind), "/parameters", &mut found);
         found
     }
 
@@ -49,19 +52,24 @@ impl ParametersDoc {
     /// # Errors
     /// What serde refuses; the schema has been checked before, so this is a value of a wrong kind within
     /// `values` at most.
-    pub(super) fn for_condition<'c>(
+    pub(super) fn for_condition<'c, P: DeserializeOwned>(
         &self,
+        kind: StudyKind,
         value_of: &dyn Fn(&str) -> Option<&'c str>,
-    ) -> Result<Parameters, String> {
-        let plain = unwrap_all(&self.0, &groups(), value_of);
+    ) -> Result<P, String> {
+        let plain = unwrap_all(&self.0, &groups(kind), value_of);
         serde_json::from_value(Value::Object(plain)).map_err(|error| error.to_string())
     }
 }
 
 /// The parameters' tree of groups: what is an object in the defaults is a group, the rest are values.
-fn groups() -> Map<String, Value> {
-    match serde_json::to_value(Parameters::default()) {
-        Ok(Value::Object(groups)) => groups,
+fn groups(kind: StudyKind) -> Map<String, Value> {
+    let defaults = match kind {
+        StudyKind::PriorMap => json!(prior_map::Parameters::default()),
+        StudyKind::Deadline => json!(deadline::Parameters::default()),
+    };
+    match defaults {
+        Value::Object(groups) => groups,
         _ => Map::new(),
     }
 }
@@ -69,9 +77,10 @@ fn groups() -> Map<String, Value> {
 fn wrap<'a>(value: &'a Value, pointer: &str) -> Option<Wrapped<'a>> {
     let map = value.as_object()?;
     let why = map.get("why").and_then(Value::as_str);
-    let value = match (map.get("value"), map.get("by"), map.get("values")) {
-        (Some(value), None, None) => WrappedValue::Plain(value),
-        (None, Some(by), Some(values)) => {
+    let value = match (map.get("value"), map.get("factor"), map.get("by"), map.get("values")) {
+        (Some(value), None, None, None) => WrappedValue::Plain(value),
+        (None, Some(factor), None, None) => WrappedValue::Factor(factor.as_str()?),
+        (None, None, Some(by), Some(values)) => {
             WrappedValue::By { factor: by.as_str()?, values: values.as_object()? }
         }
         _ => return None,
@@ -113,6 +122,7 @@ fn unwrap_all<'c>(
                 Some(WrappedValue::By { factor, values }) => {
                     value_of(factor).and_then(|level| values.get(level)).cloned()
                 }
+                Some(WrappedValue::Factor(factor)) => value_of(factor).map(level_as_written),
             },
         };
         plain.extend(value.map(|value| (key.clone(), value)));
@@ -120,26 +130,45 @@ fn unwrap_all<'c>(
     plain
 }
 
+/// A factor's value as a parameter takes it: a number, `true` or `false` where it reads as one, else text.
+fn level_as_written(level: &str) -> Value {
+    match serde_json::from_str(level) {
+        Ok(value @ (Value::Number(_) | Value::Bool(_))) => value,
+        _ => Value::from(level),
+    }
+}
+
 impl JsonSchema for ParametersDoc {
     fn schema_name() -> Cow<'static, str> {
         "Parameters".into()
     }
 
+    /// Those of any study: `manifest::schema` puts those of one in their place.
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        // Inlined, because its groups differ from the study's own schemas in what their values may be.
-        let settings = schemars::generate::SchemaSettings::draft2020_12().for_deserialize();
-        let generator = settings.with(|s| s.inline_subschemas = true).into_generator();
-        let mut schema = generator.into_root_schema_for::<Parameters>();
-        schema.remove("$schema");
-        schema.remove("title");
-        if let Some(object) = schema.as_object_mut() {
-            wrap_values(object);
-        }
+        let mut schema = Schema::default();
+        schema.insert("anyOf".to_owned(), StudyKind::ALL.map(schema_of).to_vec().into());
         schema
     }
 }
 
-/// Lets every value below `schema` be plain, `{value, why}` or `{by, values, why}`.
+/// The schema of the parameters of one study as manifests write them.
+pub(super) fn schema_of(kind: StudyKind) -> Value {
+    // Inlined, because its groups differ from the study's own schemas in what their values may be.
+    let settings = schemars::generate::SchemaSettings::draft2020_12().for_deserialize();
+    let generator = settings.with(|s| s.inline_subschemas = true).into_generator();
+    let mut schema = match kind {
+        StudyKind::PriorMap => generator.into_root_schema_for::<prior_map::Parameters>(),
+        StudyKind::Deadline => generator.into_root_schema_for::<deadline::Parameters>(),
+    };
+    schema.remove("$schema");
+    schema.remove("title");
+    if let Some(object) = schema.as_object_mut() {
+        wrap_values(object);
+    }
+    schema.to_value()
+}
+
+/// Lets every value below `schema` be plain, `{value, why}`, `{factor, why}` or `{by, values, why}`.
 fn wrap_values(schema: &mut Map<String, Value>) {
     let Some(Value::Object(properties)) = schema.get_mut("properties") else { return };
     for property in properties.values_mut() {
@@ -160,6 +189,15 @@ fn wrap_values(schema: &mut Map<String, Value>) {
                     "type": "object",
                     "properties": { "value": plain, "why": why },
                     "required": ["value", "why"],
+                    "additionalProperties": false,
+                },
+                {
+                    "type": "object",
+                    "properties": {
+                        "factor": { "type": "string", "description": "The factor whose own value this is." },
+                        "why": why,
+                    },
+                    "required": ["factor"],
                     "additionalProperties": false,
                 },
                 {
@@ -191,10 +229,11 @@ mod tests {
             "mapping": {"resolution-m": {"value": 0.05, "why": "finer"}}
         }))
         .unwrap();
-        let pointers: Vec<_> = doc.wrapped().iter().map(|w| w.pointer.clone()).collect();
+        let kind = StudyKind::PriorMap;
+        let pointers: Vec<_> = doc.wrapped(kind).iter().map(|w| w.pointer.clone()).collect();
         assert_eq!(pointers, ["/parameters/mapping/resolution-m", "/parameters/sensing/range-m"]);
         let level = |factor: &str| (factor == "environment").then_some("office");
-        let parameters = doc.for_condition(&level).unwrap();
+        let parameters: prior_map::Parameters = doc.for_condition(kind, &level).unwrap();
         assert_eq!(parameters.sensing.range_m, Some(30.0));
         assert_eq!(parameters.sensing.range_noise_sd_m, Some(0.1));
         assert_eq!(parameters.mapping.resolution_m, 0.05);

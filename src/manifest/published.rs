@@ -1,16 +1,19 @@
 //! The paper's own numbers, and the tables and figures that ask for them.
 
+use super::claims::measures;
 use super::crossing::{Factor, is_kebab, kebab, known_or_near};
 use super::document::ManifestDoc;
 use super::faults::{Faults, step};
 use crate::document::{Diagnostic, Source, suggestion};
+use crate::studies::deadline::OutcomeTable;
 use crate::studies::prior_map::{CoverageTable, MILESTONES};
+use crate::studies::{FactorValue, FigureLayout, StudyKind, TableLayout};
 use crate::table::{Table, Value};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Columns of a tidy CSV of published numbers besides the factors', and whether each must be there.
 const COLUMNS: [(&str, bool); 4] =
-    [("coverage-percent", true), ("value", true), ("sd", false), ("n", false)];
+    [("coverage-percent", false), ("value", true), ("sd", false), ("n", false)];
 
 /// Reads a tidy CSV: columns named after factors, then `coverage-percent`, `value`, and where known `sd` and
 /// `n`; one row per published number.
@@ -108,19 +111,90 @@ pub(super) fn check_requests(
             faults.at(&pointer, format!("the id `{id}` is used twice"), "choose another one");
         }
     }
+    let foreign = |kind: StudyKind, pointer: &str, faults: &mut Faults<'_>| {
+        if doc.study != kind {
+            let message = format!("the study `{}` has no such layout", doc.study.name());
+            let label = format!("of the study `{}`", kind.name());
+            faults.at_key(pointer, message, &label);
+        }
+    };
     for (i, table) in doc.tables.iter().enumerate() {
-        let pointer = format!("/tables/{i}/coverage-table");
-        check_table(&table.coverage_table, &pointer, doc, factors, published, faults);
-    }
-    for (i, figure) in doc.figures.iter().enumerate() {
-        let pointer = format!("/figures/{i}/coverage-curve");
-        let curve = &figure.coverage_curve;
-        faults.check_factor(factors, &curve.by, &format!("{pointer}/by"), false);
-        for (name, value) in &curve.only {
-            let place = step(&format!("{pointer}/where"), name);
-            faults.check_level(factors, name, value, &place);
+        match &table.layout {
+            TableLayout::CoverageTable(table) => {
+                let pointer = format!("/tables/{i}/coverage-table");
+                foreign(StudyKind::PriorMap, &pointer, faults);
+                check_table(table, &pointer, doc, factors, published, faults);
+            }
+            TableLayout::OutcomeTable(table) => {
+                let pointer = format!("/tables/{i}/outcome-table");
+                foreign(StudyKind::Deadline, &pointer, faults);
+                check_outcomes(table, &pointer, doc, factors, published, faults);
+            }
+            TableLayout::ManeuverTable(table) => {
+                let pointer = format!("/tables/{i}/maneuver-table");
+                foreign(StudyKind::Deadline, &pointer, faults);
+                check_only(&table.only, &pointer, factors, faults);
+            }
         }
     }
+    for (i, figure) in doc.figures.iter().enumerate() {
+        match &figure.layout {
+            FigureLayout::CoverageCurve(curve) => {
+                let pointer = format!("/figures/{i}/coverage-curve");
+                foreign(StudyKind::PriorMap, &pointer, faults);
+                faults.check_factor(factors, &curve.by, &format!("{pointer}/by"), false);
+                check_only(&curve.only, &pointer, factors, faults);
+            }
+            FigureLayout::OutcomeBars(bars) => {
+                let pointer = format!("/figures/{i}/outcome-bars");
+                foreign(StudyKind::Deadline, &pointer, faults);
+                check_outcomes(bars, &pointer, doc, factors, published, faults);
+            }
+        }
+    }
+}
+
+fn check_only(
+    only: &BTreeMap<String, FactorValue>,
+    pointer: &str,
+    factors: &[Factor],
+    faults: &mut Faults<'_>,
+) {
+    for (name, value) in only {
+        let place = step(&format!("{pointer}/where"), name);
+        faults.check_level(factors, name, value, &place);
+    }
+}
+
+fn check_outcomes(
+    table: &OutcomeTable,
+    pointer: &str,
+    doc: &ManifestDoc,
+    factors: &[Factor],
+    published: &BTreeMap<String, Table>,
+    faults: &mut Faults<'_>,
+) {
+    let known = measures(doc.study);
+    for measure in table.show.measures() {
+        if !known.iter().any(|name| name == measure) {
+            let known: Vec<&str> = known.iter().map(String::as_str).collect();
+            let fault = faults
+                .fault(&format!("{pointer}/show"), format!("trials have no measure `{measure}`"))
+                .label("asked for by this table");
+            faults.push(fault.help(known_or_near(measure, &known)));
+        }
+    }
+    check_only(&table.only, pointer, factors, faults);
+    check_columns(&table.by, &table.rows, pointer, factors, faults);
+    check_published(
+        table.published.as_ref(),
+        &table.by,
+        &table.rows,
+        pointer,
+        doc,
+        published,
+        faults,
+    );
 }
 
 fn check_table(
@@ -135,17 +209,11 @@ fn check_table(
         let message = format!("trials are not measured at {level} % of coverage");
         faults.at(&format!("{pointer}/at/{i}"), message, "expected a multiple of 5 from 50 to 95");
     }
-    let by = faults.check_factor(factors, &table.by, &format!("{pointer}/by"), false);
+    let by = factors.iter().find(|factor| factor.name == table.by);
     if let (Some(_), Some(baseline)) = (by, &table.baseline) {
         faults.check_level(factors, &table.by, baseline, &format!("{pointer}/baseline"));
     }
-    for (i, row) in table.rows.iter().enumerate() {
-        let place = format!("{pointer}/rows/{i}");
-        faults.check_factor(factors, row, &place, false);
-        if *row == table.by {
-            faults.at(&place, format!("`{row}` stands in the columns already"), "remove it");
-        }
-    }
+    check_columns(&table.by, &table.rows, pointer, factors, faults);
     for factor in factors.iter().filter(|f| {
         by.is_some() && f.values.len() > 1 && f.name != table.by && !table.rows.contains(&f.name)
     }) {
@@ -153,7 +221,52 @@ fn check_table(
         let fault = faults.key_fault(pointer, message).label("it is neither in `by` nor in `rows`");
         faults.push(fault.help(format!("add `{}` to `rows`", factor.name)).warning());
     }
-    let Some(name) = &table.published else { return };
+    check_published(
+        table.published.as_ref(),
+        &table.by,
+        &table.rows,
+        pointer,
+        doc,
+        published,
+        faults,
+    );
+    let coverage = "coverage-percent".to_owned();
+    if let Some(numbers) = table.published.as_ref().and_then(|name| published.get(name))
+        && numbers.column(&coverage).is_none()
+    {
+        let message = format!("the published numbers have no column `{coverage}`");
+        faults.at(&format!("{pointer}/published"), message, "asked for by this table");
+    }
+}
+
+/// The factors that stand side by side and in rows.
+fn check_columns(
+    by: &str,
+    rows: &[String],
+    pointer: &str,
+    factors: &[Factor],
+    faults: &mut Faults<'_>,
+) {
+    faults.check_factor(factors, by, &format!("{pointer}/by"), false);
+    for (i, row) in rows.iter().enumerate() {
+        let place = format!("{pointer}/rows/{i}");
+        faults.check_factor(factors, row, &place, false);
+        if *row == by {
+            faults.at(&place, format!("`{row}` stands in the columns already"), "remove it");
+        }
+    }
+}
+
+fn check_published(
+    name: Option<&String>,
+    by: &str,
+    rows: &[String],
+    pointer: &str,
+    doc: &ManifestDoc,
+    published: &BTreeMap<String, Table>,
+    faults: &mut Faults<'_>,
+) {
+    let Some(name) = name else { return };
     let place = format!("{pointer}/published");
     if !doc.published.contains_key(name) {
         let known: Vec<&str> = doc.published.keys().map(String::as_str).collect();
@@ -162,7 +275,7 @@ fn check_table(
             .label("not a key of `published`");
         faults.push(fault.help(known_or_near(name, &known)));
     } else if let Some(numbers) = published.get(name) {
-        for factor in std::iter::once(&table.by).chain(&table.rows) {
+        for factor in std::iter::once(by).chain(rows.iter().map(String::as_str)) {
             if numbers.column(factor).is_none() {
                 let message = format!("the published numbers `{name}` have no column `{factor}`");
                 faults.at(&place, message, "asked for by this table");

@@ -2,20 +2,20 @@
 
 use super::choice::{By, Choice};
 use super::crossing::{Factor, cross, is_kebab, kebab, known_or_near};
-use super::document::{ManifestDoc, StartDoc};
+use super::document::{FactorRef, ManifestDoc, StartDoc};
 use super::experiment::{Assumption, Experiment, Meanings};
 use super::faults::{Faults, step};
 use super::inputs::{InputFiles, Inputs, WrittenIn, joined, normalised};
 use super::parameters::WrappedValue;
 use super::worlds::UsedWorld;
-use super::{lint, overrides, published};
+use super::{lint, overrides, published, schema};
 use crate::digest::MeaningDigest;
-use crate::document::{Diagnostic, Parsed, Source, parse_tree, read};
+use crate::document::{Diagnostic, Node, Parsed, Source, parse_tree_by, read};
 use crate::geometry::Pose;
 use crate::grid::OccupancyGrid;
 use crate::robot::{Robot, urdf};
-use crate::studies::prior_map::{self, Parameters};
-use crate::studies::{Condition, Setup, StudyKind};
+use crate::studies::deadline::Calibration;
+use crate::studies::{Condition, Setup, StudyKind, prior_map};
 use crate::table::Table;
 use crate::units::Radians;
 use crate::world::World;
@@ -35,7 +35,10 @@ pub fn resolve(
 ) -> Result<(Experiment, Vec<Diagnostic>), Vec<Diagnostic>> {
     let mut tree = read(source)?;
     overrides::apply(&mut tree, overrides)?;
-    let Parsed { value: doc, tree } = parse_tree::<ManifestDoc>(tree)?;
+    // The study says which parameters there are; one that is not known is told by the schema.
+    let kind = tree.root.get("study").and_then(Node::scalar_text);
+    let kind = StudyKind::ALL.into_iter().find(|k| kind.as_deref() == Some(k.name()));
+    let Parsed { value: doc, tree } = parse_tree_by::<ManifestDoc>(tree, &schema(kind))?;
     let mut resolver = Resolver {
         doc: &doc,
         folder: &source.name,
@@ -46,6 +49,7 @@ pub fn resolve(
         worlds: BTreeMap::new(),
         priors: BTreeMap::new(),
         aligned: BTreeSet::new(),
+        calibration: None,
     };
     let mut experiment = resolver.run(overrides);
     let Resolver { faults, files, .. } = resolver;
@@ -58,6 +62,18 @@ pub fn resolve(
     Ok((experiment, faults))
 }
 
+/// A condition, what its trials need, what its things mean and what they were resolved from.
+pub(super) type Resolved = (Condition, Setup, Meanings, Value);
+
+/// What the trials of every study need.
+pub(super) struct Parts {
+    pub(super) robot: Arc<Robot>,
+    pub(super) robot_meaning: MeaningDigest,
+    pub(super) robot_file: Option<String>,
+    pub(super) world: UsedWorld,
+    pub(super) start: Pose,
+}
+
 /// A thing that was read and what it means; `None` where it could not be, which has been told.
 pub(super) type Known<T> = Option<(Arc<T>, MeaningDigest)>;
 
@@ -66,13 +82,15 @@ pub(super) struct Resolver<'a> {
     /// Name of the manifest, which relative paths are shown beside.
     folder: &'a str,
     pub(super) faults: Faults<'a>,
-    files: InputFiles<'a>,
+    pub(super) files: InputFiles<'a>,
     pub(super) factors: Vec<Factor>,
     robots: BTreeMap<(String, WrittenIn), Known<Robot>>,
     pub(super) worlds: BTreeMap<String, Known<World>>,
     pub(super) priors: BTreeMap<String, Known<OccupancyGrid>>,
     /// Pairs of world and prior that have been held against each other.
     aligned: BTreeSet<(MeaningDigest, MeaningDigest, String)>,
+    /// What the calibration gave, once it was asked for.
+    pub(super) calibration: Option<Option<Arc<Calibration>>>,
 }
 
 impl Resolver<'_> {
@@ -88,6 +106,7 @@ impl Resolver<'_> {
         self.factors.clone_from(&factors);
         self.check_shared_noise();
         self.check_prior_names();
+        self.check_study_keys();
         let assumptions = self.assumptions();
         let published = self.published();
         published::check_requests(doc, &factors, &published, &mut self.faults);
@@ -103,7 +122,6 @@ impl Resolver<'_> {
             meanings.push(meaning);
             described.push(description);
         }
-        let StudyKind::PriorMap = doc.study;
         Experiment {
             name: doc.name.clone(),
             title: doc.title.clone(),
@@ -157,7 +175,7 @@ impl Resolver<'_> {
     /// Values with reasons; faults of those that depend on a factor.
     fn assumptions(&mut self) -> Vec<Assumption> {
         let mut assumptions = Vec::new();
-        for wrapped in self.doc.parameters.wrapped() {
+        for wrapped in self.doc.parameters.wrapped(self.doc.study) {
             let value = match wrapped.value {
                 WrappedValue::Plain(value) => value.clone(),
                 WrappedValue::By { factor, values } => {
@@ -168,6 +186,11 @@ impl Resolver<'_> {
                         self.faults.check_levels(values.keys(), found, &place);
                     }
                     json!({ "by": factor, "values": values })
+                }
+                WrappedValue::Factor(factor) => {
+                    let place = format!("{}/factor", wrapped.pointer);
+                    self.faults.check_factor(&self.factors, factor, &place, false);
+                    json!({ "factor": factor })
                 }
             };
             assumptions.extend(wrapped.why.map(|why| Assumption {
@@ -192,9 +215,8 @@ impl Resolver<'_> {
         tables
     }
 
-    fn condition(&mut self, condition: Condition) -> Option<(Condition, Setup, Meanings, Value)> {
+    fn condition(&mut self, condition: Condition) -> Option<Resolved> {
         let doc = self.doc;
-        let parameters = self.parameters(&condition);
         let robot = self.choose(&doc.robot, "/robot", &condition);
         let robot_file = robot.as_ref().map(|(path, _)| (*path).clone());
         let robot = robot.and_then(|(path, pointer)| self.robot(path, &pointer));
@@ -202,9 +224,21 @@ impl Resolver<'_> {
             .choose(&doc.world, "/world", &condition)
             .and_then(|(world, pointer)| self.world(world, &pointer, &condition));
         let start = self.start(world.as_ref(), &condition);
+        let parts = robot.zip(world).zip(start).map(|(((robot, robot_meaning), world), start)| {
+            Parts { robot, robot_meaning, robot_file, world, start }
+        });
+        match doc.study {
+            StudyKind::PriorMap => self.prior_map(condition, parts),
+            StudyKind::Deadline => self.deadline(condition, parts),
+        }
+    }
+
+    /// A condition of the prior-knowledge study.
+    fn prior_map(&mut self, condition: Condition, parts: Option<Parts>) -> Option<Resolved> {
+        let parameters = self.parameters::<prior_map::Parameters>(&condition);
         // Every part has told its faults by now; the prior needs them all.
-        let (parameters, (robot, robot_meaning), world, start) =
-            (parameters?, robot?, world?, start?);
+        let (parameters, parts) = (parameters?, parts?);
+        let Parts { robot, robot_meaning, robot_file, world, start } = parts;
         let prior = self.prior(&condition, &world, &robot, start, &parameters).ok()?;
         let setup = prior_map::Setup::new(
             Arc::clone(&world.world),
@@ -234,8 +268,12 @@ impl Resolver<'_> {
         Some((condition, Setup::PriorMap(Arc::new(setup)), meanings, described))
     }
 
-    fn parameters(&mut self, condition: &Condition) -> Option<Parameters> {
-        match self.doc.parameters.for_condition(&|factor| condition.value(factor)) {
+    pub(super) fn parameters<P: serde::de::DeserializeOwned>(
+        &mut self,
+        condition: &Condition,
+    ) -> Option<P> {
+        let value_of = |factor: &str| condition.value(factor);
+        match self.doc.parameters.for_condition(self.doc.study, &value_of) {
             Ok(parameters) => Some(parameters),
             Err(problem) => {
                 self.faults.at_key("/parameters", problem, &format!("for `{condition}`"));
@@ -283,7 +321,7 @@ impl Resolver<'_> {
                 let fault = self.faults.fault(pointer, format!("cannot read `{path}`"));
                 let help = match written_in {
                     WrittenIn::Manifest => "paths are relative to the file they are written in",
-                    WrittenIn::CommandLine => {
+                    WrittenIn::CommandLine | WrittenIn::Calibration => {
                         "paths in `--set` are relative to the current directory"
                     }
                 };
@@ -303,7 +341,7 @@ impl Resolver<'_> {
         };
         let name = match self.faults.written_in(pointer) {
             WrittenIn::Manifest => joined(self.folder, path),
-            WrittenIn::CommandLine => normalised(path),
+            WrittenIn::CommandLine | WrittenIn::Calibration => normalised(path),
         };
         Some(Source::new(name, text))
     }
@@ -334,19 +372,26 @@ impl Resolver<'_> {
             StartDoc::Pose(pose) => {
                 Some(Pose::new(pose.x_m, pose.y_m, Radians::from_degrees(pose.heading_deg).get()))
             }
-            StartDoc::Name(name) => {
-                let starts = &world?.world.starts;
-                if let Some(pose) = starts.get(name) {
-                    return Some(*pose);
-                }
-                let known: Vec<&str> = starts.keys().map(String::as_str).collect();
-                let fault = self
-                    .faults
-                    .fault(&pointer, format!("unknown start `{name}`"))
-                    .label("not a start of the world");
-                self.faults.push(fault.help(known_or_near(name, &known)));
-                None
+            StartDoc::Name(name) => self.named_start(name, &pointer, world?),
+            StartDoc::Factor(FactorRef { factor }) => {
+                let place = format!("{pointer}/factor");
+                self.faults.check_factor(&self.factors, factor, &place, false)?;
+                self.named_start(condition.value(factor)?, &place, world?)
             }
         }
+    }
+
+    fn named_start(&mut self, name: &str, pointer: &str, world: &UsedWorld) -> Option<Pose> {
+        let starts = &world.world.starts;
+        if let Some(pose) = starts.get(name) {
+            return Some(*pose);
+        }
+        let known: Vec<&str> = starts.keys().map(String::as_str).collect();
+        let fault = self
+            .faults
+            .fault(pointer, format!("unknown start `{name}`"))
+            .label("not a start of the world");
+        self.faults.push(fault.help(known_or_near(name, &known)));
+        None
     }
 }

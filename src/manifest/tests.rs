@@ -44,7 +44,9 @@ fn the_authors_floor_plan_lies_on_their_world_in_the_frame_of_the_start() {
     assert_eq!(told, "");
     let names: Vec<&str> = experiment.inputs.iter().map(|i| i.as_written.as_str()).collect();
     assert!(names.contains(&"floorplans/basic.png"), "{names:?}");
-    let Setup::PriorMap(setup) = &experiment.conditions[0].1;
+    let Setup::PriorMap(setup) = &experiment.conditions[0].1 else {
+        panic!("a study of another kind")
+    };
     let origin = setup.prior.as_ref().unwrap().frame().origin;
     // facts: P0 = (-8.9, -5.1) for a robot that starts at the world's origin.
     assert!((origin.x + 8.9).abs() < 1e-9 && (origin.y + 5.1).abs() < 1e-9, "{origin:?}");

@@ -5,7 +5,7 @@ use super::selection::{Selection, SelectionError};
 use crate::digest::StudyDigest;
 use crate::manifest::Experiment;
 use crate::rng::Seeds;
-use crate::studies::{Condition, StudyKind, TrialSpec};
+use crate::studies::{Condition, TrialSpec};
 use serde_json::Value;
 
 /// An experiment and its trials: condition by condition, trial by trial.
@@ -144,10 +144,7 @@ fn expand(experiment: &Experiment, selection: &Selection) -> Vec<TrialSpec> {
 
 /// Where a trial's random streams come from: the study, the factors that do not share noise, the number.
 fn seeds(experiment: &Experiment, condition: &Condition, trial: u32) -> Seeds {
-    let study = match experiment.kind {
-        StudyKind::PriorMap => "prior-map",
-    };
-    let mut coordinates = vec![("study".to_owned(), study.to_owned())];
+    let mut coordinates = vec![("study".to_owned(), experiment.kind.name().to_owned())];
     // Sorted, so that the order of factors in the manifest moves no number.
     let mut levels: Vec<_> =
         condition.0.iter().filter(|(name, _)| !experiment.shared_noise.contains(name)).collect();

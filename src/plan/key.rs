@@ -27,6 +27,7 @@ pub const ENGINE_VERSION: &str = "1";
 /// | `robot`, `world`, `prior` | digests of what they mean; `prior` is `null` where there is none |
 /// | `start` | x (m), y (m), heading (rad) |
 /// | `parameters` | the study's parameters, defaults written out |
+/// | `maneuvers` | deadline study: the calibrated times and failure probabilities that its planner uses |
 pub fn key_content(
     kind: StudyKind,
     seed: u64,
@@ -36,12 +37,12 @@ pub fn key_content(
     setup: &Setup,
     meanings: &Meanings,
 ) -> Value {
-    let Setup::PriorMap(setup) = setup;
+    let start = setup.start();
     let mut shared: Vec<&String> = shared_noise.iter().collect();
     shared.sort();
     let levels: serde_json::Map<String, Value> =
         condition.0.iter().map(|(name, value)| (name.clone(), json!(value))).collect();
-    json!({
+    let mut content = json!({
         "engine-version": ENGINE_VERSION,
         "study": kind,
         "seed": seed,
@@ -51,9 +52,13 @@ pub fn key_content(
         "robot": meanings.robot,
         "world": meanings.world,
         "prior": meanings.prior,
-        "start": [setup.start.x, setup.start.y, setup.start.heading],
-        "parameters": setup.parameters,
-    })
+        "start": [start.x, start.y, start.heading],
+        "parameters": setup.parameters(),
+    });
+    if let Value::Object(content) = &mut content {
+        content.extend(setup.further());
+    }
+    content
 }
 
 /// The key of that content.

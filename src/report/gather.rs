@@ -1,15 +1,13 @@
 //! A report's content, gathered from a sealed bundle and the plan made again from it.
 
-use super::Agreement;
 use super::content::{
-    Assumption, Citation, ClaimRow, Command, Figure, Headline, InputRow, Measured, OutcomeCount,
-    ReportCell, ReportContent, ReportRow, ReportTable,
+    Assumption, Citation, ClaimRow, Command, Figure, Headline, InputRow, OutcomeCount,
+    ReportContent,
 };
+use super::tables;
 use crate::bundle::{Bundle, assemble, format};
 use crate::plan::Plan;
-use crate::studies::prior_map::results::{CoverageCell, Findings};
-use crate::studies::prior_map::{Metric, TableRequest};
-use crate::studies::{Outcome, TrialRecord};
+use crate::studies::{FigureLayout, Outcome, StudyKind, TrialRecord};
 use serde_json::Value;
 
 /// What the page of `bundle` says, `plan` being the plan made again from it.
@@ -32,13 +30,17 @@ pub fn content_of(bundle: &Bundle, plan: &Plan) -> Result<ReportContent, String>
         },
         authors: experiment.authors.iter().map(|a| a.name.clone()).collect(),
         license: experiment.license.clone().unwrap_or_default(),
-        limits: limits(&records),
+        limits: limits(experiment.kind, &records),
         partial: plan.partial.then(|| {
             "only part of the study was run (--only, --trials or --shard); no claim is judged"
                 .to_owned()
         }),
         headline: headline(bundle, plan, &records),
-        tables: experiment.tables.iter().map(|request| table(&findings, request, plan)).collect(),
+        tables: experiment
+            .tables
+            .iter()
+            .map(|request| tables::table(&findings, request, plan))
+            .collect(),
         figures: figures(bundle, plan),
         claims: claims(bundle)?,
         assumptions: experiment
@@ -64,17 +66,33 @@ pub fn content_of(bundle: &Bundle, plan: &Plan) -> Result<ReportContent, String>
     })
 }
 
-fn limits(records: &[TrialRecord]) -> Vec<String> {
+fn limits(kind: StudyKind, records: &[TrialRecord]) -> Vec<String> {
     let mut limits = vec![
         "Simulated in two dimensions with Reenact's own worlds and robots: numbers are an analogue of the paper's, \
          whose runs used Gazebo and ROS."
             .to_owned(),
     ];
-    let unfinished = records.iter().filter(|r| r.outcome != Outcome::Explored).count();
-    if unfinished > 0 {
+    let count = |wanted: fn(Outcome) -> bool| records.iter().filter(|r| wanted(r.outcome)).count();
+    match kind {
+        StudyKind::PriorMap => {
+            let unfinished = count(|outcome| outcome != Outcome::Explored);
+            if unfinished > 0 {
+                limits.push(format!(
+                    "{unfinished} of {} trials did not explore everything; cells say how many trials are behind a mean.",
+                    records.len()
+                ));
+            }
+        }
+        StudyKind::Deadline => limits.push(
+            "The paper's building is published as a picture only: this one is invented, after what the paper's tables \
+             imply, so that none of its numbers is an independent test of the building."
+                .to_owned(),
+        ),
+    }
+    let panicked = count(|outcome| outcome == Outcome::Panicked);
+    if panicked > 0 {
         limits.push(format!(
-            "{unfinished} of {} trials did not explore everything; cells say how many trials are behind a mean.",
-            records.len()
+            "{panicked} trials failed to run: a fault of the program, not a result."
         ));
     }
     limits
@@ -103,85 +121,28 @@ fn headline(bundle: &Bundle, plan: &Plan, records: &[TrialRecord]) -> Headline {
     }
 }
 
-fn table(findings: &Findings<'_>, request: &TableRequest, plan: &Plan) -> ReportTable {
-    let wanted = &request.coverage_table;
-    let cells = findings.coverage_cells(wanted);
-    let mut columns: Vec<String> = Vec::new();
-    for cell in &cells {
-        if !columns.contains(&cell.by) {
-            columns.push(cell.by.clone());
-        }
-    }
-    // The page takes the first column for the baseline.
-    if let Some(baseline) = wanted.baseline.as_ref()
-        && let Some(i) = columns.iter().position(|c| *c == baseline.0)
-    {
-        columns.swap(0, i);
-    }
-    let rows = cells.chunks(columns.len().max(1)).map(|line| {
-        let label: Vec<String> = line
-            .iter()
-            .take(1)
-            .flat_map(|cell| {
-                let rows = cell.rows.iter().map(|(_, value)| value.clone());
-                rows.chain([format!("{} %", cell.percent)])
-            })
-            .collect();
-        let cell = |name: &String| {
-            line.iter().find(|c| c.by == *name).map(report_cell).unwrap_or_default()
-        };
-        ReportRow { label: label.join(", "), cells: columns.iter().map(cell).collect() }
-    });
-    let source = plan.experiment.cite.as_ref().and_then(|c| c.section.clone()).unwrap_or_default();
-    ReportTable {
-        id: request.id.clone(),
-        title: format!("{} (n = {} trials a cell)", request.title, plan.experiment.trials),
-        source: if wanted.published.is_some() { source } else { String::new() },
-        quantity: match wanted.metric {
-            Metric::DistanceM => "distance travelled (m)".to_owned(),
-            Metric::TimeS => "simulated time (s)".to_owned(),
-        },
-        decimals: 2,
-        row_header: "coverage".to_owned(),
-        rows: rows.collect(),
-        columns,
-    }
-}
-
-fn report_cell(cell: &CoverageCell) -> ReportCell {
-    let ours =
-        cell.ours.map(|s| Measured { mean: s.mean, sd: (s.n > 1).then_some(s.sd), n: Some(s.n) });
-    let published = cell.published.map(|(mean, sd, n)| {
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a count of runs"
-        )]
-        let n = n.map(|n| n.max(0.0) as u64);
-        Measured { mean, sd, n }
-    });
-    ReportCell {
-        ours,
-        difference_percent: cell.difference_percent,
-        published,
-        published_difference_percent: cell.published_difference_percent,
-        agreement: Agreement::between(ours, published),
-    }
-}
-
 fn figures(bundle: &Bundle, plan: &Plan) -> Vec<Figure> {
     plan.experiment
         .figures
         .iter()
         .filter_map(|request| {
             let bytes = bundle.result(&format!("figures/{}.svg", request.id))?;
-            let caption = "Median of the trials with a band from the 10th to the 90th percentile; hollow markers \
-                           are the paper's means with one standard deviation.";
+            let (caption, kind) = match &request.layout {
+                FigureLayout::CoverageCurve(_) => (
+                    "Median of the trials with a band from the 10th to the 90th percentile; hollow markers are the \
+                     paper's means with one standard deviation.",
+                    "Line chart",
+                ),
+                FigureLayout::OutcomeBars(_) => (
+                    "Bars are ours with 95 % intervals; hollow markers are the paper's numbers.",
+                    "Bar chart",
+                ),
+            };
             Some(Figure {
                 id: request.id.clone(),
                 title: request.title.clone(),
                 caption: caption.to_owned(),
-                alt: format!("Line chart: {}", request.title),
+                alt: format!("{kind}: {}", request.title),
                 svg: String::from_utf8_lossy(bytes).into_owned(),
             })
         })

@@ -13,6 +13,7 @@ mod recorded;
 pub mod replay;
 pub mod show;
 mod still;
+mod tables;
 mod template;
 
 pub use agreement::Agreement;

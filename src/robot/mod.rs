@@ -9,8 +9,9 @@ pub mod urdf;
 pub use message::{CompassReading, Detection, Odometry, Scan, Twist};
 
 use crate::digest::{MeaningDigest, Sha256Digest};
-use crate::geometry::{Outline, Pose};
+use crate::geometry::{Outline, Point, Pose};
 use crate::json;
+use crate::math;
 use serde::Serialize;
 
 /// A wheeled robot as its URDF describes it, reduced to what matters in the plane.
@@ -29,6 +30,12 @@ pub struct Robot {
     pub drive: Drive,
     /// The range scanner, if it has one.
     pub lidar: Option<Lidar>,
+    /// The logical camera, if it has one. Absent from the meaning where it is, so that robots without one keep theirs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub camera: Option<LogicalCamera>,
+    /// The compass, if it has one; as with the camera.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub compass: Option<Compass>,
 }
 
 impl Robot {
@@ -103,4 +110,42 @@ impl Lidar {
     pub fn increment(&self) -> f64 {
         (self.max_angle - self.min_angle) / f64::from(self.beams - 1)
     }
+}
+
+/// A camera that reports tags instead of an image: all those within a cone of the plane.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct LogicalCamera {
+    /// Name of the sensor in the description.
+    pub name: String,
+    /// Where it sits and looks, in the base frame (m, rad).
+    pub mount: Pose,
+    /// Shortest distance at which it sees a tag (m), 0 or more.
+    pub near: f64,
+    /// Longest distance (m), above `near`.
+    pub far: f64,
+    /// Full angle of the cone (rad), above 0, at most a full turn.
+    pub horizontal_fov: f64,
+    /// Images per second (Hz).
+    pub rate_hz: f64,
+}
+
+impl LogicalCamera {
+    /// Whether a tag at `point` (base frame, m) lies within the cone.
+    pub fn covers(&self, point: Point) -> bool {
+        let seen = self.mount.inverse_transform(point);
+        let distance = seen.norm();
+        let bearing = math::atan2(seen.y, seen.x);
+        (self.near..=self.far).contains(&distance) && bearing.abs() <= self.horizontal_fov / 2.0
+    }
+}
+
+/// A sensor of the base's heading. Its errors are the study's, not the description's.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Compass {
+    /// Name of the sensor in the description.
+    pub name: String,
+    /// Readings per second (Hz).
+    pub rate_hz: f64,
 }

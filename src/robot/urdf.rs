@@ -87,7 +87,7 @@ pub fn read(source: &Source) -> Result<(Robot, Vec<Diagnostic>), Vec<Diagnostic>
         );
     }
     let drive = gazebo::drive(&document, &mut faults);
-    let lidar = gazebo::lidar(&document, &mut faults, &frames, ground);
+    let sensors = gazebo::sensors(&document, &mut faults, &frames, ground);
     match drive {
         Some(drive) if !faults.any_error() => {
             let robot = Robot {
@@ -96,7 +96,9 @@ pub fn read(source: &Source) -> Result<(Robot, Vec<Diagnostic>), Vec<Diagnostic>
                 body_z: [low - ground, high - ground],
                 mass,
                 drive,
-                lidar,
+                lidar: sensors.lidar,
+                camera: sensors.camera,
+                compass: sensors.compass,
             };
             Ok((robot, faults.list))
         }

@@ -24,6 +24,8 @@ fn plan(trials: u32) -> Vec<TrialSpec> {
             max_angular: None,
         },
         lidar: None,
+        camera: None,
+        compass: None,
     };
     let world = World {
         name: "w".into(),

@@ -1,5 +1,6 @@
 //! From commanded to executed velocity: limits of the drive and errors of the actuators.
 
+use super::Distribution;
 use crate::rng::{Seeds, Stream};
 use crate::robot::{self, Twist};
 use crate::units::{Seconds, Tick};
@@ -7,9 +8,12 @@ use crate::units::{Seconds, Tick};
 /// Errors of the executed velocity, each a share of the command that holds for a while.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DriveNoise {
-    /// Standard deviation of the error of linear speed, as a share of the command.
+    /// How the two errors are distributed.
+    pub distribution: Distribution,
+    /// Size of the error of linear speed, as a share of the command: a standard deviation or a bound, as the
+    /// distribution says.
     pub linear: f64,
-    /// Standard deviation of the error of angular speed, as a share of the command.
+    /// Size of the error of angular speed, as a share of the command.
     pub angular: f64,
     /// How long one error lasts. A time, so that it does not depend on the control rate.
     pub correlation: Seconds,
@@ -17,7 +21,12 @@ pub struct DriveNoise {
 
 impl DriveNoise {
     /// A drive that does what it is told.
-    pub const NONE: Self = Self { linear: 0.0, angular: 0.0, correlation: Seconds(1.0) };
+    pub const NONE: Self = Self {
+        distribution: Distribution::Gaussian,
+        linear: 0.0,
+        angular: 0.0,
+        correlation: Seconds(1.0),
+    };
 }
 
 #[derive(Debug)]
@@ -65,7 +74,7 @@ impl Drive {
     }
 
     fn draw(&mut self, number: u64) {
-        let (linear, angular) = self.stream.at(number).normal_pair();
+        let (linear, angular) = self.noise.distribution.pair(self.stream.at(number));
         self.current =
             (number, 1.0 + self.noise.linear * linear, 1.0 + self.noise.angular * angular);
     }
@@ -88,7 +97,12 @@ mod tests {
 
     #[test]
     fn limits_hold_and_errors_last_their_time() {
-        let noise = DriveNoise { linear: 0.25, angular: 0.25, correlation: Seconds(0.5) };
+        let noise = DriveNoise {
+            distribution: Distribution::Gaussian,
+            linear: 0.25,
+            angular: 0.25,
+            correlation: Seconds(0.5),
+        };
         let seeds = Seeds::new(1, vec![]);
         let mut drive = Drive::new(noise, &limits(), &seeds);
         drive.command(Twist { linear: 2.0, angular: 1.0 });
@@ -103,5 +117,26 @@ mod tests {
         let mut exact = Drive::new(DriveNoise::NONE, &limits(), &seeds);
         exact.command(Twist { linear: 2.0, angular: -3.0 });
         assert_eq!(exact.executed(Tick(77)), Twist { linear: 0.5, angular: -3.0 });
+    }
+
+    #[test]
+    fn uniform_errors_stay_within_their_bound_and_fill_it() {
+        let noise = DriveNoise {
+            distribution: Distribution::Uniform,
+            linear: 0.25,
+            angular: 0.1,
+            correlation: Seconds(0.1),
+        };
+        let mut drive = Drive::new(noise, &limits(), &Seeds::new(3, vec![]));
+        drive.command(Twist { linear: 0.4, angular: 2.0 });
+        let twists: Vec<_> = (0..2000).map(|i| drive.executed(Tick(300 * i))).collect();
+        let range = |of: fn(&Twist) -> f64| {
+            let values = twists.iter().map(of);
+            (values.clone().fold(f64::INFINITY, f64::min), values.fold(0.0, f64::max))
+        };
+        let (low, high) = range(|twist| twist.linear);
+        assert!((0.3..0.301).contains(&low) && (0.499..=0.5).contains(&high), "{low} {high}");
+        let (low, high) = range(|twist| twist.angular);
+        assert!((1.8..1.802).contains(&low) && (2.198..=2.2).contains(&high), "{low} {high}");
     }
 }

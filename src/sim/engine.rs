@@ -132,6 +132,8 @@ mod tests {
                 max_angular: None,
             },
             lidar: None,
+            camera: None,
+            compass: None,
         }
     }
 

@@ -1,22 +1,30 @@
 //! The truth in motion: one integer clock, a dynamic body driven through a noise model, sensors at their own
 //! rates.
 //!
-//! A scan nobody reads is not computed: its pose is kept, and its noise stream is indexed by the scan's
-//! number, so laziness changes no bit.
+//! A reading nobody asks for is not computed: its pose is kept, and its noise stream is indexed by the reading's number,
+//! so laziness changes no bit.
 
+mod camera;
+mod compass;
 mod drive;
 mod engine;
 mod lidar;
+mod noise;
 mod odometry;
 
+pub use camera::{CameraScene, Occlusion};
+pub use compass::CompassNoise;
 pub use drive::DriveNoise;
 pub use lidar::WallSweep;
+pub use noise::Distribution;
 pub use odometry::OdometryNoise;
 
 use crate::geometry::{Outline, Pose};
 use crate::rng::{Seeds, Stream};
-use crate::robot::{Lidar, Odometry, Robot, Scan, Twist};
+use crate::robot::{self, CompassReading, Detection, Lidar, Odometry, Robot, Scan, Twist};
 use crate::units::Tick;
+use camera::Camera;
+use compass::Compass;
 use drive::Drive;
 use engine::Engine;
 use odometry::Odometer;
@@ -35,6 +43,10 @@ pub struct Scene<'a> {
     pub robot: &'a Robot,
     /// Its lidar as the study uses it (range and noise may differ from the robot's own).
     pub lidar: Lidar,
+    /// Its logical camera among the world's tags, where the study uses one.
+    pub camera: Option<CameraScene<'a>>,
+    /// Its compass and that one's errors, where the study uses one.
+    pub compass: Option<(robot::Compass, CompassNoise)>,
     /// Where it begins, in the world's frame.
     pub start: Pose,
     /// Errors of the drive.
@@ -53,6 +65,8 @@ pub struct Simulator {
     lidar: Lidar,
     lidar_noise: Stream,
     scan_period: Tick,
+    camera: Option<(Camera, Shutter)>,
+    compass: Option<(Compass, Shutter)>,
     now: Tick,
     scan: PendingScan,
     travelled: f64,
@@ -70,6 +84,30 @@ struct PendingScan {
     odometry: Odometry,
 }
 
+/// When and where a sensor last read; what it read is computed when someone asks.
+#[derive(Debug, Clone, Copy)]
+struct Shutter {
+    period: Tick,
+    number: u64,
+    stamp: Tick,
+    pose: Pose,
+}
+
+impl Shutter {
+    /// First due at tick 0, at `pose`. A rate that the clock cannot serve is taken for physics' own, as with the lidar.
+    fn new(rate_hz: f64, pose: Pose) -> Self {
+        let period = Tick::period_of(rate_hz).unwrap_or(PHYSICS_PERIOD);
+        Self { period, number: 0, stamp: Tick(0), pose }
+    }
+
+    /// Reads where it is due; physics serves it at the first step after.
+    fn note(&mut self, now: Tick, pose: Pose) {
+        if now.0 >= (self.number + 1) * self.period.0 {
+            (self.number, self.stamp, self.pose) = (now.0 / self.period.0, now, pose);
+        }
+    }
+}
+
 impl Simulator {
     /// A robot at rest at the start of `scene`, its first scan taken at tick 0.
     ///
@@ -84,6 +122,13 @@ impl Simulator {
             sweep: WallSweep::new(scene.visible, &scene.lidar),
             lidar_noise: seeds.stream("lidar-noise"),
             scan_period,
+            camera: scene.camera.map(|scene_of| {
+                let shutter = Shutter::new(scene_of.camera.rate_hz, scene.start);
+                (Camera::new(scene_of, scene.visible), shutter)
+            }),
+            compass: scene.compass.map(|(compass, noise)| {
+                (Compass::new(noise, seeds), Shutter::new(compass.rate_hz, scene.start))
+            }),
             now: Tick(0),
             scan: PendingScan {
                 number: 0,
@@ -134,6 +179,12 @@ impl Simulator {
                     odometry: self.odometer.reading(self.now),
                 };
             }
+            if let Some((_, shutter)) = &mut self.camera {
+                shutter.note(self.now, self.engine.pose());
+            }
+            if let Some((_, shutter)) = &mut self.compass {
+                shutter.note(self.now, self.engine.pose());
+            }
         }
     }
 
@@ -173,6 +224,20 @@ impl Simulator {
         }
     }
 
+    /// What the logical camera sees in its latest image, written over `detections`; when that was, or `None` where the
+    /// scene has no camera.
+    pub fn read_detections(&mut self, detections: &mut Vec<Detection>) -> Option<Tick> {
+        let (camera, shutter) = self.camera.as_mut()?;
+        camera.look(shutter.pose, detections);
+        Some(shutter.stamp)
+    }
+
+    /// The latest reading of the compass, or `None` where the scene has none.
+    pub fn read_compass(&mut self) -> Option<CompassReading> {
+        let (compass, shutter) = self.compass.as_mut()?;
+        Some(compass.reading(shutter.number, shutter.stamp, shutter.pose.heading))
+    }
+
     /// The true pose in the world's frame. For measuring and drawing; no mind may see it.
     pub fn true_pose(&self) -> Pose {
         self.engine.pose()
@@ -191,5 +256,10 @@ impl Simulator {
     /// How many times the body came into contact with something.
     pub fn contacts(&self) -> u32 {
         self.contacts
+    }
+
+    /// Whether the body touches something now.
+    pub fn is_touching(&self) -> bool {
+        self.touching
     }
 }

@@ -3,15 +3,46 @@
 //! A study is a folder here and one arm of [`Setup`]; the two never import one another. What all of them
 //! share, the trial's identity and its record, is in this module.
 
+pub mod deadline;
+mod factor_value;
+mod findings;
 pub mod prior_map;
 mod record;
 pub mod recording;
+mod requests;
+mod state_chain;
 
+pub use factor_value::FactorValue;
+pub use findings::Findings;
 pub use record::{Outcome, SeriesPoint, TrialRecord};
+pub use requests::{FigureLayout, FigureRequest, TableLayout, TableRequest};
 
 use crate::digest::TrialKey;
+use crate::geometry::Pose;
 use crate::rng::Seeds;
+use crate::robot::Robot;
+use crate::world::World;
+use serde_json::{Value, json};
 use std::sync::Arc;
+
+/// A group of parameters: a struct that a manifest may write in part, every field with its default.
+macro_rules! parameters {
+    ($(#[$doc:meta])* $name:ident { $($(#[$field_doc:meta])* $field:ident: $type:ty = $default:expr,)* }) => {
+        $(#[$doc])*
+        #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+        #[serde(rename_all = "kebab-case", deny_unknown_fields, default)]
+        pub struct $name {
+            $($(#[$field_doc])* pub $field: $type,)*
+        }
+
+        impl Default for $name {
+            fn default() -> Self {
+                Self { $($field: $default,)* }
+            }
+        }
+    };
+}
+pub(crate) use parameters;
 
 /// Which study a manifest describes: a closed set.
 #[derive(
@@ -19,6 +50,8 @@ use std::sync::Arc;
 )]
 #[serde(rename_all = "kebab-case")]
 pub enum StudyKind {
+    /// Susa Rincon and Carpin 2019: exploration under a deadline.
+    Deadline,
     /// Luperto et al. 2020: exploration with prior knowledge.
     PriorMap,
 }
@@ -60,6 +93,69 @@ impl std::fmt::Display for Condition {
 pub enum Setup {
     /// A trial of the prior-knowledge study.
     PriorMap(Arc<prior_map::Setup>),
+    /// A trial of the deadline study.
+    Deadline(Arc<deadline::Setup>),
+}
+
+impl StudyKind {
+    /// Every study.
+    pub const ALL: [Self; 2] = [Self::Deadline, Self::PriorMap];
+
+    /// The name in manifests, keys and streams.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Deadline => "deadline",
+            Self::PriorMap => "prior-map",
+        }
+    }
+}
+
+impl Setup {
+    /// The true world.
+    pub fn world(&self) -> &World {
+        match self {
+            Self::PriorMap(setup) => &setup.world,
+            Self::Deadline(setup) => &setup.world,
+        }
+    }
+
+    /// The robot.
+    pub fn robot(&self) -> &Robot {
+        match self {
+            Self::PriorMap(setup) => &setup.robot,
+            Self::Deadline(setup) => &setup.robot,
+        }
+    }
+
+    /// Where the robot begins, in the world's frame (m, rad).
+    pub fn start(&self) -> Pose {
+        match self {
+            Self::PriorMap(setup) => setup.start,
+            Self::Deadline(setup) => setup.start,
+        }
+    }
+
+    /// The study's parameters, defaults written out.
+    pub fn parameters(&self) -> Value {
+        match self {
+            Self::PriorMap(setup) => json!(setup.parameters),
+            Self::Deadline(setup) => json!(setup.parameters),
+        }
+    }
+
+    /// What the deadline study's planner expects of its maneuvers.
+    pub fn calibration(&self) -> Option<&deadline::Calibration> {
+        match self {
+            Self::PriorMap(_) => None,
+            Self::Deadline(setup) => setup.calibration.as_deref(),
+        }
+    }
+
+    /// What else a trial depends on, by name: nothing of it is in robot, world, prior, start or parameters.
+    pub fn further(&self) -> serde_json::Map<String, Value> {
+        let calibration = self.calibration().into_iter();
+        calibration.map(|known| ("maneuvers".to_owned(), known.to_json())).collect()
+    }
 }
 
 /// One trial, self-contained: executing it is a pure function of this value.
@@ -81,6 +177,7 @@ pub struct TrialSpec {
 pub fn execute(spec: &TrialSpec) -> TrialRecord {
     match &spec.setup {
         Setup::PriorMap(setup) => prior_map::run(spec, setup, None),
+        Setup::Deadline(setup) => deadline::run(spec, setup, None),
     }
 }
 
@@ -89,6 +186,7 @@ pub fn reenact(spec: &TrialSpec) -> (TrialRecord, recording::Recording) {
     let mut recording = recording::Recording::default();
     let record = match &spec.setup {
         Setup::PriorMap(setup) => prior_map::run(spec, setup, Some(&mut recording)),
+        Setup::Deadline(setup) => deadline::run(spec, setup, Some(&mut recording)),
     };
     (record, recording)
 }

@@ -3,13 +3,24 @@
 use super::Condition;
 use crate::digest::TrialKey;
 use crate::json;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Why a trial ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
+)]
 #[serde(rename_all = "kebab-case")]
 pub enum Outcome {
+    /// Deadline: the robot arrived at the goal in time; in a passage, at the end of it.
+    Reached,
+    /// Deadline: the body came into contact with something.
+    Collided,
+    /// Deadline: the time was up, though new places were still being found.
+    Late,
+    /// Deadline: the time was up, and no new place had been found for long; or nothing was left to do.
+    Stalled,
     /// Prior map: no frontier is left that the robot could go to.
     Explored,
     /// Prior map: the robot could not go on to any frontier, or made no progress.
@@ -24,6 +35,10 @@ impl Outcome {
     /// The name in tables and records.
     pub fn name(self) -> &'static str {
         match self {
+            Self::Reached => "reached",
+            Self::Collided => "collided",
+            Self::Late => "late",
+            Self::Stalled => "stalled",
             Self::Explored => "explored",
             Self::Stuck => "stuck",
             Self::TimeLimit => "time-limit",

@@ -1,6 +1,7 @@
 //! `reenact check`: parse and resolve everything, simulate nothing.
 
 use crate::cli::args::CheckArgs;
+use crate::cli::calibrate::Calibrator;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::load;
 use crate::cli::terminal::{Terminal, counted};
@@ -10,7 +11,7 @@ use crate::plan::Plan;
 pub(in crate::cli) fn run(args: &CheckArgs, terminal: Terminal) -> Result<Exit, Failure> {
     let mut failures = Vec::new();
     for manifest in &args.manifests {
-        match load::manifest(manifest, &args.set, terminal) {
+        match load::manifest(manifest, &args.set, Calibrator::StandIn, terminal) {
             Ok(loaded) => {
                 let conditions = loaded.experiment.conditions.len();
                 let inputs = loaded.experiment.inputs.len();

@@ -1,6 +1,7 @@
 //! `reenact plan`: the trials that would run, or what one trial's key is made of.
 
 use crate::cli::args::PlanArgs;
+use crate::cli::calibrate::Calibrator;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::load;
 use crate::cli::terminal::{Terminal, counted};
@@ -14,14 +15,15 @@ pub(in crate::cli) fn run(
     environment: &Environment,
     terminal: Terminal,
 ) -> Result<Exit, Failure> {
-    let loaded = load::manifest(&args.manifest, &args.select.set, terminal)?;
+    let store = DirectoryStore::new(environment.store().map_err(Failure::not_understood)?);
+    let calibrator = Calibrator::Stored(&store);
+    let loaded = load::manifest(&args.manifest, &args.select.set, calibrator, terminal)?;
     let (plan, _) = load::plan(loaded.experiment, &args.select)?;
     if let Some(wanted) = &args.explain {
         let spec = plan.find(wanted).map_err(Failure::not_understood)?;
         terminal.result(&plan.explain(spec));
         return Ok(Exit::Yes);
     }
-    let store = DirectoryStore::new(environment.store().map_err(Failure::not_understood)?);
     let mut text = String::new();
     let (mut done, mut known_seconds) = (0, 0.0);
     for spec in &plan.trials {

@@ -3,6 +3,7 @@
 use super::tables;
 use crate::bundle::{Form, Sealed, assemble, seal};
 use crate::cli::args::{Format, RunArgs};
+use crate::cli::calibrate::Calibrator;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::load;
 use crate::cli::progress::Progress;
@@ -41,11 +42,17 @@ fn run_one(
     terminal: Terminal,
 ) -> Result<Exit, Failure> {
     let clock = RunClock::start();
-    let loaded = load::manifest(manifest, &args.select.set, terminal)?;
-    let (plan, selection) = load::plan(loaded.experiment, &args.select)?;
     let scheduler =
         Scheduler::new(args.jobs.unwrap_or_else(processors)).map_err(Failure::failed)?;
-    let (records, cached) = execute(&plan, &scheduler, args, environment, terminal)?;
+    let store = if args.no_cache {
+        None
+    } else {
+        Some(DirectoryStore::new(environment.store().map_err(Failure::not_understood)?))
+    };
+    let calibrator = Calibrator::Run { scheduler: &scheduler, store: store.as_ref() };
+    let loaded = load::manifest(manifest, &args.select.set, calibrator, terminal)?;
+    let (plan, selection) = load::plan(loaded.experiment, &args.select)?;
+    let (records, cached) = execute(&plan, &scheduler, store.as_ref(), terminal)?;
     let content = assemble::assemble(&plan, loaded.source.text.as_bytes(), &selection, &records)
         .map_err(Failure::failed)?;
     let sealed = seal(&content, &clock.circumstance(environment, scheduler.jobs()))
@@ -63,15 +70,9 @@ fn run_one(
 fn execute(
     plan: &Plan,
     scheduler: &Scheduler,
-    args: &RunArgs,
-    environment: &Environment,
+    store: Option<&DirectoryStore>,
     terminal: Terminal,
 ) -> Result<(Vec<TrialRecord>, usize), Failure> {
-    let kept = if args.no_cache {
-        None
-    } else {
-        Some(DirectoryStore::new(environment.store().map_err(Failure::not_understood)?))
-    };
     let progress = Progress::new(terminal);
     let cached = AtomicUsize::new(0);
     let observer = |event: &RunEvent<'_>| {
@@ -83,7 +84,7 @@ fn execute(
     let records = scheduler.run(
         &plan.trials,
         &studies::execute,
-        kept.as_ref().map(|store| store as &dyn TrialStore),
+        store.map(|store| store as &dyn TrialStore),
         &observer,
     );
     progress.finish();
@@ -125,7 +126,7 @@ impl Done {
         let factors = assemble::factors(&self.plan);
         let findings = assemble::findings(&self.plan, &self.records, &factors);
         for request in &self.plan.experiment.tables {
-            text.push_str(&tables::coverage_table(&findings, request));
+            text.push_str(&tables::table(&findings, request));
             text.push('\n');
         }
         text.push_str(&self.summary());

@@ -8,7 +8,7 @@ use crate::{document, manifest, world};
 /// Prints a JSON Schema.
 pub(in crate::cli) fn run(args: &SchemaArgs, terminal: Terminal) -> Exit {
     let schema = match args.of {
-        SchemaOf::Manifest => manifest::schema(),
+        SchemaOf::Manifest => manifest::schema(None),
         SchemaOf::World => document::schema_of::<world::document::WorldDoc>(),
     };
     terminal.result(&format!("{schema:#}"));

@@ -1,27 +1,78 @@
 //! The paper's tables in 80 columns.
 
-use crate::studies::prior_map::TableRequest;
-use crate::studies::prior_map::results::{CoverageCell, Findings};
+use crate::studies::deadline::OutcomeTable;
+use crate::studies::prior_map::CoverageTable;
+use crate::studies::prior_map::results::CoverageCell;
+use crate::studies::{Findings, TableLayout, TableRequest};
+use crate::table::{Table, Value};
 
-/// Ours beside the paper's, one line a cell.
-pub(super) fn coverage_table(findings: &Findings<'_>, request: &TableRequest) -> String {
-    let cells = findings.coverage_cells(&request.coverage_table);
+/// Ours beside the paper's.
+pub(super) fn table(findings: &Findings<'_>, request: &TableRequest) -> String {
+    let body = match &request.layout {
+        TableLayout::CoverageTable(wanted) => coverage_table(findings, wanted),
+        TableLayout::OutcomeTable(wanted) => outcome_table(findings, wanted),
+        TableLayout::ManeuverTable(wanted) => aligned(&findings.maneuver_table(wanted)),
+    };
+    format!("{}\n{body}", request.title)
+}
+
+/// One line a row of the table; in each column ours, and the paper's in parentheses.
+fn outcome_table(findings: &Findings<'_>, wanted: &OutcomeTable) -> String {
+    let columns = findings.columns_of(wanted);
+    let cells = findings.outcome_cells(wanted);
+    let mut table = Table::new(wanted.rows.iter().chain(&columns).cloned());
+    for line in cells.chunks(columns.len().max(1)) {
+        let Some(first) = line.first() else { continue };
+        let mut texts: Vec<Value> =
+            first.rows.iter().map(|(_, value)| value.as_str().into()).collect();
+        texts.extend(line.iter().map(|cell| {
+            let ours = cell.ours.map_or("-".to_owned(), |e| format!("{:.0}", e.value));
+            Value::from(match cell.published {
+                Some((papers, _)) => format!("{ours} ({papers:.0})"),
+                None if wanted.published.is_some() => format!("{ours} (-)"),
+                None => ours,
+            })
+        }));
+        table.push(texts);
+    }
+    let mut text = aligned(&table);
+    if wanted.published.is_some() {
+        text.push_str("  (in parentheses: the paper's)\n");
+    }
+    text
+}
+
+/// A table as lines, its columns aligned to the right.
+fn aligned(table: &Table) -> String {
+    let mut lines = vec![table.columns.clone()];
+    lines.extend(table.rows.iter().map(|row| row.iter().map(ToString::to_string).collect()));
+    let width = |i: usize| lines.iter().map(|line| line[i].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..table.columns.len()).map(width).collect();
+    let mut text = String::new();
+    for line in &lines {
+        let padded: Vec<String> =
+            line.iter().zip(&widths).map(|(cell, &width)| format!("{cell:>width$}")).collect();
+        text.push_str(&format!("  {}\n", padded.join("  ")));
+    }
+    text
+}
+
+/// One line a cell.
+fn coverage_table(findings: &Findings<'_>, wanted: &CoverageTable) -> String {
+    let cells = findings.coverage_cells(wanted);
     let name = |cell: &CoverageCell| {
         let mut parts: Vec<&str> = cell.rows.iter().map(|(_, value)| value.as_str()).collect();
         parts.push(&cell.by);
         parts.join(", ")
     };
     let width = cells.iter().map(|c| name(c).chars().count()).max().unwrap_or(0).max(5);
-    let mut text = format!("{}\n", request.title);
+    let mut text = String::new();
     let papers = if cells.iter().any(|c| c.published.is_some()) { "paper's" } else { "" };
     let mut line = |line: String| {
         text.push_str(line.trim_end());
         text.push('\n');
     };
-    line(format!(
-        "  coverage  {:width$}  {:>16} {:>6}   {papers:>16}",
-        request.coverage_table.by, "ours", ""
-    ));
+    line(format!("  coverage  {:width$}  {:>16} {:>6}   {papers:>16}", wanted.by, "ours", ""));
     let mut last = None;
     for cell in &cells {
         let percent =

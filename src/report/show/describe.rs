@@ -60,6 +60,22 @@ pub fn describe_robot(robot: &Robot) -> String {
             metres(lidar.noise_sd),
         )),
     }
+    if let Some(camera) = &robot.camera {
+        text.push_str(&format!(
+            "logical camera: {} at ({}, {}) m, heading {:.1} deg, {:.1} deg wide, {} to {} m, {} Hz\n",
+            camera.name,
+            metres(camera.mount.x),
+            metres(camera.mount.y),
+            camera.mount.heading.to_degrees(),
+            camera.horizontal_fov.to_degrees(),
+            metres(camera.near),
+            metres(camera.far),
+            metres(camera.rate_hz),
+        ));
+    }
+    if let Some(compass) = &robot.compass {
+        text.push_str(&format!("compass: {}, {} Hz\n", compass.name, metres(compass.rate_hz)));
+    }
     text.push_str(&format!("meaning: {}\n", robot.meaning()));
     text
 }

@@ -1,4 +1,4 @@
-//! A robot from above: footprint, wheels, scanner with its field of view.
+//! A robot from above: footprint, wheels, scanner and logical camera with their fields of view.
 
 use super::canvas::{ACCENT, Canvas, FAINT, INK, metres};
 use crate::geometry::{Bounds, Outline, Point, Pose};
@@ -8,15 +8,18 @@ use crate::robot::Robot;
 /// Width of a wheel as drawn, in wheel diameters: the description does not say.
 const WHEEL_WIDTH: f64 = 0.3;
 
+/// The logical camera's cone.
+const CONE: &str = "#d98324";
+
 /// The robot from above, x to the right, with its dimensions, as an SVG file.
 pub fn robot_svg(robot: &Robot) -> String {
     let radius = robot.circumscribed_radius();
     let body = robot.footprint.bounds();
     let margin = 0.75 * radius.max(robot.drive.wheel_separation / 2.0);
-    let reach = 2.1 * radius;
+    // Fields of view are cut off: they show the direction, not the range.
+    let (reach, cone_reach) = (2.1 * radius, 1.6 * radius);
     let mut bounds = body.grown(margin);
     if let Some(lidar) = &robot.lidar {
-        // The wedge is cut off: it shows the direction, not the range.
         for point in wedge(lidar.mount, lidar.min_angle, lidar.max_angle, reach) {
             bounds = bounds.union(Bounds { min: point, max: point }.grown(0.12 * radius));
         }
@@ -32,6 +35,21 @@ pub fn robot_svg(robot: &Robot) -> String {
             .set("fill-opacity", 0.12)
             .set("stroke", ACCENT)
             .set("stroke-dasharray", "5 4");
+        canvas.push(view);
+    }
+    let cone = robot.camera.as_ref().map(|camera| {
+        let half = camera.horizontal_fov / 2.0;
+        let mut corners = wedge(camera.mount, -half, half, cone_reach);
+        corners.push(camera.mount.position());
+        (camera, corners)
+    });
+    if let Some((_, corners)) = &cone {
+        let view = canvas
+            .path(corners, true)
+            .set("fill", CONE)
+            .set("fill-opacity", 0.16)
+            .set("stroke", CONE)
+            .set("stroke-dasharray", "2 3");
         canvas.push(view);
     }
     let body_shape = canvas
@@ -79,6 +97,17 @@ pub fn robot_svg(robot: &Robot) -> String {
         );
         canvas.push(label);
     }
+    if let Some((camera, corners)) = &cone {
+        // Beside the cone's left edge, where neither beams nor body are described.
+        let text = format!(
+            "camera: {:.1}° to {} m, {} Hz",
+            camera.horizontal_fov.to_degrees(),
+            metres(camera.far),
+            metres(camera.rate_hz)
+        );
+        let label = canvas.label(corners[40], (0.0, -6.0), 12.0, &text);
+        canvas.push(label);
+    }
     let above = [Point::new(body.min.x, body.max.y), body.max];
     let width = match &robot.footprint {
         Outline::Circle { radius, .. } => format!("⌀ {} m", metres(2.0 * radius)),
@@ -102,6 +131,9 @@ pub fn robot_svg(robot: &Robot) -> String {
         legend.push(("field of view".to_owned(), "#e2ecf4", ACCENT));
     } else {
         legend.push(("no range scanner".to_owned(), "#fff", FAINT));
+    }
+    if cone.is_some() {
+        legend.push(("logical camera".to_owned(), "#f8ebde", CONE));
     }
     canvas.legend(&legend);
     canvas.finish(&format!("Robot {} from above", robot.name))

@@ -3,6 +3,7 @@ use crate::document::mutation::{edits, mutate};
 use proptest::prelude::*;
 
 const KOBUKI: &str = include_str!("../../../robots/kobuki.urdf");
+const PIONEER: &str = include_str!("../../../robots/pioneer3at.urdf");
 const BASIC: &str = include_str!("../../../worlds/basic.yaml");
 const MAP: &str = "image: m.pgm\nresolution: 0.1\norigin: [-1.0, 2.0, 0.0]\nnegate: 0\n\
                    occupied_thresh: 0.65\nfree_thresh: 0.196\n";
@@ -19,6 +20,23 @@ fn texts(svg: &str) -> Vec<String> {
     let document = roxmltree::Document::parse(svg).unwrap();
     let nodes = document.descendants().filter(|node| node.has_tag_name("text"));
     nodes.filter_map(|node| node.text().map(str::to_owned)).collect()
+}
+
+#[test]
+fn a_logical_camera_is_drawn_with_its_cone() {
+    let robot = drawn("robots/pioneer3at.urdf", PIONEER);
+    for line in [
+        "logical camera: ids at (0, 0) m, heading 0.0 deg, 120.3 deg wide, 0.05 to 6 m, 10 Hz\n",
+        "compass: compass, 10 Hz\n",
+    ] {
+        assert!(robot.text.contains(line), "{}", robot.text);
+    }
+    let said = texts(&robot.svg);
+    for text in ["camera: 120.3° to 6 m, 10 Hz", "logical camera", "181 beams over 180.0°"] {
+        assert!(said.iter().any(|t| t == text), "{text}: {said:?}");
+    }
+    let cones = |svg: &str| svg.matches("stroke=\"#d98324\"").count();
+    assert_eq!((cones(&robot.svg), cones(&drawn("robots/kobuki.urdf", KOBUKI).svg)), (2, 0));
 }
 
 #[test]

@@ -1,17 +1,19 @@
-//! The `<gazebo>` blocks: which range scanner the robot carries, and how its wheels drive it.
+//! The `<gazebo>` blocks: which sensors the robot carries, and how its wheels drive it.
 //!
-//! Sensors after SDF 1.6 (`ray`, `gpu_ray`, also `lidar` of later versions); drives after the plugins of
-//! gazebo_ros_pkgs (`diff_drive`, `skid_steer_drive`), gz-sim (`diff-drive-system`) and kobuki_desktop
-//! (`kobuki`).
+//! Sensors after SDF 1.6 (`ray`, `gpu_ray`, also `lidar` of later versions; `logical_camera`; `magnetometer` and `imu`,
+//! either of which is read as a compass); drives after the plugins of gazebo_ros_pkgs (`diff_drive`,
+//! `skid_steer_drive`), gz-sim (`diff-drive-system`) and kobuki_desktop (`kobuki`).
+
+mod camera;
+mod lidar;
 
 use crate::document::suggestion;
 use crate::document::xml::{self, Faults};
-use crate::geometry::{Placement, Pose};
-use crate::robot::{Drive, DriveKind, Lidar};
+use crate::geometry::Placement;
+use crate::robot::{Compass, Drive, DriveKind, Lidar, LogicalCamera};
 use crate::units::Tick;
 use roxmltree::{Document, Node};
 use std::collections::BTreeMap;
-use std::f64::consts::TAU;
 
 /// Drive plugins by file name without `lib` and `.so`.
 const DRIVES: [(&str, DriveKind); 7] = [
@@ -32,7 +34,41 @@ const HARMLESS: [&str; 4] = [
     "gz-sim-joint-state-publisher-system",
 ];
 
-const SCANNERS: [&str; 4] = ["ray", "gpu_ray", "lidar", "gpu_lidar"];
+/// The sensors that are simulated, the first of each kind.
+#[derive(Debug, Default)]
+pub(super) struct Sensors {
+    pub(super) lidar: Option<Lidar>,
+    pub(super) camera: Option<LogicalCamera>,
+    pub(super) compass: Option<Compass>,
+}
+
+/// What a sensor is simulated as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Scanner,
+    Camera,
+    Compass,
+}
+
+impl Kind {
+    /// The kind that SDF's `type` names.
+    fn of(name: &str) -> Option<Self> {
+        match name {
+            "ray" | "gpu_ray" | "lidar" | "gpu_lidar" => Some(Self::Scanner),
+            "logical_camera" => Some(Self::Camera),
+            "magnetometer" | "imu" => Some(Self::Compass),
+            _ => None,
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Scanner => "range scanner",
+            Self::Camera => "logical camera",
+            Self::Compass => "compass",
+        }
+    }
+}
 
 /// The drive plugin of the robot, or a fault.
 pub(super) fn drive(document: &Document<'_>, faults: &mut Faults<'_>) -> Option<Drive> {
@@ -114,14 +150,15 @@ fn positive(node: Node<'_, '_>, names: &[&str], faults: &mut Faults<'_>) -> Opti
     None
 }
 
-/// The first range scanner of the robot. Other sensors and further scanners are warned of.
-pub(super) fn lidar(
+/// The first sensor of every kind that is simulated. Others are warned of.
+pub(super) fn sensors(
     document: &Document<'_>,
     faults: &mut Faults<'_>,
     frames: &BTreeMap<String, Placement>,
     ground: f64,
-) -> Option<Lidar> {
-    let mut found = None;
+) -> Sensors {
+    let mut found = Sensors::default();
+    let mut seen = Vec::new();
     for block in blocks(document) {
         let sensors: Vec<_> =
             xml::elements(block).filter(|e| e.tag_name().name() == "sensor").collect();
@@ -136,193 +173,91 @@ pub(super) fn lidar(
             faults.push(if sensors.is_empty() { fault.warning() } else { fault });
             continue;
         }
-        for sensor in sensors {
-            let kind = sensor.attribute("type").unwrap_or("");
-            let name = sensor.attribute("name").unwrap_or("");
-            if !SCANNERS.contains(&kind) {
+        for node in sensors {
+            let written = node.attribute("type").unwrap_or("");
+            let name = node.attribute("name").unwrap_or("");
+            let Some(kind) = Kind::of(written) else {
                 let fault = faults
-                    .at(sensor, format!("sensor `{name}` of type `{kind}` is not simulated"))
+                    .at(node, format!("sensor `{name}` of type `{written}` is not simulated"))
                     .label("ignored")
                     .warning();
                 faults.push(fault);
-            } else if found.is_some() {
+                continue;
+            };
+            if seen.contains(&kind) {
                 let fault = faults
-                    .at(sensor, format!("second range scanner `{name}`"))
+                    .at(node, format!("second {} `{name}`", kind.name()))
                     .label("ignored: the first one is used")
                     .warning();
                 faults.push(fault);
-            } else if let Some(Some(frame)) = frame {
-                found = Some(read_lidar(sensor, name, frame, ground, faults));
-            } else {
+                continue;
+            }
+            let Some(Some(link)) = frame else {
                 let fault = faults
                     .at(block, format!("sensor `{name}` is on no link"))
                     .label("expected an attribute `reference`");
                 faults.push(fault);
+                continue;
+            };
+            seen.push(kind);
+            let sensor = Sensor { node, kind, name, link };
+            match kind {
+                Kind::Scanner => found.lidar = lidar::read(&sensor, ground, faults),
+                Kind::Camera => found.camera = camera::read(&sensor, faults),
+                Kind::Compass => {
+                    let rate_hz = sensor.rate("readings per second", faults);
+                    found.compass =
+                        rate_hz.map(|rate_hz| Compass { name: name.to_owned(), rate_hz });
+                }
             }
         }
     }
-    found.flatten()
+    found
 }
 
-fn read_lidar(
-    sensor: Node<'_, '_>,
-    name: &str,
-    link: &Placement,
-    ground: f64,
-    faults: &mut Faults<'_>,
-) -> Option<Lidar> {
-    let within = match xml::child(sensor, "pose") {
-        Some(pose) => Placement::from_xyz_rpy(faults.numbers(pose)?),
-        None => Placement::IDENTITY,
-    };
-    let placement = link.compose(&within);
-    if placement.rotation[2][2] < 1.0 - 1e-6 {
-        let fault = faults
-            .at(sensor, format!("range scanner `{name}` is tilted or upside down"))
-            .label("expected a level scan plane");
-        faults.push(fault);
-    }
-    let rate_hz = faults.required(sensor, "update_rate", "scans per second");
-    if let Some(rate) = rate_hz
-        && Tick::period_of(rate).is_none()
-    {
-        let fault = faults
-            .at(sensor, format!("range scanner `{name}` scans at {rate} Hz"))
-            .label("expected a rate that divides the clock's 3000 Hz")
-            .help("common rates are 5, 10, 12.5, 20, 25, 30, 40 and 50 Hz");
-        faults.push(fault);
-    }
-    let Some(ray) = xml::child(sensor, "ray").or_else(|| xml::child(sensor, "lidar")) else {
-        let fault = faults
-            .at(sensor, format!("range scanner `{name}` has no <ray>"))
-            .label("expected <ray> with <scan> and <range>");
-        faults.push(fault);
-        return None;
-    };
-    let (scan, range) = (xml::descend(ray, "scan/horizontal"), xml::child(ray, "range"));
-    let (Some(scan), Some(range)) = (scan, range) else {
-        let fault = faults
-            .at(ray, format!("range scanner `{name}` is incomplete"))
-            .label("expected <scan> with <horizontal>, and <range>");
-        faults.push(fault);
-        return None;
-    };
-    if let Some(rows) = xml::descend(ray, "scan/vertical/samples").and_then(|n| faults.number(n))
-        && rows > 1.0
-    {
-        let fault = faults
-            .at(ray, format!("range scanner `{name}` scans {rows} rows"))
-            .label("only the horizontal one is simulated")
-            .warning();
-        faults.push(fault);
-    }
-    let samples = faults.required(scan, "samples", "a number of beams");
-    let min_angle = faults.required(scan, "min_angle", "an angle in radians");
-    let max_angle = faults.required(scan, "max_angle", "an angle in radians");
-    let min_range = faults.required(range, "min", "a distance in metres");
-    let max_range = faults.required(range, "max", "a distance in metres");
-    let noise_sd = noise(ray, name, faults);
-
-    let beams = beams(scan, samples?, faults);
-    let (min_angle, mut max_angle) = (min_angle?, max_angle?);
-    if max_angle <= min_angle || max_angle - min_angle > TAU + 0.01 {
-        let fault = faults
-            .at(scan, format!("range scanner `{name}` looks from {min_angle} to {max_angle} rad"))
-            .label("expected min_angle below max_angle and at most a full turn between them");
-        faults.push(fault);
-    }
-    let beams = beams?;
-    if max_angle - min_angle >= TAU - 1e-6 {
-        // Gazebo would look along the seam twice; the sensor itself does not.
-        max_angle = min_angle + TAU * f64::from(beams - 1) / f64::from(beams);
-        let fault = faults
-            .at(scan, format!("range scanner `{name}` looks all round"))
-            .label(format!("read as {beams} beams spaced evenly over the full turn"))
-            .warning();
-        faults.push(fault);
-    }
-    let (min_range, max_range) = (min_range?, max_range?);
-    if min_range < 0.0 || max_range <= min_range {
-        let fault = faults
-            .at(range, format!("range scanner `{name}` sees from {min_range} to {max_range} m"))
-            .label("expected zero or more, and a larger maximum");
-        faults.push(fault);
-    }
-    let [x, y, z] = placement.translation;
-    Some(Lidar {
-        name: name.to_owned(),
-        mount: Pose::new(x, y, placement.yaw()),
-        height: z - ground,
-        beams,
-        min_angle,
-        max_angle,
-        min_range,
-        max_range,
-        rate_hz: rate_hz?,
-        noise_sd: noise_sd?,
-    })
+/// A `<sensor>` on its link.
+struct Sensor<'a, 'i> {
+    node: Node<'a, 'i>,
+    kind: Kind,
+    name: &'a str,
+    link: &'a Placement,
 }
 
-/// Number of beams: whole, 2 to 100 000.
-fn beams(scan: Node<'_, '_>, samples: f64, faults: &mut Faults<'_>) -> Option<u32> {
-    // SDF: the number of ranges reported is samples times resolution, interpolated where that is above 1.
-    if let Some(node) = xml::child(scan, "resolution")
-        && let Some(resolution) = faults.number(node)
-        && resolution != 1.0
-    {
-        let fault = faults
-            .at(node, format!("scan resolution {resolution}"))
-            .label("read as 1: every sample is a beam of its own")
-            .warning();
-        faults.push(fault);
+impl Sensor<'_, '_> {
+    /// What and which it is, for messages.
+    fn title(&self) -> String {
+        format!("{} `{}`", self.kind.name(), self.name)
     }
-    if samples.fract() != 0.0 || !(2.0..=100_000.0).contains(&samples) {
-        let fault = faults
-            .at(scan, "number of samples out of range")
-            .label(format!("expected a whole number from 2 to 100000, found {samples}"));
-        faults.push(fault);
-        return None;
-    }
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "checked above")]
-    Some(samples as u32)
-}
 
-/// Standard deviation (m) of the range noise: zero where none is described.
-fn noise(ray: Node<'_, '_>, name: &str, faults: &mut Faults<'_>) -> Option<f64> {
-    let Some(noise) = xml::child(ray, "noise") else { return Some(0.0) };
-    let kind = noise
-        .attribute("type")
-        .or_else(|| xml::child(noise, "type").map(xml::text))
-        .unwrap_or("none");
-    match kind {
-        "none" => return Some(0.0),
-        "gaussian" => {}
-        _ => {
+    /// Where it sits in the base frame; a fault where it is not level.
+    fn level_placement(&self, plane: &str, faults: &mut Faults<'_>) -> Option<Placement> {
+        let within = match xml::child(self.node, "pose") {
+            Some(pose) => Placement::from_xyz_rpy(faults.numbers(pose)?),
+            None => Placement::IDENTITY,
+        };
+        let placement = self.link.compose(&within);
+        if placement.rotation[2][2] < 1.0 - 1e-6 {
             let fault = faults
-                .at(noise, format!("range scanner `{name}` has noise of kind `{kind}`"))
-                .label("expected `gaussian` or `none`");
+                .at(self.node, format!("{} is tilted or upside down", self.title()))
+                .label(format!("expected a level {plane}"));
             faults.push(fault);
-            return None;
         }
+        Some(placement)
     }
-    if let Some(mean) = xml::child(noise, "mean").and_then(|node| faults.number(node))
-        && mean != 0.0
-    {
-        let fault = faults
-            .at(noise, format!("range scanner `{name}` has a bias of {mean} m"))
-            .label("read as zero")
-            .warning();
-        faults.push(fault);
+
+    /// Its `<update_rate>` (Hz); a fault where the clock cannot serve it.
+    fn rate(&self, meaning: &str, faults: &mut Faults<'_>) -> Option<f64> {
+        let rate = faults.required(self.node, "update_rate", meaning)?;
+        if Tick::period_of(rate).is_none() {
+            let verb = if self.kind == Kind::Scanner { "scans" } else { "reads" };
+            let fault = faults
+                .at(self.node, format!("{} {verb} at {rate} Hz", self.title()))
+                .label("expected a rate that divides the clock's 3000 Hz")
+                .help("common rates are 5, 10, 12.5, 20, 25, 30, 40 and 50 Hz");
+            faults.push(fault);
+        }
+        Some(rate)
     }
-    let sd = faults.required(noise, "stddev", "a standard deviation in metres")?;
-    if sd < 0.0 {
-        let fault = faults
-            .at(noise, format!("range scanner `{name}` has a negative standard deviation"))
-            .label(format!("expected zero or more, found {sd}"));
-        faults.push(fault);
-        return None;
-    }
-    Some(sd)
 }
 
 /// The `<gazebo>` blocks of the robot.

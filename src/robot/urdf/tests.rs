@@ -6,6 +6,7 @@ use crate::robot::DriveKind;
 use proptest::prelude::*;
 
 const KOBUKI: &str = include_str!("../../../robots/kobuki.urdf");
+const PIONEER: &str = include_str!("../../../robots/pioneer3at.urdf");
 
 fn faults(text: &str) -> Vec<String> {
     let source = Source::new("r.urdf", text);
@@ -20,6 +21,12 @@ fn faults(text: &str) -> Vec<String> {
 fn changed(from: &str, to: &str) -> Vec<String> {
     assert!(KOBUKI.contains(from), "{from}");
     faults(&KOBUKI.replacen(from, to, 1))
+}
+
+/// The Pioneer with one piece of its text replaced.
+fn changed_pioneer(from: &str, to: &str) -> Vec<String> {
+    assert!(PIONEER.contains(from), "{from}");
+    faults(&PIONEER.replacen(from, to, 1))
 }
 
 #[test]
@@ -41,6 +48,120 @@ fn the_kobuki_is_what_the_study_published() {
     assert_eq!((lidar.beams, lidar.rate_hz, lidar.noise_sd), (720, 20.0, 0.01));
     assert_eq!((lidar.min_range, lidar.max_range), (0.01, 10.0));
     assert!((lidar.increment().to_degrees() - 0.2504).abs() < 1e-4);
+}
+
+#[test]
+fn the_pioneer_is_what_its_data_sheet_says() {
+    let (robot, warnings) = read(&Source::new("robots/pioneer3at.urdf", PIONEER)).unwrap();
+    assert_eq!(warnings, []);
+    let bounds = robot.footprint.bounds();
+    assert!((bounds.width() - 0.508).abs() < 1e-9 && (bounds.height() - 0.497).abs() < 1e-9);
+    // The swing radius, which the sheet rounds to 34 cm.
+    assert!(
+        (robot.circumscribed_radius() - 0.342).abs() < 1e-3,
+        "{}",
+        robot.circumscribed_radius()
+    );
+    assert!(robot.body_z[0].abs() < 1e-9 && (robot.body_z[1] - 0.487).abs() < 1e-9);
+    assert!((robot.mass - (12.0 + 4.5)).abs() < 1e-12, "robot and laser");
+    assert_eq!(robot.drive.kind, DriveKind::SkidSteer);
+    assert_eq!((robot.drive.wheel_separation, robot.drive.wheel_diameter), (0.422, 0.22));
+    assert_eq!(robot.drive.max_linear, Some(0.7));
+    assert!((robot.drive.max_angular.unwrap().to_degrees() - 140.0).abs() < 0.1);
+    let lidar = robot.lidar.unwrap();
+    assert_eq!((lidar.beams, lidar.rate_hz, lidar.noise_sd), (181, 10.0, 0.005));
+    assert!((lidar.increment().to_degrees() - 1.0).abs() < 1e-9);
+    assert_eq!(
+        robot.camera,
+        Some(crate::robot::LogicalCamera {
+            name: "ids".into(),
+            mount: crate::geometry::Pose::default(),
+            near: 0.05,
+            far: 6.0,
+            horizontal_fov: 2.1,
+            rate_hz: 10.0,
+        })
+    );
+    assert_eq!(
+        robot.compass,
+        Some(crate::robot::Compass { name: "compass".into(), rate_hz: 10.0 })
+    );
+}
+
+/// The digest is part of every trial's key: a robot without camera and compass keeps the one it always had.
+#[test]
+fn the_kobuki_s_meaning_is_pinned() {
+    let (robot, _) = read(&Source::new("robots/kobuki.urdf", KOBUKI)).unwrap();
+    assert_eq!(
+        robot.meaning().to_string(),
+        "397030e0f07be7736e5d95dfc9312fa96674db2cd67d78440e31e084c88783ef"
+    );
+}
+
+#[test]
+fn faults_of_camera_and_compass_say_where() {
+    for (from, to, message) in [
+        ("<far>6.0</far>", "<far>0.01</far>", "logical camera `ids` sees from 0.05 to 0.01 m"),
+        ("<near>0.05</near>", "<near>-1</near>", "logical camera `ids` sees from -1 to 6 m"),
+        (
+            "<horizontal_fov>2.1</horizontal_fov>",
+            "<horizontal_fov>120</horizontal_fov>",
+            "logical camera `ids` looks over 120 rad",
+        ),
+        ("<horizontal_fov>2.1</horizontal_fov>", "", "<logical_camera> has no <horizontal_fov>"),
+        (
+            "<aspect_ratio>1.0</aspect_ratio>",
+            "<aspect_ratio>0</aspect_ratio>",
+            "logical camera `ids` has an aspect ratio of 0",
+        ),
+        (
+            "xyz=\"0 0 0.40\" rpy=\"0 0 0\"",
+            "xyz=\"0 0 0.40\" rpy=\"0 0.2 0\"",
+            "logical camera `ids` is tilted or upside down",
+        ),
+        (
+            "name=\"compass\">\n      <update_rate>10</update_rate>",
+            "name=\"compass\">\n      <update_rate>7</update_rate>",
+            "compass `compass` reads at 7 Hz",
+        ),
+        (
+            "name=\"compass\">\n      <update_rate>10</update_rate>",
+            "name=\"compass\">",
+            "<sensor> has no <update_rate>",
+        ),
+    ] {
+        let found = changed_pioneer(from, to);
+        assert!(
+            found.iter().any(|f| f.lines().next().unwrap().ends_with(message)),
+            "{message}: {found:#?}"
+        );
+        let source = Source::new("r.urdf", PIONEER.replacen(from, to, 1));
+        assert!(read(&source).is_err(), "{message}");
+    }
+    assert_eq!(
+        changed_pioneer("<horizontal_fov>2.1<", "<horizontal_fov>0<"),
+        ["\
+error: logical camera `ids` looks over 0 rad
+   --> r.urdf:147:7
+    |
+147 |       <logical_camera>
+    |       ^^^^^^^^^^^^^^^ expected more than zero and at most a full turn
+"]
+    );
+}
+
+#[test]
+fn of_two_compasses_the_first_is_used() {
+    let second = "<sensor type=\"imu\" name=\"gyro\"><update_rate>50</update_rate></sensor>";
+    let text = PIONEER.replacen(
+        "<sensor type=\"magnetometer\"",
+        &format!("{second}<sensor type=\"magnetometer\""),
+        1,
+    );
+    let (robot, warnings) = read(&Source::new("r.urdf", text)).unwrap();
+    assert_eq!(robot.compass.unwrap().rate_hz, 50.0);
+    assert_eq!(warnings.len(), 1);
+    assert_eq!(warnings[0].message, "second compass `compass`");
 }
 
 const SKID: &str = r#"<robot name="skid">
@@ -67,7 +188,7 @@ const SKID: &str = r#"<robot name="skid">
         <range><min>0.12</min><max>3.5</max></range>
       </ray>
     </sensor>
-    <sensor type="imu" name="gyro"/>
+    <sensor type="contact" name="bumper"/>
   </gazebo>
   <gazebo><plugin name="d" filename="libgazebo_ros_skid_steer_drive.so">
     <wheelSeparation>0.4</wheelSeparation><wheelDiameter>0.215</wheelDiameter>
@@ -85,7 +206,7 @@ fn a_chain_of_joints_mounts_the_sensor_and_the_hull_is_the_footprint() {
             "a mesh collides on link `base_link` and is not part of the body",
             "unknown plugin `libgazebo_ros_wifi.so`",
             "range scanner `lds` looks all round",
-            "sensor `gyro` of type `imu` is not simulated",
+            "sensor `bumper` of type `contact` is not simulated",
         ]
     );
     assert!(warnings.iter().all(|w| w.severity == Severity::Warning));
@@ -229,7 +350,7 @@ error: not a robot description
 proptest! {
     #[test]
     fn damaged_descriptions_never_panic(edits in edits()) {
-        for text in [KOBUKI, SKID] {
+        for text in [KOBUKI, PIONEER, SKID] {
             let text = String::from_utf8_lossy(&mutate(text.as_bytes(), &edits)).into_owned();
             for fault in faults(&text) {
                 prop_assert!(fault.ends_with('\n'));

@@ -17,9 +17,7 @@ pub use parameters::{
     Coverage, Exploration, Gain, Mapping, Measurement, Mission, Navigation, Parameters, Reselect,
     Sensing, Strategy,
 };
-pub use requests::{
-    CoverageCurve, CoverageTable, FactorValue, FigureRequest, Metric, TableRequest,
-};
+pub use requests::{CoverageCurve, CoverageTable, Metric};
 
 use crate::geometry::Pose;
 use crate::grid::OccupancyGrid;

@@ -2,25 +2,9 @@
 //! leaves out have what its authors' released configuration sets (measured facts), and a manifest that
 //! relies on one says so with a `why`.
 
+use crate::studies::parameters;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-macro_rules! parameters {
-    ($(#[$doc:meta])* $name:ident { $($(#[$field_doc:meta])* $field:ident: $type:ty = $default:expr,)* }) => {
-        $(#[$doc])*
-        #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-        #[serde(rename_all = "kebab-case", deny_unknown_fields, default)]
-        pub struct $name {
-            $($(#[$field_doc])* pub $field: $type,)*
-        }
-
-        impl Default for $name {
-            fn default() -> Self {
-                Self { $($field: $default,)* }
-            }
-        }
-    };
-}
 
 parameters!(
     /// Everything a trial needs besides robot, world, prior and start.

@@ -1,22 +1,11 @@
-//! From records to what a reader sees: the trials table, the curves, the paper's tables and figures.
+//! From records to what a reader sees: the curves, the paper's tables and figures.
 
-use super::requests::{CoverageCurve, CoverageTable, FigureRequest, Metric, TableRequest};
+use super::requests::{CoverageCurve, CoverageTable, Metric};
 use crate::figure::{LineChart, PublishedPoint, Series};
 use crate::stats::summary::{Summary, median, quantile};
-use crate::studies::{Condition, Outcome, TrialRecord};
+use crate::studies::findings::{Findings, rounded};
+use crate::studies::{Outcome, SeriesPoint};
 use crate::table::{Table, Value};
-use std::collections::{BTreeMap, BTreeSet};
-
-/// What the tables and figures of one experiment are made from.
-#[derive(Debug, Clone, Copy)]
-pub struct Findings<'a> {
-    /// Factors and their values, in the manifest's order.
-    pub factors: &'a [(String, Vec<String>)],
-    /// The records, in plan order.
-    pub records: &'a [TrialRecord],
-    /// The paper's own numbers, by name: factor columns, `coverage-percent`, `value`, `sd`, `n`.
-    pub published: &'a BTreeMap<String, Table>,
-}
 
 /// Mean and spread of one cell of a table, beside the paper's.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,29 +29,6 @@ pub struct CoverageCell {
 }
 
 impl Findings<'_> {
-    /// One row a trial: key, factors, number, outcome, then every measure.
-    pub fn trials(&self) -> Table {
-        let measures: BTreeSet<&str> =
-            self.records.iter().flat_map(|r| r.measures.keys().map(String::as_str)).collect();
-        let mut measures: Vec<&str> = measures.into_iter().collect();
-        // `...-at-95` after `...-at-50`, and the whole trial's measures after those.
-        measures.sort_by_key(|name| (!name.contains("-at-"), *name));
-        let mut columns = vec!["key".to_owned()];
-        columns.extend(self.factors.iter().map(|(name, _)| name.clone()));
-        columns.extend(["trial".to_owned(), "outcome".to_owned()]);
-        columns.extend(measures.iter().map(|&m| m.to_owned()));
-        let mut table = Table::new(columns);
-        for record in self.records {
-            let mut row: Vec<Value> = vec![record.key.hex().into()];
-            row.extend(self.factor_values(&record.condition()));
-            row.push(i64::from(record.trial).into());
-            row.push(record.outcome.name().into());
-            row.extend(measures.iter().map(|&m| record.measures.get(m).copied().flatten().into()));
-            table.push(row);
-        }
-        table
-    }
-
     /// The curves: one row at the first crossing of every whole percent and at every 10 s.
     pub fn series(&self) -> Table {
         let mut columns = vec!["key".to_owned()];
@@ -110,16 +76,13 @@ impl Findings<'_> {
         fixed: &[(String, String)],
     ) -> CoverageCell {
         let measure = request.metric.measure_at(percent);
-        let here: Vec<_> = self.records.iter().filter(|r| matches(r, fixed)).collect();
+        let here = self.matching(fixed);
         let reached: Vec<f64> =
             here.iter().filter_map(|r| r.measures.get(&measure).copied().flatten()).collect();
         let published = request.published.as_ref().and_then(|name| {
-            let table = self.published.get(name)?;
-            let row = table.rows.iter().find(|row| {
-                let text = |column: &str| table.value(row, column).to_string();
-                table.value(row, "coverage-percent").as_f64() == Some(f64::from(percent))
-                    && fixed.iter().all(|(f, v)| table.column(f).is_none() || text(f) == *v)
-            })?;
+            let mut fixed = fixed.to_vec();
+            fixed.push(("coverage-percent".to_owned(), percent.to_string()));
+            let (table, row) = self.published_row(name, &fixed)?;
             let number = |column: &str| table.value(row, column).as_f64();
             Some((number("value")?, number("sd"), number("n")))
         });
@@ -136,8 +99,7 @@ impl Findings<'_> {
     }
 
     /// A requested table, tidy: one row a cell.
-    pub fn coverage_table(&self, request: &TableRequest) -> Table {
-        let wanted = &request.coverage_table;
+    pub fn coverage_table(&self, wanted: &CoverageTable) -> Table {
         let mut columns = wanted.rows.clone();
         columns.extend(["coverage-percent".to_owned(), wanted.by.clone()]);
         columns.extend(
@@ -175,8 +137,7 @@ impl Findings<'_> {
     }
 
     /// A requested table as people read it: the values side by side, ours and the paper's.
-    pub fn coverage_table_in_print(&self, request: &TableRequest) -> Table {
-        let wanted = &request.coverage_table;
+    pub fn coverage_table_in_print(&self, wanted: &CoverageTable) -> Table {
         let cells = self.coverage_cells(wanted);
         let side_by_side = self.values_of(&wanted.by);
         let mut columns = wanted.rows.clone();
@@ -201,8 +162,12 @@ impl Findings<'_> {
 
     /// A requested figure: median coverage with a band from the 10th to the 90th percentile of trials, and the
     /// paper's points where a table of the same metric has them.
-    pub fn coverage_figure(&self, request: &FigureRequest, tables: &[TableRequest]) -> LineChart {
-        let wanted = &request.coverage_curve;
+    pub fn coverage_figure(
+        &self,
+        title: &str,
+        wanted: &CoverageCurve,
+        tables: &[&CoverageTable],
+    ) -> LineChart {
         let only: Vec<(String, String)> =
             wanted.only.iter().map(|(f, v)| (f.clone(), v.0.clone())).collect();
         let series = self.values_of(&wanted.by).into_iter().map(|value| {
@@ -215,7 +180,7 @@ impl Findings<'_> {
             Metric::DistanceM => "distance travelled (m)",
         };
         LineChart {
-            title: request.title.clone(),
+            title: title.to_owned(),
             x_title: x_title.to_owned(),
             y_title: "coverage (%)".to_owned(),
             meaning: "median of trials, band 10th to 90th percentile".to_owned(),
@@ -228,14 +193,14 @@ impl Findings<'_> {
         wanted: &CoverageCurve,
         fixed: &[(String, String)],
         name: String,
-        tables: &[TableRequest],
+        tables: &[&CoverageTable],
     ) -> Series {
         let runs: Vec<Vec<(f64, f64)>> = self
-            .records
-            .iter()
-            .filter(|r| matches(r, fixed) && r.outcome != Outcome::Panicked)
+            .matching(fixed)
+            .into_iter()
+            .filter(|r| r.outcome != Outcome::Panicked)
             .map(|r| {
-                let x = |p: &crate::studies::SeriesPoint| match wanted.against {
+                let x = |p: &SeriesPoint| match wanted.against {
                     Metric::TimeS => p.time_s,
                     Metric::DistanceM => p.distance_m,
                 };
@@ -254,7 +219,6 @@ impl Findings<'_> {
         }
         let published = tables
             .iter()
-            .map(|t| &t.coverage_table)
             .filter(|t| t.metric == wanted.against && t.by == wanted.by)
             .flat_map(|t| self.coverage_cells(t))
             .filter(|cell| {
@@ -269,39 +233,6 @@ impl Findings<'_> {
             .collect();
         Series { name, points, band, published }
     }
-
-    fn values_of(&self, factor: &str) -> Vec<String> {
-        let values = self.factors.iter().find(|(name, _)| name == factor).map(|(_, v)| v.clone());
-        let ran = |value: &String| {
-            self.records.iter().any(|r| r.condition.iter().any(|(f, v)| f == factor && v == value))
-        };
-        // Partial runs leave values out.
-        values.unwrap_or_default().into_iter().filter(ran).collect()
-    }
-
-    fn crossed(&self, factors: &[String]) -> Vec<Vec<(String, String)>> {
-        let mut crossed = vec![Vec::new()];
-        for factor in factors {
-            crossed = crossed
-                .into_iter()
-                .flat_map(|row| {
-                    self.values_of(factor).into_iter().map(move |value| {
-                        let mut row: Vec<(String, String)> = row.clone();
-                        row.push((factor.clone(), value));
-                        row
-                    })
-                })
-                .collect();
-        }
-        crossed
-    }
-
-    fn factor_values(&self, condition: &Condition) -> Vec<Value> {
-        self.factors
-            .iter()
-            .map(|(name, _)| condition.value(name).map(str::to_owned).into())
-            .collect()
-    }
 }
 
 /// A curve is drawn through this many pieces.
@@ -310,10 +241,6 @@ const SAMPLES: u32 = 120;
 /// Coverage of a run at `x`: what it last had, and what it ended with once it has ended.
 fn value_at(run: &[(f64, f64)], x: f64) -> f64 {
     run.iter().take_while(|p| p.0 <= x).last().map_or(0.0, |p| p.1)
-}
-
-fn matches(record: &TrialRecord, fixed: &[(String, String)]) -> bool {
-    fixed.iter().all(|f| record.condition.contains(f))
 }
 
 fn add_differences(line: &mut [CoverageCell], baseline: Option<&str>) {
@@ -326,11 +253,6 @@ fn add_differences(line: &mut [CoverageCell], baseline: Option<&str>) {
             cell.published_difference_percent = Some(100.0 * (ours.0 / theirs.0 - 1.0));
         }
     }
-}
-
-/// Six significant digits: more would only be noise in a table.
-fn rounded(x: f64) -> f64 {
-    format!("{x:.5e}").parse().unwrap_or(x)
 }
 
 fn ours_in_print(cell: &CoverageCell) -> String {

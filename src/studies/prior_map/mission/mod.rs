@@ -13,7 +13,7 @@ use super::explorer::{CONTROL_PERIOD, Ending, Explorer};
 use super::information_gain::AlignedPrior;
 use crate::geometry::{Outline, Pose};
 use crate::robot::{Lidar, Scan};
-use crate::sim::{DriveNoise, OdometryNoise, Scene, Simulator};
+use crate::sim::{Distribution, DriveNoise, OdometryNoise, Scene, Simulator};
 use crate::studies::recording::Recording;
 use crate::studies::{Outcome, TrialRecord, TrialSpec};
 use crate::units::{Seconds, Tick};
@@ -66,8 +66,11 @@ pub fn run(spec: &TrialSpec, setup: &Setup, recording: Option<&mut Recording>) -
         solid: &prepared.solid,
         robot: &setup.robot,
         lidar: prepared.lidar.clone(),
+        camera: None,
+        compass: None,
         start: setup.start,
         drive_noise: DriveNoise {
+            distribution: Distribution::Gaussian,
             linear: sensing.drive_noise_linear,
             angular: sensing.drive_noise_angular,
             correlation: Seconds(sensing.drive_noise_correlation_s),

@@ -70,6 +70,8 @@ fn robot() -> Robot {
             rate_hz: 20.0,
             noise_sd: 0.01,
         }),
+        camera: None,
+        compass: None,
     }
 }
 

@@ -1,16 +1,13 @@
 //! What is written down while a trial runs: coverage over time and distance, and the state-hash chain.
 
-use crate::digest::{Hasher, Sha256Digest};
 use crate::geometry::Pose;
+use crate::studies::state_chain::StateChain;
 use crate::studies::{Outcome, SeriesPoint, TrialRecord, TrialSpec};
-use crate::units::{Seconds, Tick};
+use crate::units::Tick;
 use std::collections::BTreeMap;
 
 /// Coverages (percent) at which distance and time are told.
 pub const MILESTONES: [u32; 10] = [50, 55, 60, 65, 70, 75, 80, 85, 90, 95];
-
-/// Time between points of the curve and between state hashes.
-const EVERY: Seconds = Seconds(10.0);
 
 /// The running record of a trial.
 #[derive(Debug)]
@@ -18,10 +15,9 @@ pub(super) struct Trace {
     total: u32,
     covered: i64,
     next_percent: u32,
-    next_time: Tick,
     series: Vec<SeriesPoint>,
     crossings: BTreeMap<u32, (f64, f64)>,
-    chain: Vec<Sha256Digest>,
+    chain: StateChain,
 }
 
 impl Trace {
@@ -31,10 +27,9 @@ impl Trace {
             total,
             covered: 0,
             next_percent: 1,
-            next_time: Tick(0),
             series: Vec::new(),
             crossings: BTreeMap::new(),
-            chain: Vec::new(),
+            chain: StateChain::default(),
         }
     }
 
@@ -66,23 +61,20 @@ impl Trace {
 
     /// Every 10 s, notes a point of the curve and a state hash.
     pub(super) fn note_time(&mut self, now: Tick, distance_m: f64, pose: Pose, choices: u32) {
-        if now < self.next_time {
+        if !self.chain.is_due(now) {
             return;
         }
-        self.next_time = self.next_time + Tick::at_or_after(EVERY);
         let coverage_percent = self.coverage_percent();
         self.series.push(SeriesPoint { time_s: now.seconds().get(), distance_m, coverage_percent });
-        let mut hasher = Hasher::new();
-        if let Some(before) = self.chain.last() {
-            hasher.update(before.0);
-        }
-        for bits in [pose.x, pose.y, pose.heading, distance_m].map(f64::to_bits) {
-            hasher.update(bits.to_le_bytes());
-        }
-        hasher.update(now.0.to_le_bytes());
-        hasher.update(self.covered.to_le_bytes());
-        hasher.update(choices.to_le_bytes());
-        self.chain.push(hasher.digest());
+        let covered = self.covered;
+        self.chain.push(|hasher| {
+            for bits in [pose.x, pose.y, pose.heading, distance_m].map(f64::to_bits) {
+                hasher.update(bits.to_le_bytes());
+            }
+            hasher.update(now.0.to_le_bytes());
+            hasher.update(covered.to_le_bytes());
+            hasher.update(choices.to_le_bytes());
+        });
     }
 
     /// The record of the trial that ended `now` with `outcome`.
@@ -110,7 +102,7 @@ impl Trace {
             measures,
             series: self.series,
             sim_seconds: now.seconds().get(),
-            chain: self.chain.iter().map(|hash| hash.hex()[..16].to_owned()).collect(),
+            chain: self.chain.to_hex(),
         }
     }
 }

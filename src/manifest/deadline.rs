@@ -1,0 +1,96 @@
+//! What is particular to manifests of the deadline study: keys it has and has not, its calibration, its conditions.
+
+use super::experiment::Meanings;
+use super::inputs::normalised;
+use super::lint;
+use super::resolve::{Parts, Resolved, Resolver};
+use crate::studies::deadline::{self, Calibration, Parameters, Task};
+use crate::studies::{Condition, Setup, StudyKind};
+use serde_json::json;
+use std::sync::Arc;
+
+impl Resolver<'_> {
+    /// Faults of keys that belong to the other study.
+    pub(super) fn check_study_keys(&mut self) {
+        let doc = self.doc;
+        let foreign: Vec<&str> = match doc.study {
+            StudyKind::PriorMap => doc.calibration.iter().map(|_| "calibration").collect(),
+            StudyKind::Deadline => {
+                let prior = doc.prior.iter().map(|_| "prior");
+                let maps = (!doc.prior_maps.is_empty()).then_some("prior-maps");
+                prior.chain(maps).collect()
+            }
+        };
+        for key in foreign {
+            let message = format!("the study `{}` has no `{key}`", doc.study.name());
+            self.faults.at_key(&format!("/{key}"), message, "remove this key");
+        }
+    }
+
+    /// A condition of the deadline study.
+    pub(super) fn deadline(
+        &mut self,
+        condition: Condition,
+        parts: Option<Parts>,
+    ) -> Option<Resolved> {
+        let parameters = self.parameters::<Parameters>(&condition)?;
+        let calibration = match parameters.mission.task {
+            Task::Exploration => Some(self.calibration()),
+            Task::Passage => None,
+        };
+        let Parts { robot, robot_meaning, robot_file, world, start } = parts?;
+        let calibration = match calibration {
+            Some(needed) => Some(needed?),
+            None => None,
+        };
+        let shared = Arc::clone(&world.world);
+        let setup = deadline::Setup::new(shared, robot, start, calibration, parameters);
+        lint::check_deadline(&setup, &mut self.faults);
+        let meanings = Meanings { robot: robot_meaning, world: world.meaning, prior: None };
+        let described = json!({ "robot": robot_file, "world": world.described });
+        Some((condition, Setup::Deadline(Arc::new(setup)), meanings, described))
+    }
+
+    /// The planner's expectations, measured by the calibration manifest or read from the bundle that holds them.
+    fn calibration(&mut self) -> Option<Arc<Calibration>> {
+        if let Some(known) = &self.calibration {
+            return known.clone();
+        }
+        let known = self.read_calibration();
+        self.calibration = Some(known.clone());
+        known
+    }
+
+    fn read_calibration(&mut self) -> Option<Arc<Calibration>> {
+        let Some(path) = &self.doc.calibration else {
+            let fault = self
+                .faults
+                .key_fault("/study", "an exploration under a deadline needs a `calibration`")
+                .label("its planner must know what its maneuvers take");
+            let help = "add `calibration: FILE`, a manifest of isolated passages";
+            self.faults.push(fault.help(help));
+            return None;
+        };
+        let pointer = "/calibration";
+        // The manifest itself is sealed too: whoever doubts the pairs can measure them again.
+        self.bytes(path, pointer)?;
+        let written_in = self.faults.written_in(pointer);
+        let path = normalised(path);
+        let sealed_as = format!("{}.maneuvers.csv", path.strip_suffix(".yaml").unwrap_or(&path));
+        let read = self
+            .files
+            .calibrate(&path, &sealed_as, written_in)
+            .and_then(|bytes| String::from_utf8(bytes.to_vec()).map_err(|e| e.to_string()))
+            .and_then(|text| Calibration::from_csv(&text).map_err(|e| e.to_string()));
+        match read {
+            Ok(calibration) => Some(Arc::new(calibration)),
+            Err(problem) => {
+                let message = format!("`{path}` gives no calibration");
+                let fault = self.faults.fault(pointer, message).label(problem);
+                self.faults
+                    .push(fault.help(format!("`reenact check {path}` tells its own faults")));
+                None
+            }
+        }
+    }
+}

@@ -1,0 +1,176 @@
+//! The tables of a study as the page shows them: ours beside the paper's, agreement marked.
+
+use super::Agreement;
+use super::content::{Measured, ReportCell, ReportRow, ReportTable};
+use crate::plan::Plan;
+use crate::studies::deadline::results::OutcomeCell;
+use crate::studies::deadline::{ManeuverTable, OutcomeTable, Quantity};
+use crate::studies::prior_map::results::CoverageCell;
+use crate::studies::prior_map::{CoverageTable, Metric};
+use crate::studies::{Findings, TableLayout, TableRequest};
+
+/// What the page shows of a requested table.
+pub(super) fn table(findings: &Findings<'_>, request: &TableRequest, plan: &Plan) -> ReportTable {
+    match &request.layout {
+        TableLayout::CoverageTable(wanted) => coverage_table(findings, request, wanted, plan),
+        TableLayout::OutcomeTable(wanted) => outcome_table(findings, request, wanted, plan),
+        TableLayout::ManeuverTable(wanted) => maneuver_table(findings, request, wanted),
+    }
+}
+
+fn coverage_table(
+    findings: &Findings<'_>,
+    request: &TableRequest,
+    wanted: &CoverageTable,
+    plan: &Plan,
+) -> ReportTable {
+    let cells = findings.coverage_cells(wanted);
+    let mut columns: Vec<String> = Vec::new();
+    for cell in &cells {
+        if !columns.contains(&cell.by) {
+            columns.push(cell.by.clone());
+        }
+    }
+    // The page takes the first column for the baseline.
+    if let Some(baseline) = wanted.baseline.as_ref()
+        && let Some(i) = columns.iter().position(|c| *c == baseline.0)
+    {
+        columns.swap(0, i);
+    }
+    let rows = cells.chunks(columns.len().max(1)).map(|line| {
+        let label: Vec<String> = line
+            .iter()
+            .take(1)
+            .flat_map(|cell| {
+                let rows = cell.rows.iter().map(|(_, value)| value.clone());
+                rows.chain([format!("{} %", cell.percent)])
+            })
+            .collect();
+        let cell = |name: &String| {
+            line.iter().find(|c| c.by == *name).map(report_cell).unwrap_or_default()
+        };
+        ReportRow { label: label.join(", "), cells: columns.iter().map(cell).collect() }
+    });
+    ReportTable {
+        id: request.id.clone(),
+        title: format!("{} (n = {} trials a cell)", request.title, plan.experiment.trials),
+        source: source(plan, wanted.published.as_ref()),
+        quantity: match wanted.metric {
+            Metric::DistanceM => "distance travelled (m)".to_owned(),
+            Metric::TimeS => "simulated time (s)".to_owned(),
+        },
+        decimals: 2,
+        row_header: "coverage".to_owned(),
+        rows: rows.collect(),
+        columns,
+    }
+}
+
+fn report_cell(cell: &CoverageCell) -> ReportCell {
+    let ours =
+        cell.ours.map(|s| Measured { mean: s.mean, sd: (s.n > 1).then_some(s.sd), n: Some(s.n) });
+    let published = cell.published.map(|(mean, sd, n)| {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a count of runs"
+        )]
+        let n = n.map(|n| n.max(0.0) as u64);
+        Measured { mean, sd, n }
+    });
+    ReportCell {
+        ours,
+        difference_percent: cell.difference_percent,
+        published,
+        published_difference_percent: cell.published_difference_percent,
+        agreement: Agreement::between(ours, published),
+    }
+}
+
+fn outcome_table(
+    findings: &Findings<'_>,
+    request: &TableRequest,
+    wanted: &OutcomeTable,
+    plan: &Plan,
+) -> ReportTable {
+    let columns = findings.columns_of(wanted);
+    let cells = findings.outcome_cells(wanted);
+    let rows = cells.chunks(columns.len().max(1)).map(|line| {
+        let label: Vec<&str> = line
+            .iter()
+            .take(1)
+            .flat_map(|cell| cell.rows.iter().map(|(_, value)| value.as_str()))
+            .collect();
+        let cells = line.iter().map(|cell| outcome_cell(cell, &wanted.show)).collect();
+        ReportRow { label: label.join(", "), cells }
+    });
+    ReportTable {
+        id: request.id.clone(),
+        title: format!("{} (n = {} trials a cell)", request.title, plan.experiment.trials),
+        source: source(plan, wanted.published.as_ref()),
+        quantity: wanted.show.describe(),
+        decimals: 1,
+        row_header: wanted.rows.join(", "),
+        rows: rows.collect(),
+        columns,
+    }
+}
+
+/// The calibration's numbers stand where the paper's would: a cell compares what was expected with what was met.
+fn maneuver_table(
+    findings: &Findings<'_>,
+    request: &TableRequest,
+    wanted: &ManeuverTable,
+) -> ReportTable {
+    let measured = |mean: f64, n: u64| Measured { mean, sd: None, n: Some(n) };
+    let rows = findings.maneuver_rows(wanted).into_iter().map(|row| {
+        let cell = |expected: Option<f64>, met: Option<f64>, n: u64| ReportCell {
+            ours: met.map(|met| measured(met, n)),
+            published: expected.map(|expected| measured(expected, row.calibration_passages)),
+            ..ReportCell::default()
+        };
+        ReportRow {
+            label: row.name,
+            cells: vec![
+                cell(row.expected_time_s, row.met_time_s, row.arrived),
+                cell(row.expected_failure_percent, row.met_failure_percent, row.passages),
+            ],
+        }
+    });
+    ReportTable {
+        id: request.id.clone(),
+        title: request.title.clone(),
+        source: "the calibration experiment".to_owned(),
+        quantity: "in the study's own trials".to_owned(),
+        decimals: 2,
+        row_header: "maneuver".to_owned(),
+        rows: rows.collect(),
+        columns: vec!["time (s)".to_owned(), "failure (%)".to_owned()],
+    }
+}
+
+fn outcome_cell(cell: &OutcomeCell, show: &Quantity) -> ReportCell {
+    let ours = cell.ours.map(|e| Measured { mean: e.value, sd: e.sd, n: Some(e.n) });
+    let published = cell.published.map(|(mean, n)| Measured { mean, sd: None, n });
+    // A share's own binomial error is the measure of nearness.
+    let with_error = published.map(|p| match (show, p.n) {
+        (Quantity::Share(_), Some(n)) if n > 0 => {
+            let share = (p.mean / 100.0).clamp(0.0, 1.0);
+            #[expect(clippy::cast_precision_loss, reason = "a count of runs")]
+            let variance = share * (1.0 - share) / n as f64;
+            Measured { sd: Some(100.0 * variance.sqrt()), ..p }
+        }
+        _ => p,
+    });
+    ReportCell {
+        ours,
+        published,
+        agreement: Agreement::between(ours, with_error),
+        ..ReportCell::default()
+    }
+}
+
+fn source(plan: &Plan, published: Option<&String>) -> String {
+    let section = plan.experiment.cite.as_ref().and_then(|cite| cite.section.clone());
+    published.and(section).unwrap_or_default()
+}

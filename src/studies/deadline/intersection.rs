@@ -1,0 +1,38 @@
+//! What the Intersection Detection System hands to the explorer: a vertex and the edges that leave it.
+
+use crate::cmdp::build::Place;
+use crate::geometry::Cardinal;
+use serde::{Deserialize, Serialize};
+
+/// What an outgoing edge leads through.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Opening {
+    /// A corridor.
+    Corridor,
+    /// A door.
+    Door,
+}
+
+/// An outgoing edge as perceived.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Exit {
+    /// Where it leads, by compass.
+    pub direction: Cardinal,
+    /// What it leads through.
+    pub opening: Opening,
+}
+
+/// A vertex at which the robot has arrived.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Intersection {
+    /// Opaque ids of the tags that belong to it, at least one. Two intersections are the same vertex if and only if they
+    /// share one; nothing else is read from an id, and the order says nothing.
+    pub tags: Vec<String>,
+    /// Whether it is a room or part of a corridor.
+    pub place: Place,
+    /// Its outgoing edges, at most one in each direction, counter-clockwise from east.
+    pub exits: Vec<Exit>,
+    /// Whether it is the goal.
+    pub is_goal: bool,
+}

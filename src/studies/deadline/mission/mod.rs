@@ -1,0 +1,170 @@
+//! One trial: the simulator on one end, the mind on the other, and what is measured in between.
+
+mod body;
+mod exploration;
+mod passage;
+mod tally;
+#[cfg(test)]
+mod tests;
+
+pub(super) use tally::name as maneuver_name;
+
+use super::Setup;
+use super::calibration::{MOTIONS, SPEEDS};
+use crate::geometry::Outline;
+use crate::robot::Lidar;
+use crate::studies::recording::Recording;
+use crate::studies::state_chain::StateChain;
+use crate::studies::{Outcome, TrialRecord, TrialSpec};
+use crate::units::{Seconds, Tick};
+use crate::world::topology::{TagScheme, Topology};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// What a trial is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Task {
+    /// Algorithm 3: explore until the goal is reached.
+    Exploration,
+    /// One isolated maneuver, to measure what it takes.
+    Passage,
+}
+
+/// What claims and tables may speak of besides outcomes: the columns of `results/trials.csv`.
+pub fn measures() -> Vec<String> {
+    let mut names: Vec<String> = [
+        "success",
+        "outcome:reached",
+        "outcome:collided",
+        "outcome:late",
+        "outcome:stalled",
+        "time-s",
+        "distance-m",
+        "turning-rad",
+        "vertices",
+        "decisions",
+        "plans",
+        "plans-slack",
+        "plans-active",
+        "plans-relaxed",
+        "maneuvers",
+        "slow-maneuvers",
+        "slow-collisions",
+        "fast-maneuvers",
+        "fast-collisions",
+        "fast-maneuver-share",
+    ]
+    .map(str::to_owned)
+    .to_vec();
+    for motion in MOTIONS {
+        for speed in SPEEDS {
+            let name = tally::name(motion, speed);
+            let kinds = ["passages", "arrived", "collisions", "total-s"];
+            names.extend(kinds.map(|kind| format!("{name}-{kind}")));
+        }
+    }
+    names
+}
+
+/// What all trials of a setup share: computed once, from the setup alone.
+#[derive(Debug)]
+pub struct Prepared {
+    visible: Vec<Outline>,
+    solid: Vec<Outline>,
+    lidar: Lidar,
+    /// The true graph, which passages are drawn from; no mind sees it.
+    topology: Topology,
+}
+
+impl Prepared {
+    /// Cuts the world at the lidar's height and reads its graph from the tags.
+    ///
+    /// # Errors
+    /// A robot without scanner, camera or compass, or tags that make no graph: resolution refuses them with better
+    /// messages.
+    pub fn new(setup: &Setup) -> Result<Self, String> {
+        let robot = &setup.robot;
+        let own = robot.lidar.as_ref().ok_or("the robot has no range scanner")?;
+        robot.camera.as_ref().ok_or("the robot has no logical camera")?;
+        robot.compass.as_ref().ok_or("the robot has no compass")?;
+        let sensing = &setup.parameters.sensing;
+        let noise_sd = sensing.range_noise_sd_m.unwrap_or(own.noise_sd);
+        let lidar = Lidar { noise_sd, ..own.clone() };
+        let topology =
+            Topology::read(&setup.world.tags, &tag_scheme(setup)).map_err(|faults| {
+                faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
+            })?;
+        Ok(Self {
+            visible: setup.world.slice(lidar.height),
+            solid: setup.world.contact(robot.body_z[0], robot.body_z[1]),
+            lidar,
+            topology,
+        })
+    }
+}
+
+/// The convention of the tags, as the mind's perception takes it.
+pub fn tag_scheme(setup: &Setup) -> TagScheme {
+    let perception = &setup.parameters.perception;
+    TagScheme {
+        corridor: perception.corridor_color.clone(),
+        room: perception.room_color.clone(),
+        corridor_exit: perception.corridor_exit_color.clone(),
+        door_exit: perception.door_exit_color.clone(),
+        goal: perception.goal_color.clone(),
+        grouping: perception.grouping_m,
+        ..TagScheme::default()
+    }
+}
+
+/// Runs the trial, writing everything down in `recording` where there is one. The record is the same either way.
+pub fn run(spec: &TrialSpec, setup: &Setup, recording: Option<&mut Recording>) -> TrialRecord {
+    let prepared = match setup.prepared() {
+        Ok(prepared) => prepared,
+        Err(cause) => return TrialRecord::panicked(spec, cause),
+    };
+    match setup.parameters.mission.task {
+        Task::Exploration => exploration::run(spec, setup, prepared, recording),
+        Task::Passage => passage::run(spec, setup, prepared, recording),
+    }
+}
+
+/// How a trial ended.
+#[derive(Debug)]
+struct Ending {
+    outcome: Outcome,
+    /// In words, where the outcome alone does not say.
+    cause: String,
+    at: Tick,
+}
+
+impl Ending {
+    fn plain(outcome: Outcome, at: Tick) -> Self {
+        Self { outcome, cause: String::new(), at }
+    }
+}
+
+fn record(
+    spec: &TrialSpec,
+    ending: Ending,
+    mut measures: BTreeMap<String, Option<f64>>,
+    chain: &StateChain,
+) -> TrialRecord {
+    let Seconds(seconds) = ending.at.seconds();
+    // As in Table 1, a time belongs to trials that arrived.
+    let time = (ending.outcome == Outcome::Reached).then_some(seconds);
+    measures.insert("time-s".to_owned(), time);
+    TrialRecord {
+        key: spec.key,
+        condition: spec.condition.0.clone(),
+        trial: spec.trial,
+        outcome: ending.outcome,
+        cause: ending.cause,
+        measures,
+        series: Vec::new(),
+        sim_seconds: seconds,
+        chain: chain.to_hex(),
+    }
+}

@@ -1,0 +1,72 @@
+//! The deadline study: J. L. Susa Rincon, S. Carpin, "Time-constrained exploration using toposemantic spatial models: a
+//! reproducible approach to measurable robotics", IEEE Robotics & Automation Magazine 26(3), 2019, pages 78 to 87.
+//!
+//! A Pioneer 3-AT explores a building towards a goal room under a global deadline, on a semantic topological oriented map
+//! (Definition 1) without any metric; legs are planned as a constrained MDP.
+
+#[cfg(test)]
+mod building;
+pub mod calibration;
+pub mod exploration;
+mod in_situ;
+pub mod intersection;
+mod mission;
+pub mod navigation;
+mod parameters;
+pub mod planner;
+mod requests;
+pub mod results;
+mod rules;
+pub mod schedule;
+pub mod strategy;
+pub mod toposemantic_map;
+
+pub use calibration::Calibration;
+pub use in_situ::ManeuverRow;
+pub use mission::{Task, measures, run, tag_scheme};
+pub use parameters::{Mission, Parameters, Passage, Sensing};
+pub use requests::{ManeuverTable, OutcomeTable, Percent, Quantity};
+pub use rules::{Rules, UnplannedSpeed};
+
+use crate::geometry::Pose;
+use crate::robot::Robot;
+use crate::world::World;
+use mission::Prepared;
+use std::sync::{Arc, OnceLock};
+
+/// Everything a trial of this study needs.
+#[derive(Debug)]
+pub struct Setup {
+    /// The true world.
+    pub world: Arc<World>,
+    /// The robot.
+    pub robot: Arc<Robot>,
+    /// Where the robot begins, in the world's frame (m, rad).
+    pub start: Pose,
+    /// The planner's expectations; `None` for isolated passages, which measure them.
+    pub calibration: Option<Arc<Calibration>>,
+    /// Everything else.
+    pub parameters: Parameters,
+    prepared: OnceLock<Result<Prepared, String>>,
+}
+
+impl Setup {
+    /// A setup; nothing is computed yet.
+    pub fn new(
+        world: Arc<World>,
+        robot: Arc<Robot>,
+        start: Pose,
+        calibration: Option<Arc<Calibration>>,
+        parameters: Parameters,
+    ) -> Self {
+        Self { world, robot, start, calibration, parameters, prepared: OnceLock::new() }
+    }
+
+    /// What all trials of this setup share, computed by the first that asks.
+    ///
+    /// # Errors
+    /// Where the setup cannot run at all, which resolution refuses with a better message.
+    pub fn prepared(&self) -> Result<&Prepared, String> {
+        self.prepared.get_or_init(|| Prepared::new(self)).as_ref().map_err(Clone::clone)
+    }
+}

@@ -1,0 +1,269 @@
+//! From records to the paper's Tables 1 and 2 and Figures 4 and 5, and to whatever else is asked by condition.
+
+use super::requests::{OutcomeTable, Percent, Quantity};
+use crate::figure::{Bar, BarChart, BarGroup};
+use crate::stats::proportion::{Proportion, wilson};
+use crate::stats::summary::Summary;
+use crate::studies::findings::{Findings, rounded};
+use crate::studies::{Outcome, TrialRecord};
+use crate::table::{Table, Value};
+
+/// Confidence of the intervals.
+const CONFIDENCE: f64 = 0.95;
+/// Standard normal quantile of that confidence, two-sided.
+const Z: f64 = 1.959_963_984_540_054;
+
+/// One cell: ours beside the paper's.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OutcomeCell {
+    /// Values of the factors that have rows.
+    pub rows: Vec<(String, String)>,
+    /// The value of the factor whose values stand side by side.
+    pub by: String,
+    /// Trials of this cell that did not fail by a fault of ours.
+    pub trials: u64,
+    /// What was found; `None` where no trial has the quantity.
+    pub ours: Option<Estimate>,
+    /// The paper's number, and the trials behind it where it says.
+    pub published: Option<(f64, Option<u64>)>,
+}
+
+/// A quantity with its spread.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimate {
+    /// The share (percent), mean (unit of the measure) or ratio (percent).
+    pub value: f64,
+    /// Standard deviation over trials, of means.
+    pub sd: Option<f64>,
+    /// 95 % interval, of shares, means and ratios.
+    pub interval: Option<(f64, f64)>,
+    /// Trials behind it.
+    pub n: u64,
+}
+
+impl Findings<'_> {
+    /// The cells of a table in the paper's order: rows, then side by side. Cells of conditions that do not exist are left
+    /// out together where a whole row is missing.
+    pub fn outcome_cells(&self, request: &OutcomeTable) -> Vec<OutcomeCell> {
+        let only: Vec<(String, String)> =
+            request.only.iter().map(|(f, v)| (f.clone(), v.0.clone())).collect();
+        let columns = self.columns_of(request);
+        let mut cells = Vec::new();
+        for rows in self.crossed(&request.rows) {
+            let line: Vec<OutcomeCell> = columns
+                .iter()
+                .map(|by| {
+                    let mut fixed = only.clone();
+                    fixed.extend(rows.iter().cloned());
+                    fixed.push((request.by.clone(), by.clone()));
+                    self.outcome_cell(request, rows.clone(), by.clone(), &fixed)
+                })
+                .collect();
+            if line.iter().any(|cell| cell.trials > 0) {
+                cells.extend(line);
+            }
+        }
+        cells
+    }
+
+    /// The values that stand side by side.
+    pub fn columns_of(&self, request: &OutcomeTable) -> Vec<String> {
+        let only = request.only.get(&request.by);
+        let mut values = self.values_of(&request.by);
+        values.retain(|value| only.is_none_or(|only| only.0 == *value));
+        values
+    }
+
+    fn outcome_cell(
+        &self,
+        request: &OutcomeTable,
+        rows: Vec<(String, String)>,
+        by: String,
+        fixed: &[(String, String)],
+    ) -> OutcomeCell {
+        let mut trials = self.matching(fixed);
+        trials.retain(|record| record.outcome != Outcome::Panicked);
+        let published = request.published.as_ref().and_then(|name| {
+            let (table, row) = self.published_row(name, fixed)?;
+            let n = match table.value(row, "n") {
+                Value::Integer(n) => u64::try_from(*n).ok(),
+                _ => None,
+            };
+            Some((table.value(row, "value").as_f64()?, n))
+        });
+        OutcomeCell {
+            rows,
+            by,
+            trials: trials.len() as u64,
+            ours: estimate(&request.show, &trials),
+            published,
+        }
+    }
+
+    /// A requested table, tidy: one row a cell.
+    pub fn outcome_table(&self, request: &OutcomeTable) -> Table {
+        let mut columns = request.rows.clone();
+        columns.push(request.by.clone());
+        let numbers = ["value", "low", "high", "sd", "n", "trials", "published", "published-n"];
+        columns.extend(numbers.map(str::to_owned));
+        let mut table = Table::new(columns);
+        let whole = |n: u64| i64::try_from(n).unwrap_or(i64::MAX);
+        for cell in self.outcome_cells(request) {
+            let mut row: Vec<Value> = cell.rows.iter().map(|(_, v)| v.as_str().into()).collect();
+            row.push(cell.by.as_str().into());
+            let interval = cell.ours.and_then(|e| e.interval);
+            row.push(cell.ours.map(|e| rounded(e.value)).into());
+            row.push(interval.map(|i| rounded(i.0)).into());
+            row.push(interval.map(|i| rounded(i.1)).into());
+            row.push(cell.ours.and_then(|e| e.sd).map(rounded).into());
+            row.push(cell.ours.map_or(0, |e| whole(e.n)).into());
+            row.push(whole(cell.trials).into());
+            row.push(cell.published.map(|p| p.0).into());
+            row.push(cell.published.and_then(|p| p.1).map(whole).into());
+            table.push(row);
+        }
+        table
+    }
+
+    /// A requested table as people read it: the values side by side, ours and the paper's.
+    pub fn outcome_table_in_print(&self, request: &OutcomeTable) -> Table {
+        let side_by_side = self.columns_of(request);
+        let published = request.published.is_some();
+        let mut columns = request.rows.clone();
+        for value in &side_by_side {
+            columns.push(value.clone());
+            columns.extend(published.then(|| format!("{value} (paper)")));
+        }
+        let mut table = Table::new(columns);
+        for line in self.outcome_cells(request).chunks(side_by_side.len().max(1)) {
+            let Some(first) = line.first() else { continue };
+            let mut row: Vec<Value> = first.rows.iter().map(|(_, v)| v.as_str().into()).collect();
+            for cell in line {
+                row.push(cell.in_print().into());
+                row.extend(published.then(|| Value::from(cell.published_in_print())));
+            }
+            table.push(row);
+        }
+        table
+    }
+
+    /// A requested figure: grouped bars with intervals, the paper's numbers as hollow markers.
+    pub fn outcome_figure(&self, title: &str, request: &OutcomeTable) -> BarChart {
+        let series = self.columns_of(request);
+        let groups = self
+            .outcome_cells(request)
+            .chunks(series.len().max(1))
+            .map(|line| BarGroup {
+                name: line.first().map_or_else(String::new, |cell| {
+                    cell.rows.iter().map(|(_, v)| v.as_str()).collect::<Vec<_>>().join(" ")
+                }),
+                bars: line
+                    .iter()
+                    .map(|cell| Bar {
+                        value: cell.ours.map(|e| e.value),
+                        interval: cell.ours.and_then(|e| e.interval),
+                        published: cell.published.map(|p| p.0),
+                        published_interval: None,
+                    })
+                    .collect(),
+            })
+            .collect();
+        let percent = !matches!(request.show, Quantity::Mean(_));
+        BarChart {
+            title: title.to_owned(),
+            x_title: request.rows.join(", "),
+            y_title: request.show.describe(),
+            meaning: "bars: ours, with 95 % interval".to_owned(),
+            series,
+            groups,
+            at_least: percent
+                .then_some(100.0)
+                .filter(|_| matches!(request.show, Quantity::Share(_))),
+        }
+    }
+}
+
+impl OutcomeCell {
+    /// Ours as text: `54 [40, 67]` (percent and interval) or `12.3 ± 4.5` (mean and standard deviation).
+    pub fn in_print(&self) -> String {
+        let Some(ours) = self.ours else { return format!("none of {}", self.trials) };
+        let mut text = match (ours.sd, ours.interval) {
+            (Some(sd), _) => format!("{:.1} ± {sd:.1}", ours.value),
+            (None, Some((low, high))) => format!("{:.1} [{low:.1}, {high:.1}]", ours.value),
+            (None, None) => format!("{:.1}", ours.value),
+        };
+        if ours.sd.is_some() && ours.n < self.trials {
+            text.push_str(&format!(" ({} of {})", ours.n, self.trials));
+        }
+        text
+    }
+
+    /// The paper's as text; empty where it prints none.
+    pub fn published_in_print(&self) -> String {
+        self.published.map_or_else(String::new, |(value, _)| format!("{value}"))
+    }
+}
+
+fn estimate(quantity: &Quantity, trials: &[&TrialRecord]) -> Option<Estimate> {
+    let n = trials.len() as u64;
+    match quantity {
+        Quantity::Share(outcomes) => {
+            let hits = trials.iter().filter(|r| outcomes.contains(&r.outcome)).count() as u64;
+            (n > 0).then(|| {
+                let share = Proportion::new(hits, n);
+                let interval = wilson(share, CONFIDENCE);
+                Estimate {
+                    value: 100.0 * share.share(),
+                    sd: None,
+                    interval: Some((100.0 * interval.low, 100.0 * interval.high)),
+                    n,
+                }
+            })
+        }
+        Quantity::Mean(measure) => {
+            let values: Vec<f64> = trials.iter().filter_map(|r| value_of(r, measure)).collect();
+            (!values.is_empty()).then(|| {
+                let summary = Summary::of(&values);
+                let several = summary.n > 1;
+                let half = Z * summary.variance_of_mean().sqrt();
+                Estimate {
+                    value: summary.mean,
+                    sd: several.then_some(summary.sd),
+                    interval: several.then_some((summary.mean - half, summary.mean + half)),
+                    n: summary.n,
+                }
+            })
+        }
+        Quantity::Percent(Percent { part, whole }) => {
+            let pairs: Vec<(f64, f64)> = trials
+                .iter()
+                .filter_map(|r| Some((value_of(r, part)?, value_of(r, whole)?)))
+                .collect();
+            ratio(&pairs)
+        }
+    }
+}
+
+fn value_of(record: &TrialRecord, measure: &str) -> Option<f64> {
+    record.measures.get(measure).copied().flatten()
+}
+
+/// The ratio estimator and its linearised interval (Cochran 1977, Sampling Techniques, section 2.11), in percent.
+fn ratio(pairs: &[(f64, f64)]) -> Option<Estimate> {
+    let part: f64 = pairs.iter().map(|p| p.0).sum();
+    let whole: f64 = pairs.iter().map(|p| p.1).sum();
+    if whole <= 0.0 {
+        return None;
+    }
+    let ratio = part / whole;
+    let n = crate::stats::length(pairs);
+    let squares: f64 = pairs.iter().map(|(a, b)| (a - ratio * b) * (a - ratio * b)).sum();
+    let half = Z * (squares * n / (n - 1.0).max(1.0)).sqrt() / whole;
+    let interval = (100.0 * (ratio - half).max(0.0), 100.0 * (ratio + half).min(1.0));
+    Some(Estimate {
+        value: 100.0 * ratio,
+        sd: None,
+        interval: (pairs.len() > 1).then_some(interval),
+        n: pairs.len() as u64,
+    })
+}

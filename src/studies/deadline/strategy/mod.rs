@@ -1,0 +1,169 @@
+//! `ExplorationNext(M, time)`: five strategies that choose the next vertex (section 5).
+//!
+//! Each chooses among the vertices with one or more edges (v, v∅). Rules the paper states are taken literally; where it
+//! states none, a parameter names the alternatives.
+
+mod complete_corridor;
+mod corridors_first;
+mod frontier;
+mod normalized_frontier;
+mod random;
+#[cfg(test)]
+mod tests;
+
+pub use complete_corridor::{CompleteCorridor, Completion};
+pub use corridors_first::CorridorsFirst;
+pub use frontier::{Frontier, Ties};
+pub use normalized_frontier::NormalizedFrontier;
+
+use super::rules::Rules;
+use super::toposemantic_map::{ToposemanticMap, VertexId};
+use crate::rng::Stream;
+use complete_corridor::CorridorInHand;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Which of the five.
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
+)]
+#[serde(rename_all = "kebab-case")]
+pub enum Strategy {
+    /// Random strategy exploration (Ra).
+    Random,
+    /// Topological frontier (Fr).
+    Frontier,
+    /// Topological frontier with normalised distances (NF).
+    NormalizedFrontier,
+    /// Semantic: explore corridors first (S1).
+    CorridorsFirst,
+    /// Semantic: complete corridors first (S2).
+    CompleteCorridor,
+}
+
+/// What a strategy without a stated rule goes by. Ties that remain are broken uniformly.
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
+)]
+#[serde(rename_all = "kebab-case")]
+pub enum Preference {
+    /// The fewest edges away.
+    Nearest,
+    /// The most edges (v, v∅), then the fewest edges away.
+    MostUnexplored,
+    /// None: any of them.
+    Uniform,
+}
+
+/// 𝒱 of section 5, the vertices with edges (v, v∅), as seen from the current vertex.
+#[derive(Debug, Clone)]
+pub struct Candidates<'a> {
+    map: &'a ToposemanticMap,
+    /// Number of edges from the current vertex, by vertex.
+    distances: Vec<Option<usize>>,
+    /// In order of discovery.
+    open: Vec<VertexId>,
+}
+
+impl<'a> Candidates<'a> {
+    /// The candidates on `map` for a robot at `current`.
+    pub fn new(map: &'a ToposemanticMap, current: VertexId) -> Self {
+        let distances = map.distances(current);
+        let open = map
+            .ids()
+            .filter(|v| distances[v.index()].is_some() && map.unexplored_degree(*v) > 0)
+            .collect();
+        Self { map, distances, open }
+    }
+
+    /// The candidates, in order of discovery.
+    pub fn open(&self) -> &[VertexId] {
+        &self.open
+    }
+
+    /// Number of edges from the current vertex to a candidate.
+    pub fn distance(&self, v: VertexId) -> usize {
+        self.distances[v.index()].expect("candidates can be reached")
+    }
+
+    fn degree(&self, v: VertexId) -> usize {
+        self.map.unexplored_degree(v)
+    }
+
+    /// The one of `among` that `preference` puts first; `None` where there is none.
+    fn prefer(
+        &self,
+        among: Vec<VertexId>,
+        preference: Preference,
+        stream: &mut Stream,
+    ) -> Option<VertexId> {
+        let most = usize::MAX;
+        let best = match preference {
+            Preference::Uniform => among,
+            Preference::Nearest => least(among, |v| self.distance(v)),
+            Preference::MostUnexplored => {
+                least(among, |v| (most - self.degree(v), self.distance(v)))
+            }
+        };
+        uniform(&best, stream)
+    }
+}
+
+/// Those of `among` whose `key` is least.
+fn least<K: Ord>(mut among: Vec<VertexId>, key: impl Fn(VertexId) -> K) -> Vec<VertexId> {
+    if let Some(best) = among.iter().map(|v| key(*v)).min() {
+        among.retain(|v| key(*v) == best);
+    }
+    among
+}
+
+/// One of `among`, each with the same probability; `None` where there is none.
+pub(super) fn uniform<T: Copy>(among: &[T], stream: &mut Stream) -> Option<T> {
+    if among.is_empty() {
+        return None;
+    }
+    let index = usize::try_from(stream.below(among.len() as u64)).expect("it is below a length");
+    Some(among[index])
+}
+
+/// A strategy with what it remembers between choices.
+#[derive(Debug, Clone)]
+pub struct Chooser {
+    strategy: Strategy,
+    frontier: Frontier,
+    normalized_frontier: NormalizedFrontier,
+    corridors_first: CorridorsFirst,
+    complete_corridor: CorridorInHand,
+}
+
+impl Chooser {
+    /// The strategy that `rules` name.
+    pub fn new(rules: &Rules) -> Self {
+        Self {
+            strategy: rules.strategy,
+            frontier: rules.frontier.clone(),
+            normalized_frontier: rules.normalized_frontier.clone(),
+            corridors_first: rules.corridors_first.clone(),
+            complete_corridor: CorridorInHand::new(rules.complete_corridor.clone()),
+        }
+    }
+
+    /// The vertex to go to next from `current`; `None` where nothing is left to explore.
+    pub fn next(
+        &mut self,
+        map: &ToposemanticMap,
+        current: VertexId,
+        stream: &mut Stream,
+    ) -> Option<VertexId> {
+        let candidates = Candidates::new(map, current);
+        match self.strategy {
+            Strategy::Random => random::choose(&candidates, stream),
+            Strategy::Frontier => self.frontier.choose(&candidates, stream),
+            Strategy::NormalizedFrontier => self.normalized_frontier.choose(&candidates, stream),
+            Strategy::CorridorsFirst => self.corridors_first.choose(&candidates, stream),
+            Strategy::CompleteCorridor => {
+                self.complete_corridor.choose(&candidates, current, stream)
+            }
+        }
+    }
+}

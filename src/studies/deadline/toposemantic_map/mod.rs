@@ -1,0 +1,502 @@
+//! The semantic topological oriented map M = (V, E, L, D, S): section 3, Definition 1, and how it grows: section 4,
+//! Algorithm 1.
+//!
+//! A vertex keeps its outgoing edges by compass direction. What Definition 1 asks of edges then mostly cannot be broken:
+//! D(e) and S(e) are read off the direction, and the only function that makes an edge also makes the edge back, in the
+//! opposite direction, so that D agrees and S differs ([`ToposemanticMap::check`] looks nevertheless).
+
+mod error;
+mod label;
+#[cfg(test)]
+mod tests;
+
+pub use error::{Inconsistency, MapError};
+pub use label::{SemanticLabel, side};
+
+use super::intersection::{Exit, Intersection, Opening};
+use crate::cmdp::build::{OrientedEdge, Place, Side, Topology};
+use crate::geometry::{Axis, Cardinal};
+use label::Labels;
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::fmt;
+
+/// A vertex of one map: its number in order of discovery, from 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct VertexId(usize);
+
+impl VertexId {
+    /// The number, from 0.
+    pub const fn index(self) -> usize {
+        self.0
+    }
+}
+
+impl fmt::Display for VertexId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+/// What an edge leads to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum End {
+    /// v∅: unexplored space.
+    Unexplored,
+    /// A vertex.
+    Vertex(VertexId),
+}
+
+/// One edge, as Definition 1 speaks of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Edge {
+    /// The vertex it leaves.
+    pub from: VertexId,
+    /// In which direction.
+    pub direction: Cardinal,
+    /// What through.
+    pub opening: Opening,
+    /// Where to.
+    pub to: End,
+}
+
+impl Edge {
+    /// D(e).
+    pub const fn axis(&self) -> Axis {
+        self.direction.axis()
+    }
+
+    /// S(e).
+    pub const fn side(&self) -> Side {
+        side(self.direction)
+    }
+}
+
+/// How a robot came to a vertex.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Arrival {
+    /// It is new (Algorithm 1).
+    New,
+    /// It was known, and so was the edge.
+    Revisit,
+    /// It was known, and the edge to it was not: a loop closed.
+    LoopClosed,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Vertex {
+    label: SemanticLabel,
+    tags: BTreeSet<String>,
+    is_goal: bool,
+    exits: [Option<(Opening, End)>; 4],
+}
+
+/// M = (V, E, L, D, S).
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct ToposemanticMap {
+    vertices: Vec<Vertex>,
+    labels: Labels,
+}
+
+impl ToposemanticMap {
+    /// The empty map.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Puts the vertex at which the robot begins into the empty map.
+    ///
+    /// # Errors
+    /// A map that is not empty, or an impossible intersection.
+    pub fn begin(&mut self, here: &Intersection) -> Result<VertexId, MapError> {
+        if let Some(first) = self.vertices.first() {
+            return Err(MapError::Begun { label: first.label });
+        }
+        possible(here)?;
+        Ok(self.add(here, None))
+    }
+
+    /// The robot left `from` by its exit to the `direction` and the IDS says where it has arrived: a new vertex
+    /// ([`Self::create_new_node`]) or a known one, by a known or a new edge. A known vertex learns exits that were not
+    /// seen before.
+    ///
+    /// # Errors
+    /// What the IDS says does not fit the map, which stays as it was.
+    pub fn arrive(
+        &mut self,
+        from: VertexId,
+        direction: Cardinal,
+        here: &Intersection,
+    ) -> Result<(VertexId, Arrival), MapError> {
+        possible(here)?;
+        let (_, end) = self.exit(from, direction)?;
+        let known = self.recognise(here)?;
+        if let End::Vertex(before) = end
+            && known != Some(before)
+        {
+            return Err(MapError::LedElsewhere {
+                from: self.label(from),
+                direction,
+                before: self.label(before),
+                now: known.map_or_else(|| NEW.to_owned(), |v| self.label(v).to_string()),
+            });
+        }
+        let Some(vertex) = known else {
+            return Ok((self.create_new_node(from, direction, here)?, Arrival::New));
+        };
+        if self.place(vertex) != here.place {
+            let now = place_name(here.place);
+            return Err(MapError::OtherPlace { label: self.label(vertex), now });
+        }
+        let closes = end == End::Unexplored;
+        if closes {
+            self.may_close(from, direction, vertex, here)?;
+        }
+        self.learn(vertex, here);
+        if closes {
+            self.join(from, direction, vertex);
+        }
+        Ok((vertex, if closes { Arrival::LoopClosed } else { Arrival::Revisit }))
+    }
+
+    /// `createNewNode(v', edges)`, Algorithm 1; `from` is v, the vertex the robot came from (line 2).
+    ///
+    /// Lines 6 and 7 of the listing set D(v', v) and S(v', v) twice; (v, v') and (v', v) are meant.
+    ///
+    /// # Errors
+    /// No such exit, or an intersection that is not new, has no exit back or another opening there.
+    pub fn create_new_node(
+        &mut self,
+        from: VertexId,
+        direction: Cardinal,
+        new: &Intersection,
+    ) -> Result<VertexId, MapError> {
+        possible(new)?;
+        if let Some(known) = self.recognise(new)? {
+            return Err(MapError::NotNew { label: self.label(known) });
+        }
+        let (opening, end) = self.exit(from, direction)?;
+        if let End::Vertex(before) = end {
+            return Err(MapError::LedElsewhere {
+                from: self.label(from),
+                direction,
+                before: self.label(before),
+                now: NEW.to_owned(),
+            });
+        }
+        let back = new.exits.iter().find(|exit| exit.direction == direction.opposite());
+        self.match_openings(from, direction, opening, NEW, back.map(|exit| exit.opening))?;
+        // Lines 3, 5, 8 and 9: V, L(v') and the edges (v', v∅), which carry D and S by their direction.
+        let along = (opening == Opening::Corridor).then(|| (self.label(from), direction.axis()));
+        let vertex = self.add(new, along);
+        // Lines 4, 6 and 7: (v, v') and (v', v).
+        self.join(from, direction, vertex);
+        Ok(vertex)
+    }
+
+    /// The vertex that shares a tag with `here`, if there is one.
+    ///
+    /// # Errors
+    /// There are two.
+    pub fn recognise(&self, here: &Intersection) -> Result<Option<VertexId>, MapError> {
+        let mut known = self
+            .ids()
+            .filter(|v| here.tags.iter().any(|tag| self.vertices[v.0].tags.contains(tag)));
+        let first = known.next();
+        match (first, known.next()) {
+            (Some(first), Some(second)) => {
+                Err(MapError::Conflated { first: self.label(first), second: self.label(second) })
+            }
+            _ => Ok(first),
+        }
+    }
+
+    /// |V|.
+    pub fn len(&self) -> usize {
+        self.vertices.len()
+    }
+
+    /// Whether V is empty.
+    pub fn is_empty(&self) -> bool {
+        self.vertices.is_empty()
+    }
+
+    /// V, in order of discovery.
+    pub fn ids(&self) -> impl Iterator<Item = VertexId> + use<> {
+        (0..self.vertices.len()).map(VertexId)
+    }
+
+    /// L(v).
+    pub fn label(&self, v: VertexId) -> SemanticLabel {
+        self.vertices[v.0].label
+    }
+
+    /// Whether v is a room or part of a corridor.
+    pub fn place(&self, v: VertexId) -> Place {
+        self.label(v).place()
+    }
+
+    /// Whether v is the goal.
+    pub fn is_goal(&self, v: VertexId) -> bool {
+        self.vertices[v.0].is_goal
+    }
+
+    /// The tags by which v is recognised.
+    pub fn tags(&self, v: VertexId) -> &BTreeSet<String> {
+        &self.vertices[v.0].tags
+    }
+
+    /// The edges that leave v, counter-clockwise from east.
+    pub fn edges_from(&self, v: VertexId) -> impl Iterator<Item = Edge> + '_ {
+        Cardinal::ALL.into_iter().filter_map(move |direction| self.edge(v, direction))
+    }
+
+    /// The edge that leaves v in `direction`.
+    pub fn edge(&self, from: VertexId, direction: Cardinal) -> Option<Edge> {
+        let (opening, to) = self.vertices[from.0].exits[direction.index()]?;
+        Some(Edge { from, direction, opening, to })
+    }
+
+    /// E, by vertex and direction.
+    pub fn edges(&self) -> impl Iterator<Item = Edge> + '_ {
+        self.ids().flat_map(|v| self.edges_from(v))
+    }
+
+    /// The edges (v, v∅).
+    pub fn unexplored(&self, v: VertexId) -> impl Iterator<Item = Edge> + '_ {
+        self.edges_from(v).filter(|edge| edge.to == End::Unexplored)
+    }
+
+    /// deg(v) of section 5: how many edges (v, v∅) there are.
+    pub fn unexplored_degree(&self, v: VertexId) -> usize {
+        self.unexplored(v).count()
+    }
+
+    /// d(v) of section 5 for every v: the number of edges on a shortest path from `from`; `None` where there is none.
+    pub fn distances(&self, from: VertexId) -> Vec<Option<usize>> {
+        let mut distances = vec![None; self.len()];
+        distances[from.0] = Some(0);
+        let mut queue = VecDeque::from([(from, 0)]);
+        while let Some((v, d)) = queue.pop_front() {
+            for edge in self.edges_from(v) {
+                if let End::Vertex(to) = edge.to
+                    && distances[to.0].is_none()
+                {
+                    distances[to.0] = Some(d + 1);
+                    queue.push_back((to, d + 1));
+                }
+            }
+        }
+        distances
+    }
+
+    /// The corridor along `axis` that `v` is on (section 5, complete corridors first): the longest path through v of which
+    /// all vertices are corridor vertices and all edges run along the axis. From west or south on; empty for a room.
+    pub fn corridor(&self, v: VertexId, axis: Axis) -> Vec<VertexId> {
+        if self.place(v) == Place::Room {
+            return Vec::new();
+        }
+        let [forward, back] = axis.directions();
+        let mut path = vec![v];
+        for direction in [back, forward] {
+            let mut at = v;
+            while let Some(Edge { to: End::Vertex(next), .. }) = self.edge(at, direction)
+                && self.place(next) == Place::Corridor
+                && !path.contains(&next)
+            {
+                path.push(next);
+                at = next;
+            }
+            if direction == back {
+                path.reverse();
+            }
+        }
+        path
+    }
+
+    /// What the planner needs: all vertices and the explored edges, with each edge's exit.
+    pub fn topology(&self) -> (Topology, Vec<(VertexId, Cardinal)>) {
+        let mut topology = Topology {
+            vertices: self.vertices.iter().map(|vertex| vertex.label.place()).collect(),
+            edges: Vec::new(),
+        };
+        let mut exits = Vec::new();
+        for edge in self.edges() {
+            if let End::Vertex(to) = edge.to {
+                let (from, to) = (edge.from.0, to.0);
+                topology.edges.push(OrientedEdge { from, to, side: edge.side() });
+                exits.push((edge.from, edge.direction));
+            }
+        }
+        (topology, exits)
+    }
+
+    /// Whether the map keeps Definition 1: L is injective, E is a set, and for every edge e = (vi, vj) there is
+    /// e' = (vj, vi) with D(e) = D(e') and S(e) ≠ S(e').
+    ///
+    /// # Errors
+    /// The first inconsistency.
+    pub fn check(&self) -> Result<(), Inconsistency> {
+        let mut labels = BTreeMap::new();
+        let mut tags = BTreeMap::new();
+        for v in self.ids() {
+            if let Some(first) = labels.insert(self.label(v), v) {
+                return Err(Inconsistency::SameLabel { first, second: v });
+            }
+            for tag in self.tags(v) {
+                if let Some(first) = tags.insert(tag, v) {
+                    return Err(Inconsistency::SharedTag { first, second: v });
+                }
+            }
+        }
+        let mut ends = BTreeMap::new();
+        for edge in self.edges() {
+            if let End::Vertex(to) = edge.to
+                && (to == edge.from || ends.insert((edge.from, to), edge).is_some())
+            {
+                return Err(Inconsistency::NotSimple { from: edge.from, to });
+            }
+        }
+        for ((from, to), edge) in &ends {
+            let (from, to) = (*from, *to);
+            let Some(back) = ends.get(&(to, from)) else {
+                return Err(Inconsistency::OneWay { from, to });
+            };
+            if edge.axis() != back.axis() {
+                return Err(Inconsistency::OtherAxis { from, to });
+            }
+            if edge.side() == back.side() {
+                return Err(Inconsistency::SameSide { from, to });
+            }
+        }
+        Ok(())
+    }
+
+    fn exit(&self, v: VertexId, direction: Cardinal) -> Result<(Opening, End), MapError> {
+        self.vertices[v.0].exits[direction.index()]
+            .ok_or_else(|| MapError::NoSuchExit { label: self.label(v), direction })
+    }
+
+    fn add(&mut self, here: &Intersection, along: Option<(SemanticLabel, Axis)>) -> VertexId {
+        let mut exits = [None; 4];
+        for exit in &here.exits {
+            exits[exit.direction.index()] = Some((exit.opening, End::Unexplored));
+        }
+        self.vertices.push(Vertex {
+            label: self.labels.next(here.place, along),
+            tags: here.tags.iter().cloned().collect(),
+            is_goal: here.is_goal,
+            exits,
+        });
+        VertexId(self.vertices.len() - 1)
+    }
+
+    /// Takes over what was not seen of `v` before.
+    fn learn(&mut self, v: VertexId, here: &Intersection) {
+        let vertex = &mut self.vertices[v.0];
+        for tag in &here.tags {
+            if !vertex.tags.contains(tag) {
+                vertex.tags.insert(tag.clone());
+            }
+        }
+        vertex.is_goal |= here.is_goal;
+        for Exit { direction, opening } in &here.exits {
+            vertex.exits[direction.index()].get_or_insert((*opening, End::Unexplored));
+        }
+    }
+
+    /// Whether the unexplored exit of `from` to the `direction` can lead to the known vertex `to`, seen as `here`, and the
+    /// exit of `to` back here.
+    fn may_close(
+        &self,
+        from: VertexId,
+        direction: Cardinal,
+        to: VertexId,
+        here: &Intersection,
+    ) -> Result<(), MapError> {
+        if from == to {
+            return Err(MapError::Loop { label: self.label(from), direction });
+        }
+        let (opening, _) = self.exit(from, direction)?;
+        let back = self.edge(to, direction.opposite());
+        let seen_now = here.exits.iter().find(|exit| exit.direction == direction.opposite());
+        let back_opening = back.map(|edge| edge.opening).or(seen_now.map(|exit| exit.opening));
+        self.match_openings(from, direction, opening, &self.label(to).to_string(), back_opening)?;
+        if let Some(Edge { to: End::Vertex(other), .. }) = back {
+            return Err(MapError::BackElsewhere {
+                from: self.label(from),
+                direction,
+                to: self.label(to),
+                other: self.label(other),
+            });
+        }
+        if let Some(first) = self.edges_from(from).find(|edge| edge.to == End::Vertex(to)) {
+            return Err(MapError::Parallel {
+                from: self.label(from),
+                first: first.direction,
+                second: direction,
+                to: self.label(to),
+            });
+        }
+        Ok(())
+    }
+
+    fn match_openings(
+        &self,
+        from: VertexId,
+        direction: Cardinal,
+        here: Opening,
+        to: &str,
+        there: Option<Opening>,
+    ) -> Result<(), MapError> {
+        let (from, to) = (self.label(from), to.to_owned());
+        match there {
+            None => Err(MapError::NoWayBack { from, direction, to }),
+            Some(there) if there != here => Err(MapError::OtherOpening {
+                from,
+                direction,
+                to,
+                here: opening_name(here),
+                there: opening_name(there),
+            }),
+            Some(_) => Ok(()),
+        }
+    }
+
+    /// The only place where edges between vertices are made: always both, in opposite directions.
+    fn join(&mut self, from: VertexId, direction: Cardinal, to: VertexId) {
+        for (vertex, direction, end) in [(from, direction, to), (to, direction.opposite(), from)] {
+            if let Some((_, unexplored)) = &mut self.vertices[vertex.0].exits[direction.index()] {
+                *unexplored = End::Vertex(end);
+            }
+        }
+    }
+}
+
+const NEW: &str = "a new vertex";
+
+fn possible(here: &Intersection) -> Result<(), MapError> {
+    if here.tags.is_empty() {
+        return Err(MapError::NoTags);
+    }
+    let mut seen = [false; 4];
+    for exit in &here.exits {
+        if std::mem::replace(&mut seen[exit.direction.index()], true) {
+            return Err(MapError::DoubleExit { direction: exit.direction });
+        }
+    }
+    Ok(())
+}
+
+const fn opening_name(opening: Opening) -> &'static str {
+    match opening {
+        Opening::Corridor => "corridor",
+        Opening::Door => "door",
+    }
+}
+
+const fn place_name(place: Place) -> &'static str {
+    match place {
+        Place::Room => "room",
+        Place::Corridor => "corridor",
+    }
+}

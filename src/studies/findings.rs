@@ -1,0 +1,108 @@
+//! From records to what a reader sees, as far as all studies share it: the trials table and how cells are chosen.
+
+use super::deadline::Calibration;
+use super::{Condition, TrialRecord};
+use crate::table::{Table, Value};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// What the tables and figures of one experiment are made from.
+#[derive(Debug, Clone, Copy)]
+pub struct Findings<'a> {
+    /// Factors and their values, in the manifest's order.
+    pub factors: &'a [(String, Vec<String>)],
+    /// The records, in plan order.
+    pub records: &'a [TrialRecord],
+    /// The paper's own numbers, by name: factor columns, `coverage-percent`, `value`, `sd`, `n`.
+    pub published: &'a BTreeMap<String, Table>,
+    /// Deadline study: what the planner expected of its maneuvers.
+    pub calibration: Option<&'a Calibration>,
+}
+
+impl<'a> Findings<'a> {
+    /// One row a trial: key, factors, number, outcome, then every measure.
+    pub fn trials(&self) -> Table {
+        let measures: BTreeSet<&str> =
+            self.records.iter().flat_map(|r| r.measures.keys().map(String::as_str)).collect();
+        let mut measures: Vec<&str> = measures.into_iter().collect();
+        // `...-at-95` after `...-at-50`, and the whole trial's measures after those.
+        measures.sort_by_key(|name| (!name.contains("-at-"), *name));
+        let mut columns = vec!["key".to_owned()];
+        columns.extend(self.factors.iter().map(|(name, _)| name.clone()));
+        columns.extend(["trial".to_owned(), "outcome".to_owned()]);
+        columns.extend(measures.iter().map(|&m| m.to_owned()));
+        let mut table = Table::new(columns);
+        for record in self.records {
+            let mut row: Vec<Value> = vec![record.key.hex().into()];
+            row.extend(self.factor_values(&record.condition()));
+            row.push(i64::from(record.trial).into());
+            row.push(record.outcome.name().into());
+            row.extend(measures.iter().map(|&m| record.measures.get(m).copied().flatten().into()));
+            table.push(row);
+        }
+        table
+    }
+
+    /// The values of `factor` that were run, in the manifest's order.
+    pub(super) fn values_of(&self, factor: &str) -> Vec<String> {
+        let values = self.factors.iter().find(|(name, _)| name == factor).map(|(_, v)| v.clone());
+        let ran = |value: &String| {
+            self.records.iter().any(|r| r.condition.iter().any(|(f, v)| f == factor && v == value))
+        };
+        // Partial runs leave values out.
+        values.unwrap_or_default().into_iter().filter(ran).collect()
+    }
+
+    /// Every combination of values of `factors`, the last one fastest.
+    pub(super) fn crossed(&self, factors: &[String]) -> Vec<Vec<(String, String)>> {
+        let mut crossed = vec![Vec::new()];
+        for factor in factors {
+            crossed = crossed
+                .into_iter()
+                .flat_map(|row| {
+                    self.values_of(factor).into_iter().map(move |value| {
+                        let mut row: Vec<(String, String)> = row.clone();
+                        row.push((factor.clone(), value));
+                        row
+                    })
+                })
+                .collect();
+        }
+        crossed
+    }
+
+    /// The records whose condition has all values of `fixed`.
+    pub(super) fn matching(&self, fixed: &[(String, String)]) -> Vec<&'a TrialRecord> {
+        self.records
+            .iter()
+            .filter(|record| fixed.iter().all(|f| record.condition.contains(f)))
+            .collect()
+    }
+
+    /// The row of the published table `name` for the values of `fixed` that it has columns for.
+    pub(super) fn published_row(
+        &self,
+        name: &str,
+        fixed: &[(String, String)],
+    ) -> Option<(&'a Table, &'a [Value])> {
+        let table = self.published.get(name)?;
+        let fits = |row: &&Vec<Value>| {
+            fixed.iter().all(|(factor, value)| {
+                table.column(factor).is_none() || table.value(row, factor).to_string() == *value
+            })
+        };
+        table.rows.iter().find(fits).map(|row| (table, row.as_slice()))
+    }
+
+    /// The values of `condition` in the order of the factors, as a table holds them.
+    pub(super) fn factor_values(&self, condition: &Condition) -> Vec<Value> {
+        self.factors
+            .iter()
+            .map(|(name, _)| condition.value(name).map(str::to_owned).into())
+            .collect()
+    }
+}
+
+/// Six significant digits: more would only be noise in a table.
+pub(super) fn rounded(x: f64) -> f64 {
+    format!("{x:.5e}").parse().unwrap_or(x)
+}

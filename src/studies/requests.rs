@@ -1,0 +1,70 @@
+//! What a manifest may ask to see: tables and figures in its study's layouts.
+
+use super::{deadline, prior_map};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// One table to produce.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub struct TableRequest {
+    /// Name of its file: lower-case letters, digits and hyphens, unique.
+    pub id: String,
+    /// Its title.
+    #[serde(default)]
+    pub title: String,
+    /// What it shows, and how.
+    #[serde(flatten)]
+    pub layout: TableLayout,
+}
+
+/// The layouts of tables.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum TableLayout {
+    /// Prior map: mean and standard deviation of a metric at levels of coverage, as in Tables 1 to 10.
+    CoverageTable(prior_map::CoverageTable),
+    /// Deadline: shares of outcomes, means and ratios by condition, as in Tables 1 and 2.
+    OutcomeTable(deadline::OutcomeTable),
+    /// Deadline: the six maneuvers as calibrated and as they went in the study's own trials.
+    ManeuverTable(deadline::ManeuverTable),
+}
+
+/// One figure to produce.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub struct FigureRequest {
+    /// Name of its file: lower-case letters, digits and hyphens, unique.
+    pub id: String,
+    /// Its title.
+    #[serde(default)]
+    pub title: String,
+    /// What it shows, and how.
+    #[serde(flatten)]
+    pub layout: FigureLayout,
+}
+
+/// The layouts of figures.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum FigureLayout {
+    /// Prior map: coverage over time or distance, one curve per value of a factor, as in Figure 4.
+    CoverageCurve(prior_map::CoverageCurve),
+    /// Deadline: one bar per value of a factor in groups of conditions, as in Figures 4 and 5.
+    OutcomeBars(deadline::OutcomeTable),
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn requests_survive_a_round_trip() {
+        let json = serde_json::json!({
+            "id": "figure-4", "title": "", "coverage-curve":
+            {"against": "time-s", "by": "prior", "where": {"furnished": "false"}}
+        });
+        let request: FigureRequest = serde_json::from_value(json.clone()).unwrap();
+        assert_eq!(serde_json::to_value(request).unwrap(), json);
+    }
+}
