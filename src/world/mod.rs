@@ -4,11 +4,13 @@
 
 pub mod document;
 pub mod floor_plan;
+pub mod generate;
 pub mod map_server;
 #[cfg(test)]
 pub(crate) mod originals;
 pub mod sdf;
 mod solid;
+pub mod topology;
 
 pub use crate::geometry::Placement;
 pub use solid::{Body, Solid};

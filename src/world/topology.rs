@@ -1,0 +1,370 @@
+//! The true graph of a building, read from its tags by the convention of the deadline study (docs/world.md).
+//!
+//! A vertex tag stands on every place of the graph: corridor vertices (intersections, places beside doors, dead
+//! ends) and rooms. Beside it stands an exit tag for every way out, which faces that way. An edge runs from an
+//! exit straight to the nearest vertex tag in its direction, and comes back by the opposite exit there.
+
+mod fault;
+
+pub use fault::TagFault;
+
+use super::{RegionKind, Tag};
+use crate::geometry::{Cardinal, Point};
+use crate::math;
+use std::collections::VecDeque;
+
+/// What the colours of tags mean and how near they stand to what they belong to.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TagScheme {
+    /// Colour of the vertex tags of corridors.
+    pub corridor: String,
+    /// Colour of the vertex tags of rooms.
+    pub room: String,
+    /// Colour of exits that lead through a corridor.
+    pub corridor_exit: String,
+    /// Colour of exits that lead through a door.
+    pub door_exit: String,
+    /// Colour of the mark of a goal.
+    pub goal: String,
+    /// How far (m) a mark may stand from the vertex tag it belongs to. Vertices are twice this apart.
+    pub grouping: f64,
+    /// How far (m) the other end of an edge may lie off the exit's line.
+    pub aside: f64,
+}
+
+impl Default for TagScheme {
+    fn default() -> Self {
+        let own = str::to_owned;
+        Self {
+            corridor: own("green"),
+            room: own("blue"),
+            corridor_exit: own("white"),
+            door_exit: own("yellow"),
+            goal: own("red"),
+            grouping: 1.0,
+            aside: 0.5,
+        }
+    }
+}
+
+/// How far (rad) an exit's heading may be from its cardinal direction: one degree.
+const ASKEW: f64 = std::f64::consts::PI / 180.0;
+
+/// What an edge passes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Opening {
+    /// A corridor.
+    Corridor,
+    /// A door.
+    Door,
+}
+
+/// A way out of a vertex.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Exit {
+    /// Which way.
+    pub direction: Cardinal,
+    /// Through what.
+    pub opening: Opening,
+    /// The vertex at the other end, by its number.
+    pub to: usize,
+}
+
+/// A place of the graph.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Vertex {
+    /// Id of its vertex tag.
+    pub tag: String,
+    /// Corridor or room.
+    pub kind: RegionKind,
+    /// Where it is (m).
+    pub at: Point,
+    /// Ways out, counter-clockwise from east; at most one in each direction.
+    pub exits: Vec<Exit>,
+    /// Whether the mark of a goal stands here.
+    pub is_goal: bool,
+}
+
+/// An undirected edge: its east or north exit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Edge {
+    /// Western or southern end.
+    pub from: usize,
+    /// Eastern or northern end.
+    pub to: usize,
+    /// East or north.
+    pub direction: Cardinal,
+    /// What it passes.
+    pub opening: Opening,
+}
+
+/// The graph of a building.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Topology {
+    /// Its vertices, in the order of their tags in the world.
+    pub vertices: Vec<Vertex>,
+}
+
+impl Topology {
+    /// Reads the graph from `tags`. Tags of colours that `scheme` does not name are no part of it.
+    ///
+    /// # Errors
+    /// Every way in which the tags break the convention.
+    pub fn read(tags: &[Tag], scheme: &TagScheme) -> Result<Self, Vec<TagFault>> {
+        let mut reader =
+            Reader { scheme, vertices: Vec::new(), ways: Vec::new(), faults: Vec::new() };
+        reader.place(tags);
+        for tag in tags {
+            let opening = match &tag.color {
+                color if *color == scheme.corridor_exit => Some(Opening::Corridor),
+                color if *color == scheme.door_exit => Some(Opening::Door),
+                color if *color == scheme.goal => None,
+                _ => continue,
+            };
+            if let Some(vertex) = reader.owner(tag) {
+                match opening {
+                    Some(opening) => reader.exit(tag, vertex, opening),
+                    None => reader.vertices[vertex].is_goal = true,
+                }
+            }
+        }
+        reader.join();
+        reader.check_kinds();
+        if reader.faults.is_empty() {
+            Ok(Self { vertices: reader.vertices })
+        } else {
+            Err(reader.faults)
+        }
+    }
+
+    /// Every edge once, by its western or southern end.
+    pub fn edges(&self) -> impl Iterator<Item = Edge> + '_ {
+        self.vertices.iter().enumerate().flat_map(|(from, vertex)| {
+            let forward = |exit: &&Exit| matches!(exit.direction, Cardinal::East | Cardinal::North);
+            vertex.exits.iter().filter(forward).map(move |exit| Edge {
+                from,
+                to: exit.to,
+                direction: exit.direction,
+                opening: exit.opening,
+            })
+        })
+    }
+
+    /// Numbers of the vertices where a goal is.
+    pub fn goals(&self) -> impl Iterator<Item = usize> + '_ {
+        self.vertices.iter().enumerate().filter(|(_, v)| v.is_goal).map(|(number, _)| number)
+    }
+
+    /// Edges from every vertex to the nearest goal (breadth first); `None` where there is no way.
+    pub fn distances_to_goal(&self) -> Vec<Option<u32>> {
+        self.distances(self.goals())
+    }
+
+    /// Edges from every vertex to the nearest of `sources`, by number; `None` where there is no way.
+    pub fn distances(&self, sources: impl IntoIterator<Item = usize>) -> Vec<Option<u32>> {
+        let mut distances = vec![None; self.vertices.len()];
+        let mut open: VecDeque<usize> = sources.into_iter().collect();
+        for source in &open {
+            distances[*source] = Some(0);
+        }
+        while let Some(here) = open.pop_front() {
+            let next = distances[here].map(|distance: u32| distance + 1);
+            for exit in &self.vertices[here].exits {
+                if distances[exit.to].is_none() {
+                    distances[exit.to] = next;
+                    open.push_back(exit.to);
+                }
+            }
+        }
+        distances
+    }
+
+    /// The number of the vertex within `within` m of `point`, the nearest if there are several.
+    pub fn vertex_near(&self, point: Point, within: f64) -> Option<usize> {
+        let distance = |number: &usize| self.vertices[*number].at.distance(point);
+        (0..self.vertices.len())
+            .min_by(|a, b| distance(a).total_cmp(&distance(b)))
+            .filter(|number| distance(number) <= within)
+    }
+
+    /// How many edges could be taken away before the graph has no loop.
+    pub fn loops(&self) -> usize {
+        let mut parts = 0;
+        let mut reached = vec![false; self.vertices.len()];
+        for start in 0..self.vertices.len() {
+            if !reached[start] {
+                parts += 1;
+                for (number, distance) in self.distances([start]).iter().enumerate() {
+                    reached[number] |= distance.is_some();
+                }
+            }
+        }
+        (self.edges().count() + parts).saturating_sub(self.vertices.len())
+    }
+
+    /// Whether every vertex can be reached from every other one.
+    pub fn is_connected(&self) -> bool {
+        self.vertices.is_empty() || self.distances([0]).iter().all(Option::is_some)
+    }
+}
+
+/// An exit whose other end is not yet known.
+struct Way {
+    tag: String,
+    vertex: usize,
+    direction: Cardinal,
+    opening: Opening,
+}
+
+struct Reader<'a> {
+    scheme: &'a TagScheme,
+    vertices: Vec<Vertex>,
+    ways: Vec<Way>,
+    faults: Vec<TagFault>,
+}
+
+impl Reader<'_> {
+    /// Takes in the vertex tags.
+    fn place(&mut self, tags: &[Tag]) {
+        for tag in tags {
+            let kind = match &tag.color {
+                color if *color == self.scheme.corridor => RegionKind::Corridor,
+                color if *color == self.scheme.room => RegionKind::Room,
+                _ => continue,
+            };
+            let at = tag.pose.position();
+            let least = 2.0 * self.scheme.grouping;
+            for other in &self.vertices {
+                let distance = other.at.distance(at);
+                if distance < least {
+                    let tags = [other.tag.clone(), tag.id.clone()];
+                    self.faults.push(TagFault::Crowded { tags, distance, least });
+                }
+            }
+            let (tag, exits) = (tag.id.clone(), Vec::new());
+            self.vertices.push(Vertex { tag, kind, at, exits, is_goal: false });
+        }
+    }
+
+    /// The vertex that the mark `tag` belongs to: the nearest within the grouping distance.
+    fn owner(&mut self, tag: &Tag) -> Option<usize> {
+        let at = tag.pose.position();
+        let distance = |number: &usize| self.vertices[*number].at.distance(at);
+        let nearest = (0..self.vertices.len())
+            .min_by(|a, b| distance(a).total_cmp(&distance(b)))
+            .filter(|number| distance(number) <= self.scheme.grouping);
+        if nearest.is_none() {
+            let (tag, color) = (tag.id.clone(), tag.color.clone());
+            self.faults.push(TagFault::Alone { tag, color, at, within: self.scheme.grouping });
+        }
+        nearest
+    }
+
+    fn exit(&mut self, tag: &Tag, vertex: usize, opening: Opening) {
+        let heading = tag.pose.heading;
+        let direction = Cardinal::from_heading(heading);
+        let turned = math::wrap_angle(heading - direction.heading()).abs();
+        if turned > ASKEW {
+            let degrees = heading.to_degrees();
+            self.faults.push(TagFault::Askew { tag: tag.id.clone(), degrees });
+            return;
+        }
+        let off = tag.pose.position() - self.vertices[vertex].at;
+        let ahead = off.dot(unit(direction));
+        if ahead <= 0.0 || ahead < off.cross(unit(direction)).abs() {
+            let (tag, owner) = (tag.id.clone(), self.vertices[vertex].tag.clone());
+            self.faults.push(TagFault::Misplaced { tag, vertex: owner, direction });
+            return;
+        }
+        if let Some(other) =
+            self.ways.iter().find(|w| w.vertex == vertex && w.direction == direction)
+        {
+            let tags = [other.tag.clone(), tag.id.clone()];
+            let vertex = self.vertices[vertex].tag.clone();
+            self.faults.push(TagFault::Doubled { vertex, direction, tags });
+            return;
+        }
+        self.ways.push(Way { tag: tag.id.clone(), vertex, direction, opening });
+    }
+
+    /// The nearest vertex in `direction` from `from`.
+    fn other_end(&self, from: usize, direction: Cardinal) -> Option<usize> {
+        let ahead = |number: &usize| {
+            (self.vertices[*number].at - self.vertices[from].at).dot(unit(direction))
+        };
+        let aside = |number: &usize| {
+            (self.vertices[*number].at - self.vertices[from].at).cross(unit(direction)).abs()
+        };
+        (0..self.vertices.len())
+            .filter(|number| *number != from)
+            .filter(|number| ahead(number) > 0.0 && aside(number) < self.scheme.aside)
+            .min_by(|a, b| ahead(a).total_cmp(&ahead(b)))
+    }
+
+    /// Gives every exit its other end.
+    fn join(&mut self) {
+        // A fault in the tags of one vertex would be told again by its neighbours.
+        if !self.faults.is_empty() {
+            return;
+        }
+        self.ways.sort_by_key(|way| (way.vertex, way.direction));
+        for way in &self.ways {
+            let (tag, direction) = (way.tag.clone(), way.direction);
+            let Some(to) = self.other_end(way.vertex, direction) else {
+                self.faults.push(TagFault::Nowhere { tag, direction });
+                continue;
+            };
+            let back = direction.opposite();
+            let vertex = self.vertices[to].tag.clone();
+            let found = self.ways.iter().find(|w| w.vertex == to && w.direction == back);
+            let Some(found) = found.filter(|_| self.other_end(to, back) == Some(way.vertex)) else {
+                self.faults.push(TagFault::NoWayBack { tag, vertex, direction, back });
+                continue;
+            };
+            if found.opening != way.opening {
+                // Told once, by the way east or north.
+                if matches!(direction, Cardinal::East | Cardinal::North) {
+                    let tags = [tag, found.tag.clone()];
+                    self.faults.push(TagFault::Unequal { tags });
+                }
+                continue;
+            }
+            self.vertices[way.vertex].exits.push(Exit { direction, opening: way.opening, to });
+        }
+    }
+
+    fn check_kinds(&mut self) {
+        for (number, vertex) in self.vertices.iter().enumerate() {
+            let mut ways = self.ways.iter().filter(|way| way.vertex == number);
+            let tag = vertex.tag.clone();
+            match vertex.kind {
+                RegionKind::Room => {
+                    if let Some(way) = ways.clone().find(|w| w.opening == Opening::Corridor) {
+                        let exit = way.tag.clone();
+                        self.faults.push(TagFault::OpenRoom { vertex: tag, exit });
+                    } else if ways.next().is_none() {
+                        self.faults.push(TagFault::NoExit { vertex: tag });
+                    }
+                }
+                RegionKind::Corridor => {
+                    if !ways.any(|way| way.opening == Opening::Corridor) {
+                        self.faults.push(TagFault::NoCorridor { vertex: tag });
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// One metre in `direction`.
+fn unit(direction: Cardinal) -> Point {
+    match direction {
+        Cardinal::East => Point::new(1.0, 0.0),
+        Cardinal::North => Point::new(0.0, 1.0),
+        Cardinal::West => Point::new(-1.0, 0.0),
+        Cardinal::South => Point::new(0.0, -1.0),
+    }
+}
+
+#[cfg(test)]
+mod tests;
