@@ -10,6 +10,7 @@ pub mod calibration;
 pub mod exploration;
 mod in_situ;
 pub mod intersection;
+pub mod intersection_detection;
 mod mission;
 pub mod navigation;
 mod parameters;

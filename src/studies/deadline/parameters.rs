@@ -1,7 +1,10 @@
 //! Parameters of the deadline study. Those the paper states have its values as default; what it leaves out has a default
 //! here and, in our manifests, a `why`.
 
+use super::intersection_detection::Perception;
+use super::rules::Rules;
 use crate::cmdp::build::{Motion, Speed};
+use crate::navigation::maneuver::PilotRule;
 use crate::studies::parameters;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

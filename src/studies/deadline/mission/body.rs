@@ -157,8 +157,8 @@ impl<'a> Body<'a> {
         self.sim.read_detections(&mut self.detections);
         let blind = CompassReading { stamp: self.sim.now(), heading: 0.0 };
         let compass = self.sim.read_compass().unwrap_or(blind);
-        self.detection.observe(&self.detections, compass, self.pilot.heading());
-        if let Some(here) = self.detection.arrived() {
+        self.detection.observe(&self.detections, compass);
+        if let Some(here) = self.detection.arrived(self.pilot.is_standing()) {
             self.arrivals += 1;
             return Happening::Arrived(here);
         }
