@@ -1,0 +1,381 @@
+//! The pilot: drives one leg after the other.
+
+use super::door::{self, Gap};
+use super::guard::Guard;
+use super::heading::{self, Heading};
+use super::outlook::Outlook;
+use super::rule::{DoorGuidance, HeadingSource, PilotRule, SpeedLimits};
+use super::{CONTROL_PERIOD, Leg, Opening, Sense, corridor};
+use crate::geometry::{Bounds, Outline, Point, Pose};
+use crate::math;
+use crate::robot::Twist;
+use std::f64::consts::TAU;
+
+/// A vertex this far ahead or nearer, and this little aside (m), is driven up to before a turn.
+const HUB_AHEAD: f64 = 1.0;
+const HUB_ASIDE: f64 = 0.4;
+/// ... up to this distance (m).
+const HUB_REACHED: f64 = 0.03;
+/// Legs whose direction differs less from the heading (rad) need no turn at the vertex.
+const STRAIGHT_ON: f64 = 0.35;
+/// Slowest motions that are commanded (m/s, rad/s): slower ones take for ever.
+const CREEP: f64 = 0.08;
+const CREEP_TURN: f64 = 0.08;
+/// A tracked door seen within this distance (m) of where it should be is the same one.
+const SAME_DOOR: f64 = 0.25;
+/// After this many scans that show it elsewhere or not at all it is looked for anew.
+const LOST: u32 = 10;
+/// Thickest wall around a door (m).
+const WALL: f64 = 0.25;
+/// Largest angle to a door's axis on the way through it (rad).
+const DOOR_ANGLE: f64 = 0.12;
+/// Largest angle to a corridor's axis (rad).
+const LINE_ANGLE: f64 = 0.6;
+/// Widths of corridors (m) whose middle is between both walls.
+const CORRIDOR: std::ops::RangeInclusive<f64> = 1.0..=4.0;
+/// Shortest distance ahead at which a door's axis is steered for (m), on it and aside.
+const NEAREST_AIM: f64 = 0.3;
+const AT_STAGE: f64 = 0.05;
+
+/// What the pilot is doing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Phase {
+    /// Nothing: no leg, or given up.
+    Standing,
+    /// Turning once around, this much left (rad).
+    Looking { left: f64 },
+    /// Driving up to the vertex it was told to have reached, at this point of the base frame (m).
+    Settling { hub: Point },
+    /// Turning in place towards the exit.
+    Turning,
+    /// Along the corridor, or up to the door.
+    Driving,
+    /// Turning in place before a door.
+    Aligning,
+    /// In a door.
+    Passing,
+    /// From the door to the vertex.
+    Leaving,
+    /// Backwards, this far yet (m).
+    Backing { left: f64 },
+}
+
+/// Drives legs closed-loop. One pilot a robot; it keeps its heading from leg to leg.
+#[derive(Debug, Clone)]
+pub struct Pilot {
+    rule: PilotRule,
+    body: Bounds,
+    phase: Phase,
+    leg: Option<Leg>,
+    heading: Heading,
+    command: Twist,
+    /// The leg's end in the base frame, as last seen and carried on (m).
+    target: Option<Point>,
+    gap: Option<Gap>,
+    lost: u32,
+    /// Half the width of the corridor, as last seen (m).
+    half_width: Option<f64>,
+    held_up_s: f64,
+    backed_off: u32,
+    guard: Guard,
+    seen: Outlook,
+    ahead: Outlook,
+}
+
+impl Pilot {
+    /// A pilot for a body with this footprint (base frame), standing still.
+    pub fn new(rule: PilotRule, footprint: &Outline) -> Self {
+        Self {
+            rule,
+            body: footprint.bounds(),
+            phase: Phase::Standing,
+            leg: None,
+            heading: Heading::UNKNOWN,
+            command: Twist::STOP,
+            target: None,
+            gap: None,
+            lost: 0,
+            half_width: None,
+            held_up_s: 0.0,
+            backed_off: 0,
+            guard: Guard::default(),
+            seen: Outlook::default(),
+            ahead: Outlook::default(),
+        }
+    }
+
+    /// Begins a leg at the vertex that the last leg led to. Where that one is still ahead, the robot drives up to it before it
+    /// turns.
+    pub fn begin(&mut self, leg: Leg) {
+        let turns = math::wrap_angle(leg.direction - self.heading.get()).abs() > STRAIGHT_ON;
+        let ahead =
+            |hub: &Point| (HUB_REACHED..HUB_AHEAD).contains(&hub.x) && hub.y.abs() < HUB_ASIDE;
+        self.phase = match self.target.take().filter(ahead) {
+            Some(hub) if turns => Phase::Settling { hub },
+            _ => Phase::Turning,
+        };
+        self.leg = Some(leg);
+        self.forget();
+        self.backed_off = 0;
+    }
+
+    /// Begins to turn once around in place, so that the camera sees all that is around.
+    pub fn look_around(&mut self) {
+        self.phase = Phase::Looking { left: TAU };
+        self.leg = None;
+    }
+
+    /// Whether it turns in place: what is seen ahead is not what the leg leads to.
+    pub fn is_turning_in_place(&self) -> bool {
+        matches!(self.phase, Phase::Looking { .. } | Phase::Turning | Phase::Aligning)
+    }
+
+    /// Whether it stands still with nothing to do: not begun, having looked around, or having given the leg up.
+    pub fn is_standing(&self) -> bool {
+        self.phase == Phase::Standing
+    }
+
+    /// How often it backed off on this leg.
+    pub fn backed_off(&self) -> u32 {
+        self.backed_off
+    }
+
+    /// The heading as it takes it to be (rad).
+    pub fn heading(&self) -> f64 {
+        self.heading.get()
+    }
+
+    /// The command for the next control period.
+    pub fn control(&mut self, sense: &Sense<'_>) -> Twist {
+        let period = CONTROL_PERIOD.seconds().get();
+        self.seen.read(sense.scan);
+        self.carry_on(sense, period);
+        let wish = self.wish(period);
+        let given = self.guard.limit(&self.rule, self.body, self.seen.points(), wish);
+        self.notice_hold_up(wish, given, period);
+        self.command = given;
+        given
+    }
+
+    /// Takes in what the last command did and what is sensed.
+    fn carry_on(&mut self, sense: &Sense<'_>, period: f64) {
+        let turned = self.command.angular * period;
+        let moved = Pose::new(self.command.linear * period, 0.0, turned);
+        let walls = match self.rule.heading {
+            HeadingSource::Walls => heading::walls(&self.seen),
+            HeadingSource::Compass => None,
+        };
+        let turned = self.heading.update(&self.rule, turned, sense.compass.heading, walls);
+        self.target =
+            sense.target.or_else(|| self.target.map(|target| moved.inverse_transform(target)));
+        if let Phase::Settling { hub } = &mut self.phase {
+            *hub = moved.inverse_transform(*hub);
+        }
+        if let Phase::Looking { left } = &mut self.phase {
+            *left -= turned;
+        }
+        if let (Some(leg), Some(gap)) = (self.leg, &mut self.gap) {
+            let (sin, cos) = math::sin_cos(self.heading.get() - leg.direction);
+            gap.distance -= moved.x * cos;
+            gap.middle -= moved.x * sin;
+        }
+    }
+
+    /// What it would do if nothing stood in the way.
+    fn wish(&mut self, period: f64) -> Twist {
+        if let Phase::Looking { left } = self.phase {
+            if left <= 0.0 {
+                self.phase = Phase::Standing;
+                return Twist::STOP;
+            }
+            let angular = (self.rule.turn_gain_per_s * left).min(self.rule.slow.angular_rad_s);
+            return Twist { linear: 0.0, angular: angular.max(CREEP_TURN) };
+        }
+        let Some(leg) = self.leg else { return Twist::STOP };
+        let off = math::wrap_angle(self.heading.get() - leg.direction);
+        if let Phase::Settling { hub } = self.phase {
+            if hub.x > HUB_REACHED {
+                return Twist { linear: hub.x.clamp(CREEP, leg.limits.linear_m_s), angular: 0.0 };
+            }
+            self.phase = Phase::Turning;
+        }
+        if self.phase == Phase::Turning {
+            if off.abs() > self.rule.turn_tolerance_rad {
+                return self.turn(-off, leg.limits);
+            }
+            self.phase = Phase::Driving;
+        }
+        if let Phase::Backing { left } = &mut self.phase {
+            if *left > 0.0 {
+                *left -= self.rule.back_off_m_s * period;
+                return Twist { linear: -self.rule.back_off_m_s, angular: 0.0 };
+            }
+            self.phase = Phase::Turning;
+            return Twist::STOP;
+        }
+        self.ahead.turn(&self.seen, off);
+        let target = self.target.map(|target| {
+            let (sin, cos) = math::sin_cos(off);
+            Point::new(cos * target.x - sin * target.y, sin * target.x + cos * target.y)
+        });
+        let laser = self.rule.door_guidance == DoorGuidance::Laser;
+        match (leg.opening, self.phase) {
+            (_, Phase::Standing) => Twist::STOP,
+            (Opening::Door, phase) if laser && phase != Phase::Leaving => {
+                self.through_door(leg.limits, off, target)
+            }
+            (Opening::Door, _) => {
+                self.follow(leg.limits, off, target.map_or(0.0, |target| target.y), target)
+            }
+            (Opening::Corridor, _) => {
+                let middle = self.middle_of_corridor(target);
+                self.follow(leg.limits, off, middle, target)
+            }
+        }
+    }
+
+    /// Where the middle of the corridor is across the leg (m, to the left).
+    fn middle_of_corridor(&mut self, target: Option<Point>) -> f64 {
+        let fallback = target.map_or(0.0, |target| target.y);
+        match corridor::sides(&self.ahead, self.rule.corridor_ahead_m) {
+            [Some(left), Some(right)] if CORRIDOR.contains(&(left + right)) => {
+                self.half_width = Some(f64::midpoint(left, right));
+                (left - right) / 2.0
+            }
+            [Some(left), None] => self.half_width.map_or(fallback, |half| left - half),
+            [None, Some(right)] => self.half_width.map_or(fallback, |half| half - right),
+            _ => fallback,
+        }
+    }
+
+    /// Follows the line along the leg that lies `aside` m to the left, up to the target.
+    fn follow(&self, limits: SpeedLimits, off: f64, aside: f64, target: Option<Point>) -> Twist {
+        if target.is_some_and(|target| target.x <= self.rule.stop_m) {
+            return Twist::STOP;
+        }
+        let wanted = math::atan2(aside, self.rule.lookahead_m).clamp(-LINE_ANGLE, LINE_ANGLE);
+        self.steer(math::wrap_angle(wanted - off), limits)
+    }
+
+    /// Up to a door, aligned with it, and through it.
+    fn through_door(&mut self, limits: SpeedLimits, off: f64, target: Option<Point>) -> Twist {
+        self.track_door(target);
+        let Some(gap) = self.gap else {
+            // Nothing that looks like a door yet: on towards the vertex behind it, slowly.
+            let half = SpeedLimits { linear_m_s: limits.linear_m_s / 2.0, ..limits };
+            return self.follow(half, off, target.map_or(0.0, |target| target.y), target);
+        };
+        let rule = self.rule;
+        let aligned = gap.middle.abs() <= rule.door_offset_m && off.abs() <= rule.door_heading_rad;
+        let to_stage = gap.distance - rule.door_stage_m;
+        if self.phase == Phase::Driving {
+            if to_stage > 0.0 {
+                // Straight for the stage where the axis is still aside, else along the axis.
+                let aside = gap.middle.abs() > rule.door_offset_m;
+                let nearest = if aside { AT_STAGE } else { NEAREST_AIM };
+                let aim = to_stage.clamp(nearest, rule.lookahead_m);
+                let wanted = math::atan2(gap.middle, aim);
+                let mut twist = self.steer(math::wrap_angle(wanted - off), limits);
+                if !aligned {
+                    twist.linear = twist.linear.min((2.0 * to_stage).max(CREEP));
+                }
+                return twist;
+            }
+            self.phase = if aligned { Phase::Passing } else { Phase::Aligning };
+        }
+        if self.phase == Phase::Aligning {
+            if off.abs() > rule.turn_tolerance_rad.min(rule.door_heading_rad) {
+                return self.turn(-off, limits);
+            }
+            if gap.middle.abs() > rule.door_offset_m {
+                self.back_off();
+                return Twist::STOP;
+            }
+            self.phase = Phase::Passing;
+        }
+        if gap.distance < self.body.min.x - WALL {
+            self.phase = Phase::Leaving;
+        }
+        let wanted = if gap.distance > rule.door_commit_m {
+            math::atan2(gap.middle, rule.door_lookahead_m).clamp(-DOOR_ANGLE, DOOR_ANGLE)
+        } else {
+            0.0
+        };
+        self.steer(math::wrap_angle(wanted - off), limits)
+    }
+
+    /// Finds the door in the scan, or carries on the one that was found.
+    fn track_door(&mut self, target: Option<Point>) {
+        let commit = self.rule.door_commit_m;
+        if self.phase == Phase::Passing && self.gap.is_some_and(|gap| gap.distance < commit) {
+            return;
+        }
+        let expected =
+            self.gap.map(|gap| gap.middle).or(target.map(|target| target.y)).unwrap_or(0.0);
+        let limit = target.map_or(f64::INFINITY, |target| target.x);
+        let found = door::find(&self.ahead, &self.rule, expected, limit);
+        match (self.gap, found) {
+            (Some(old), Some(new))
+                if (old.distance - new.distance).abs() <= SAME_DOOR
+                    && (old.middle - new.middle).abs() <= SAME_DOOR =>
+            {
+                self.lost = 0;
+                self.gap = Some(new);
+            }
+            (Some(_), _) => {
+                self.lost += 1;
+                if self.lost > LOST {
+                    (self.gap, self.lost) = (None, 0);
+                }
+            }
+            (None, found) => self.gap = found,
+        }
+    }
+
+    /// Drives on, turning by `error` rad; turns in place where that is much.
+    fn steer(&self, error: f64, limits: SpeedLimits) -> Twist {
+        let share = (1.0 - error.abs() / self.rule.pivot_rad).max(0.0);
+        let bound = limits.angular_rad_s;
+        Twist {
+            linear: limits.linear_m_s * share,
+            angular: (self.rule.turn_gain_per_s * error).clamp(-bound, bound),
+        }
+    }
+
+    /// Turns in place by `error` rad.
+    fn turn(&self, error: f64, limits: SpeedLimits) -> Twist {
+        let angular = (self.rule.turn_gain_per_s * error.abs()).max(CREEP_TURN);
+        Twist { linear: 0.0, angular: angular.min(limits.angular_rad_s).copysign(error) }
+    }
+
+    /// Backs off where the guard has held it up for long.
+    fn notice_hold_up(&mut self, wish: Twist, given: Twist, period: f64) {
+        let held_up =
+            given == Twist::STOP && wish != Twist::STOP || wish.linear > 0.0 && given.linear == 0.0;
+        self.held_up_s = if held_up { self.held_up_s + period } else { 0.0 };
+        if self.held_up_s >= self.rule.blocked_s {
+            match self.phase {
+                // The vertex is as near as it gets.
+                Phase::Settling { .. } => self.phase = Phase::Turning,
+                Phase::Looking { .. } => self.phase = Phase::Standing,
+                _ => self.back_off(),
+            }
+            self.held_up_s = 0.0;
+        }
+    }
+
+    fn back_off(&mut self) {
+        self.forget();
+        self.backed_off += 1;
+        self.phase = if self.backed_off > self.rule.back_off_times {
+            Phase::Standing
+        } else {
+            Phase::Backing { left: self.rule.back_off_m }
+        };
+    }
+
+    /// Forgets what was seen of the way.
+    fn forget(&mut self) {
+        (self.gap, self.lost, self.half_width, self.held_up_s) = (None, 0, None, 0.0);
+    }
+}
