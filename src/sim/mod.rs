@@ -235,7 +235,7 @@ impl Simulator {
     /// The latest reading of the compass, or `None` where the scene has none.
     pub fn read_compass(&mut self) -> Option<CompassReading> {
         let (compass, shutter) = self.compass.as_mut()?;
-        Some(compass.reading(shutter.number, shutter.stamp, shutter.pose.heading))
+        Some(compass.reading(shutter.stamp, shutter.pose.heading))
     }
 
     /// The true pose in the world's frame. For measuring and drawing; no mind may see it.

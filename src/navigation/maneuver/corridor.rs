@@ -31,9 +31,7 @@ fn side(outlook: &Outlook, ahead: f64, sign: f64) -> Option<f64> {
     // Two bins at a time, so that a wall on their border is one.
     let wall = (0..BINS - 1).find(|&i| {
         let (near, far) = (bins[i], bins[i + 1]);
-        near.0 > 0
-            && near.0 + far.0 >= POINTS
-            && near.2.max(far.2) - near.1.min(far.1) >= LENGTH
+        near.0 > 0 && near.0 + far.0 >= POINTS && near.2.max(far.2) - near.1.min(far.1) >= LENGTH
     })?;
     #[expect(clippy::cast_precision_loss, reason = "few bins")]
     let from = wall as f64 * BIN;

@@ -79,11 +79,7 @@ fn gap_at(outlook: &Outlook, rule: &PilotRule, expected: f64, distance: f64) -> 
         } else {
             if let Some(right) = edge.take() {
                 let left = f64::midpoint(last_open, crossing.at);
-                let gap = Gap {
-                    distance,
-                    middle: f64::midpoint(left, right),
-                    width: left - right,
-                };
+                let gap = Gap { distance, middle: f64::midpoint(left, right), width: left - right };
                 let fits = (rule.door_narrowest_m..=rule.door_widest_m).contains(&gap.width)
                     && (gap.middle - expected).abs() <= rule.door_reach_m;
                 let off = |gap: &Gap| (gap.middle - expected).abs();
@@ -104,10 +100,7 @@ fn cross(sensor: Point, end: Point, distance: f64) -> Option<Crossing> {
         return None;
     }
     let open = end.x > distance + FLAT;
-    let at = if open {
-        sensor.y + (end.y - sensor.y) * (distance - sensor.x) / along
-    } else {
-        end.y
-    };
+    let at =
+        if open { sensor.y + (end.y - sensor.y) * (distance - sensor.x) / along } else { end.y };
     Some(Crossing { at, open })
 }

@@ -21,19 +21,19 @@ impl Heading {
     }
 
     /// Carries the heading on by a turn that was commanded, and corrects it by a reading and, where walls are seen, by
-    /// their direction in the base frame (rad).
+    /// their direction in the base frame (rad). Returns by how much the heading has changed (rad).
     pub(super) fn update(
         &mut self,
         rule: &PilotRule,
         turned: f64,
         compass: f64,
         walls: Option<f64>,
-    ) {
+    ) -> f64 {
         let Some(before) = self.estimate else {
             // A first reading off by less than 45 degrees tells the quarter; the walls tell the rest.
             let corrected = walls.map_or(compass, |walls| compass + off_square(walls + compass));
             self.estimate = Some(math::wrap_angle(corrected));
-            return;
+            return 0.0;
         };
         let mut estimate = before + turned;
         estimate += rule.compass_gain * math::wrap_angle(compass - estimate);
@@ -43,6 +43,7 @@ impl Heading {
             estimate += rule.wall_gain * off_square(walls + estimate);
         }
         self.estimate = Some(math::wrap_angle(estimate));
+        estimate - before
     }
 }
 

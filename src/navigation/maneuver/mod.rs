@@ -17,7 +17,7 @@ mod pilot;
 mod rule;
 
 pub use pilot::Pilot;
-pub use rule::{HeadingSource, PilotRule, SpeedLimits};
+pub use rule::{DoorGuidance, HeadingSource, PilotRule, SpeedLimits};
 
 use crate::geometry::Point;
 use crate::robot::{CompassReading, Scan};

@@ -4,7 +4,7 @@ use super::door::{self, Gap};
 use super::guard::Guard;
 use super::heading::{self, Heading};
 use super::outlook::Outlook;
-use super::rule::{HeadingSource, PilotRule, SpeedLimits};
+use super::rule::{DoorGuidance, HeadingSource, PilotRule, SpeedLimits};
 use super::{CONTROL_PERIOD, Leg, Opening, Sense, corridor};
 use crate::geometry::{Bounds, Outline, Point, Pose};
 use crate::math;
@@ -108,7 +108,8 @@ impl Pilot {
     /// turns.
     pub fn begin(&mut self, leg: Leg) {
         let turns = math::wrap_angle(leg.direction - self.heading.get()).abs() > STRAIGHT_ON;
-        let ahead = |hub: &Point| (HUB_REACHED..HUB_AHEAD).contains(&hub.x) && hub.y.abs() < HUB_ASIDE;
+        let ahead =
+            |hub: &Point| (HUB_REACHED..HUB_AHEAD).contains(&hub.x) && hub.y.abs() < HUB_ASIDE;
         self.phase = match self.target.take().filter(ahead) {
             Some(hub) if turns => Phase::Settling { hub },
             _ => Phase::Turning,
@@ -164,15 +165,14 @@ impl Pilot {
             HeadingSource::Walls => heading::walls(&self.seen),
             HeadingSource::Compass => None,
         };
-        let before = self.heading.get();
-        self.heading.update(&self.rule, turned, sense.compass.heading, walls);
+        let turned = self.heading.update(&self.rule, turned, sense.compass.heading, walls);
         self.target =
             sense.target.or_else(|| self.target.map(|target| moved.inverse_transform(target)));
         if let Phase::Settling { hub } = &mut self.phase {
             *hub = moved.inverse_transform(*hub);
         }
         if let Phase::Looking { left } = &mut self.phase {
-            *left -= math::wrap_angle(self.heading.get() - before);
+            *left -= turned;
         }
         if let (Some(leg), Some(gap)) = (self.leg, &mut self.gap) {
             let (sin, cos) = math::sin_cos(self.heading.get() - leg.direction);
@@ -218,18 +218,19 @@ impl Pilot {
             let (sin, cos) = math::sin_cos(off);
             Point::new(cos * target.x - sin * target.y, sin * target.x + cos * target.y)
         });
+        let laser = self.rule.door_guidance == DoorGuidance::Laser;
         match (leg.opening, self.phase) {
-            (Opening::Door, Phase::Driving | Phase::Aligning | Phase::Passing) => {
-                self.to_and_through_door(leg.limits, off, target)
+            (_, Phase::Standing) => Twist::STOP,
+            (Opening::Door, phase) if laser && phase != Phase::Leaving => {
+                self.through_door(leg.limits, off, target)
             }
-            (Opening::Door, Phase::Leaving) => {
+            (Opening::Door, _) => {
                 self.follow(leg.limits, off, target.map_or(0.0, |target| target.y), target)
             }
-            (Opening::Corridor, Phase::Driving) => {
+            (Opening::Corridor, _) => {
                 let middle = self.middle_of_corridor(target);
                 self.follow(leg.limits, off, middle, target)
             }
-            _ => Twist::STOP,
         }
     }
 
@@ -257,12 +258,7 @@ impl Pilot {
     }
 
     /// Up to a door, aligned with it, and through it.
-    fn to_and_through_door(
-        &mut self,
-        limits: SpeedLimits,
-        off: f64,
-        target: Option<Point>,
-    ) -> Twist {
+    fn through_door(&mut self, limits: SpeedLimits, off: f64, target: Option<Point>) -> Twist {
         self.track_door(target);
         let Some(gap) = self.gap else {
             // Nothing that looks like a door yet: on towards the vertex behind it, slowly.
@@ -354,8 +350,8 @@ impl Pilot {
 
     /// Backs off where the guard has held it up for long.
     fn notice_hold_up(&mut self, wish: Twist, given: Twist, period: f64) {
-        let held_up = given == Twist::STOP && wish != Twist::STOP
-            || wish.linear > 0.0 && given.linear == 0.0;
+        let held_up =
+            given == Twist::STOP && wish != Twist::STOP || wish.linear > 0.0 && given.linear == 0.0;
         self.held_up_s = if held_up { self.held_up_s + period } else { 0.0 };
         if self.held_up_s >= self.rule.blocked_s {
             match self.phase {

@@ -25,6 +25,17 @@ pub enum HeadingSource {
     Compass,
 }
 
+/// What the way through a door is steered by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum DoorGuidance {
+    /// The gap's edges in the scan: the robot aligns itself with the door's axis before it passes.
+    Laser,
+    /// The tag of the vertex behind the door and the heading, as the paper's "door, as identified by the IDS"; the laser only
+    /// keeps the body clear. A door that is not on the line to its tag is not found.
+    Tag,
+}
+
 macro_rules! rule {
     ($(#[$doc:meta])* $name:ident { $($(#[$field_doc:meta])* $field:ident: $type:ty = $default:expr,)* }) => {
         $(#[$doc])*
@@ -72,6 +83,8 @@ rule!(
         /// Walls of a corridor are looked for up to this distance ahead (m), above 0.
         #[schemars(extend("exclusiveMinimum" = 0))]
         corridor_ahead_m: f64 = 3.0,
+        /// What the way through a door is steered by.
+        door_guidance: DoorGuidance = DoorGuidance::Laser,
         /// Narrowest gap taken for a door (m), above 0.
         #[schemars(extend("exclusiveMinimum" = 0))]
         door_narrowest_m: f64 = 0.7,
