@@ -182,9 +182,9 @@ impl Plan {
         let problem = Problem { topology, task, expectations: *expectations, labels, exits };
         let method = planning.method;
         let way = match method {
-            Method::Cmdp => path::only_way(&problem.topology, &problem.task, expectations),
+            Method::Cmdp => path::unbound(&problem.topology, &problem.task, expectations),
             ablation => Some(
-                path::shortest(&problem.topology, &problem.task, expectations, ablation)
+                path::ablation(&problem.topology, &problem.task, expectations, ablation)
                     .ok_or_else(|| problem.unreachable())?,
             ),
         };
