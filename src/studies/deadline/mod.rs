@@ -5,6 +5,7 @@
 mod building;
 pub mod exploration;
 pub mod intersection;
+pub mod intersection_detection;
 pub mod navigation;
 pub mod planner;
 mod rules;
@@ -12,4 +13,5 @@ pub mod schedule;
 pub mod strategy;
 pub mod toposemantic_map;
 
+pub use intersection_detection::{IntersectionDetectionSystem, Perception};
 pub use rules::{Rules, UnplannedSpeed};
