@@ -50,7 +50,7 @@ impl Cardinal {
     /// The direction nearest to `heading` (rad, finite); of two equally near ones the counter-clockwise one.
     pub fn from_heading(heading: f64) -> Self {
         let heading = math::wrap_angle(heading);
-        if heading < -3.0 * FRAC_PI_4 || heading >= 3.0 * FRAC_PI_4 {
+        if !(-3.0 * FRAC_PI_4..3.0 * FRAC_PI_4).contains(&heading) {
             Self::West
         } else if heading < -FRAC_PI_4 {
             Self::South

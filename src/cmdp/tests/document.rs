@@ -1,7 +1,7 @@
 //! The JSON form: the example of the documentation, and each way to get it wrong.
 
 use super::*;
-use crate::cmdp::tests::{Instance, relative};
+use crate::cmdp::tests::{Family, Instance, relative};
 use proptest::prelude::*;
 use serde_json::json;
 
@@ -221,6 +221,19 @@ proptest! {
                 }
             }
             Err(error) => prop_assert!(matches!(error, DocumentError::Unsolved(_)), "{error}"),
+        }
+    }
+}
+
+/// What is written is read as the same model, numbers to the bit.
+#[test]
+fn a_written_model_is_read_as_the_same() {
+    for family in Family::ALL {
+        for index in 0..6 {
+            let cmdp = family.instance(index, 9).cmdp();
+            let names = |n: usize| (0..n).map(|i| format!("n{i}")).collect::<Vec<_>>();
+            let text = write_model(&cmdp, &names(cmdp.states()), &names(cmdp.actions()));
+            assert_eq!(read(&text).unwrap(), cmdp, "{family:?} {index}");
         }
     }
 }

@@ -67,7 +67,7 @@ impl Building {
             let last = spine[spine.len() - 1];
             spine.push(office.grow(last, East, Place::Corridor));
         }
-        let mut beside = |office: &mut Self, v: usize, sides: [Cardinal; 2]| {
+        let beside = |office: &mut Self, v: usize, sides: [Cardinal; 2]| {
             for side in sides {
                 if office.spots[v].exits[side.index()].is_none() {
                     office.grow(v, side, Place::Room);
@@ -100,32 +100,25 @@ impl Building {
 
     /// A vertex on a random free site next to a corridor, joined to it, and with `chance` to each other corridor there.
     fn extend(&mut self, stream: &mut Stream, place: Place, chance: f64) {
-        let corridors: Vec<(i32, i32)> = self
-            .sites
-            .iter()
-            .filter(|(_, v)| self.spots[**v].place == Place::Corridor)
-            .map(|(site, _)| *site)
+        let corridors = self.sites.iter().filter(|(_, v)| self.spots[**v].place == Place::Corridor);
+        let free: Vec<(usize, Cardinal, (i32, i32))> = corridors
+            .flat_map(|(site, v)| Cardinal::ALL.map(|side| (*v, side, step(*site, side))))
+            .filter(|(_, _, site)| !self.sites.contains_key(site))
             .collect();
-        loop {
-            let (x, y) = corridors[below(stream, corridors.len())];
-            let direction = Cardinal::ALL[below(stream, 4)];
-            let site = step((x, y), direction);
-            if self.sites.contains_key(&site) {
-                continue;
-            }
-            let from = self.sites[&(x, y)];
-            let to = self.place_at(site, place);
-            self.join(from, direction, to);
-            for side in Cardinal::ALL {
-                if let Some(other) = self.sites.get(&step(site, side)).copied()
-                    && other != from
-                    && self.spots[other].place == Place::Corridor
-                    && stream.uniform() < chance
-                {
-                    self.join(to, side, other);
-                }
-            }
+        if free.is_empty() {
             return;
+        }
+        let (from, direction, site) = free[below(stream, free.len())];
+        let to = self.place_at(site, place);
+        self.join(from, direction, to);
+        for side in Cardinal::ALL {
+            if let Some(other) = self.sites.get(&step(site, side)).copied()
+                && other != from
+                && self.spots[other].place == Place::Corridor
+                && stream.uniform() < chance
+            {
+                self.join(to, side, other);
+            }
         }
     }
 

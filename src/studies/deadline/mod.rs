@@ -24,6 +24,7 @@ pub mod toposemantic_map;
 
 pub use calibration::Calibration;
 pub use in_situ::ManeuverRow;
+pub use intersection_detection::{IntersectionDetectionSystem, Perception};
 pub use mission::{measures, run, tag_scheme};
 pub use parameters::{ErrorShape, Hiding, Mission, Parameters, Passage, Sensing, Task};
 pub use requests::{ManeuverTable, OutcomeTable, Percent, Quantity};

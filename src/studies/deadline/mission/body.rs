@@ -4,14 +4,13 @@
 use super::Prepared;
 use crate::geometry::{Cardinal, Pose};
 use crate::navigation::maneuver::{self, CONTROL_PERIOD, Leg, Pilot, Sense, SpeedLimits};
-use crate::robot::{CompassReading, Detection, Scan};
+use crate::robot::{CompassReading, Detection, Scan, Twist};
 use crate::rng::Seeds;
 use crate::sim::{
     CameraScene, CompassNoise, Distribution, DriveNoise, Occlusion, OdometryNoise, Scene, Simulator,
 };
 use crate::studies::deadline::intersection::{Intersection, Opening};
-use crate::studies::deadline::intersection_detection::IntersectionDetection;
-use crate::studies::deadline::{ErrorShape, Hiding, Setup};
+use crate::studies::deadline::{ErrorShape, Hiding, IntersectionDetectionSystem, Setup};
 use crate::cmdp::build::Speed;
 use crate::studies::recording::{Frame, Recording};
 use crate::studies::state_chain::StateChain;
@@ -26,6 +25,8 @@ pub(super) enum Happening {
     Contact,
     /// The robot is at a vertex.
     Arrived(Intersection),
+    /// The robot has looked around and seen no vertex.
+    Lost,
 }
 
 /// A robot in a building.
@@ -35,7 +36,10 @@ pub(super) struct Body<'a> {
     detections: Vec<Detection>,
     pilot: Pilot,
     limits: [SpeedLimits; 2],
-    detection: IntersectionDetection,
+    ids: IntersectionDetectionSystem,
+    /// Whether it turns once around, to see the vertex it stands at.
+    looking: bool,
+    command: Twist,
     chain: StateChain,
     /// Vertices arrived at, for the chain.
     arrivals: u64,
@@ -95,7 +99,9 @@ impl<'a> Body<'a> {
             detections: Vec::new(),
             limits: [rule.slow, rule.fast],
             pilot: Pilot::new(rule, &robot.footprint),
-            detection: IntersectionDetection::new(&setup.parameters.perception),
+            ids: IntersectionDetectionSystem::new(&setup.parameters.perception),
+            looking: false,
+            command: Twist::STOP,
             chain: StateChain::default(),
             arrivals: 0,
             recording,
@@ -124,12 +130,14 @@ impl<'a> Body<'a> {
 
     /// Begins to look around, to see the vertex the robot stands at.
     pub(super) fn look_around(&mut self) {
+        self.looking = true;
+        self.ids.begin_look_around();
         self.pilot.look_around();
     }
 
     /// Leaves the vertex by `exit`.
     pub(super) fn leave(&mut self, exit: Cardinal, opening: Opening, speed: Speed) {
-        self.detection.leave(exit);
+        self.ids.depart(exit, opening);
         self.pilot.begin(Leg {
             direction: exit.heading(),
             opening: match opening {
@@ -157,14 +165,21 @@ impl<'a> Body<'a> {
         self.sim.read_detections(&mut self.detections);
         let blind = CompassReading { stamp: self.sim.now(), heading: 0.0 };
         let compass = self.sim.read_compass().unwrap_or(blind);
-        self.detection.observe(&self.detections, compass);
-        if let Some(here) = self.detection.arrived(self.pilot.is_standing()) {
+        let mut arrived = self.ids.observe(&self.detections, compass, self.command);
+        if self.looking && self.pilot.is_standing() {
+            self.looking = false;
+            match self.ids.end_look_around() {
+                Some(here) => arrived = Some(here),
+                None => return Happening::Lost,
+            }
+        }
+        if let Some(here) = arrived {
             self.arrivals += 1;
             return Happening::Arrived(here);
         }
-        let target = self.detection.target();
-        let twist = self.pilot.control(&Sense { scan: &self.scan, compass, target });
-        self.sim.command(twist);
+        let target = self.ids.target();
+        self.command = self.pilot.control(&Sense { scan: &self.scan, compass, target });
+        self.sim.command(self.command);
         self.sim.advance_to(self.sim.now() + CONTROL_PERIOD);
         self.note_state();
         if self.sim.is_touching() { Happening::Contact } else { Happening::OnTheWay }

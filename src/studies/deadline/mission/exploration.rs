@@ -74,6 +74,10 @@ impl<'a> Exploration<'a> {
                     self.tally.collide();
                     return Ending::plain(Outcome::Collided, self.body.now());
                 }
+                Happening::Lost => {
+                    let cause = "saw no vertex where it began".to_owned();
+                    return Ending { outcome: Outcome::Stalled, cause, at: self.body.now() };
+                }
                 Happening::Arrived(here) => {
                     let now = self.body.now();
                     self.tally.arrive(now);

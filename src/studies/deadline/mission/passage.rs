@@ -69,10 +69,10 @@ pub(super) fn run(
                 let cause = "arrived at another vertex".to_owned();
                 break Ending { outcome: Outcome::Stalled, cause, at: body.now() };
             }
-            Happening::OnTheWay if body.now() >= limit => {
+            Happening::OnTheWay | Happening::Lost if body.now() >= limit => {
                 break Ending::plain(Outcome::Late, body.now());
             }
-            Happening::OnTheWay => {}
+            Happening::OnTheWay | Happening::Lost => {}
         }
     };
     let mut measures = BTreeMap::new();

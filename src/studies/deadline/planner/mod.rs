@@ -14,7 +14,9 @@ use crate::cmdp::build::{
     Topology, build_cmdp, motion,
 };
 use crate::cmdp::document::write_model;
-use crate::cmdp::{Outcome, Policy, Solution, SolveError, Unmeetable};
+use crate::cmdp::{
+    Cmdp, Outcome, Policy, Relaxation, Solution, SolveError, Unmeetable, solve, solve_with,
+};
 use crate::geometry::Cardinal;
 use crate::rng::Stream;
 use path::Way;
@@ -182,9 +184,9 @@ impl Plan {
         let problem = Problem { topology, task, expectations: *expectations, labels, exits };
         let method = planning.method;
         let way = match method {
-            Method::Cmdp => path::only_way(&problem.topology, &problem.task, expectations),
+            Method::Cmdp => path::unbound(&problem.topology, &problem.task, expectations),
             ablation => Some(
-                path::shortest(&problem.topology, &problem.task, expectations, ablation)
+                path::ablation(&problem.topology, &problem.task, expectations, ablation)
                     .ok_or_else(|| problem.unreachable())?,
             ),
         };
@@ -195,18 +197,17 @@ impl Plan {
     }
 
     fn solved(problem: Problem) -> Result<Self, PlanError> {
-        let (navigation, solution) = problem.solve()?;
-        let relaxed = |index| solution.relaxed.iter().any(|r| r.index == index);
+        let Solved { maneuvers, solution, relaxed, .. } = problem.solve()?;
+        let is_relaxed = |index| relaxed.iter().any(|r: &Relaxation| r.index == index);
         let (time_s, failure) = (solution.secondary[TIME], solution.secondary[FAILURE]);
-        let status = if relaxed(TIME) {
+        let status = if is_relaxed(TIME) {
             Status::Relaxed
         } else if time_s >= problem.task.deadline_s * (1.0 - AT_THE_BOUND) {
             Status::Active
         } else {
             Status::Slack
         };
-        let failure_bound_dropped = relaxed(FAILURE);
-        let Navigation { maneuvers, .. } = navigation;
+        let failure_bound_dropped = is_relaxed(FAILURE);
         let policy = Known::Everywhere { maneuvers, policy: solution.policy };
         let method = Method::Cmdp;
         Ok(Self { problem, method, policy, status, time_s, failure, failure_bound_dropped })
@@ -304,24 +305,13 @@ impl Plan {
         if self.method != Method::Cmdp {
             return Ok(None);
         }
-        let (navigation, solution) = self.problem.solve()?;
-        let mut cmdp = navigation.cmdp;
-        for relaxation in &solution.relaxed {
-            let bound = match relaxation.how {
-                // No optimal policy goes over more edges than there are vertices, nor fails more often than at each.
-                #[expect(clippy::cast_precision_loss, reason = "vertices of a building are few")]
-                Unmeetable::Drop => cmdp.states() as f64,
-                Unmeetable::AchieveLeast | Unmeetable::Refuse => relaxation.least,
-            };
-            cmdp = cmdp.with_bound(relaxation.index, bound);
-        }
+        let Solved { cmdp, maneuvers, .. } = self.problem.solve()?;
         let topology = &self.problem.topology;
         let mut states = self.problem.labels.clone();
         if cmdp.states() > states.len() {
             states.push("failed".to_owned());
         }
-        let actions: Vec<String> = navigation
-            .maneuvers
+        let actions: Vec<String> = maneuvers
             .iter()
             .map(|maneuver| {
                 let edge = topology.edges[maneuver.edge];
@@ -338,14 +328,46 @@ impl Plan {
     }
 }
 
+/// A model as it was solved.
+struct Solved {
+    cmdp: Cmdp,
+    maneuvers: Vec<Maneuver>,
+    solution: Solution,
+    relaxed: Vec<Relaxation>,
+}
+
 /// An expected time that is short of its bound by less than this share is at the bound.
 const AT_THE_BOUND: f64 = 1e-9;
 
 impl Problem {
-    fn solve(&self) -> Result<(Navigation, Solution), PlanError> {
-        let navigation = build_cmdp(&self.topology, &self.task, &self.expectations)?;
-        match navigation.plan()? {
-            Outcome::Optimal(solution) => Ok((navigation, solution)),
+    /// The model with bounds that cannot be met as they were relaxed, and its solution.
+    ///
+    /// A relaxed model is solved once more as it then stands: where several policies are equally good, the one that is
+    /// executed is the one that the exported model has.
+    fn solve(&self) -> Result<Solved, PlanError> {
+        let Navigation { mut cmdp, maneuvers } =
+            build_cmdp(&self.topology, &self.task, &self.expectations)?;
+        let handling = [Unmeetable::Drop, Unmeetable::AchieveLeast];
+        let mut solution = self.optimal(solve_with(&cmdp, &handling)?)?;
+        let relaxed = std::mem::take(&mut solution.relaxed);
+        for relaxation in &relaxed {
+            let bound = match relaxation.how {
+                // No optimal policy goes over more edges than there are vertices, nor fails more often than at each.
+                #[expect(clippy::cast_precision_loss, reason = "vertices of a building are few")]
+                Unmeetable::Drop => cmdp.states() as f64,
+                Unmeetable::AchieveLeast | Unmeetable::Refuse => relaxation.least,
+            };
+            cmdp = cmdp.with_bound(relaxation.index, bound);
+        }
+        if !relaxed.is_empty() {
+            solution = self.optimal(solve(&cmdp)?)?;
+        }
+        Ok(Solved { cmdp, maneuvers, solution, relaxed })
+    }
+
+    fn optimal(&self, outcome: Outcome) -> Result<Solution, PlanError> {
+        match outcome {
+            Outcome::Optimal(solution) => Ok(solution),
             Outcome::Infeasible(_) => Err(self.unreachable()),
         }
     }

@@ -49,6 +49,12 @@ impl CorridorInHand {
         Self { rule, corridor: None }
     }
 
+    /// A vertex of the corridor in hand and the axis along which it runs.
+    #[cfg(test)]
+    pub(super) fn in_hand(&self) -> Option<(VertexId, Axis)> {
+        self.corridor
+    }
+
     /// A vertex of the corridor in hand, or where that is finished one of another. The robot's way there and the random
     /// edge that follows may leave the corridor; it is remembered, so that the next choice comes back to it.
     pub(super) fn choose(

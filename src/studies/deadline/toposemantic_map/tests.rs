@@ -301,7 +301,7 @@ proptest! {
         let mut stream = Seeds::new(seed, Vec::new()).stream("walk");
         let mut at = below(&mut stream, building.spots.len());
         let mut map = ToposemanticMap::new();
-        let mut ids = std::collections::BTreeMap::from([(at, map.begin(&building.see(at)).unwrap())]);
+        let mut ids = BTreeMap::from([(at, map.begin(&building.see(at)).unwrap())]);
         for _ in 0..80 {
             let directions: Vec<Cardinal> = building.see(at).exits.iter().map(|e| e.direction).collect();
             let direction = directions[below(&mut stream, directions.len())];

@@ -318,3 +318,6 @@ impl Explorer {
         leave
     }
 }
+
+#[cfg(test)]
+mod tests;
