@@ -1,6 +1,8 @@
 //! Clock, host and environment: the only user of all three.
 
+use crate::bundle::wall_time::WallTime;
 use crate::bundle::{Circumstance, Moment, format};
+use crate::studies::Stopwatch;
 use std::path::PathBuf;
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
 use thiserror::Error;
@@ -108,7 +110,41 @@ impl RunClock {
             // Not the calendar's end: a clock that was set back must not end a run before it began.
             ended: Moment(self.started.0.saturating_add(elapsed)),
             environment: facts,
+            files: Vec::new(),
         }
+    }
+}
+
+/// Times one trial and every choice of its mind.
+#[derive(Debug)]
+pub struct TrialWatch {
+    began: Instant,
+    asked: Instant,
+    selections_s: Vec<f64>,
+}
+
+impl TrialWatch {
+    /// Starts the watch: the trial begins.
+    #[expect(clippy::disallowed_methods, reason = "this is the door to the clock")]
+    pub fn start() -> Self {
+        let began = Instant::now();
+        Self { began, asked: began, selections_s: Vec::new() }
+    }
+
+    /// Stops the watch: the trial has ended.
+    pub fn stop(self) -> WallTime {
+        WallTime { trial_s: self.began.elapsed().as_secs_f64(), selections_s: self.selections_s }
+    }
+}
+
+impl Stopwatch for TrialWatch {
+    #[expect(clippy::disallowed_methods, reason = "this is the door to the clock")]
+    fn asked(&mut self) {
+        self.asked = Instant::now();
+    }
+
+    fn chose(&mut self) {
+        self.selections_s.push(self.asked.elapsed().as_secs_f64());
     }
 }
 
@@ -185,6 +221,17 @@ mod tests {
                 )
             );
         }
+    }
+
+    #[test]
+    fn a_watch_counts_choices_and_no_other_commands() {
+        let mut watch = TrialWatch::start();
+        watch.asked();
+        watch.asked();
+        watch.chose();
+        let time = watch.stop();
+        assert_eq!(time.selections_s.len(), 1);
+        assert!((0.0..=time.trial_s).contains(&time.selections_s[0]), "{time:?}");
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //! `verify` derives with.
 
 use super::content::{Author, BundleContent, Citation, SealedCondition, SealedInput};
-use crate::claims::{self, Claim};
+use crate::claims::{self, Claim, Verdict};
 use crate::plan::{ENGINE_VERSION, Plan, Selection};
 use crate::studies::prior_map::CoverageTable;
 use crate::studies::{
@@ -71,11 +71,23 @@ pub fn assemble(
     })
 }
 
-/// The verdicts on the claims of `plan`'s manifest, as `results/claims.json` holds them: none for partial runs.
+/// The claims of `plan`'s manifest.
+///
+/// # Errors
+/// Where one is none, in words.
+pub fn claims(plan: &Plan) -> Result<Vec<Claim>, String> {
+    let read = |written: &Value| {
+        serde_json::from_value(written.clone()).map_err(|e| format!("claim: {e}"))
+    };
+    plan.experiment.claims.iter().map(read).collect()
+}
+
+/// The verdicts on the claims of `plan`'s manifest about the study, as `results/claims.json` holds them: none for
+/// partial runs. Claims about the machine are judged by [`super::wall_time`].
 ///
 /// # Errors
 /// Where a claim cannot be judged at all, in words.
-pub fn verdicts(plan: &Plan, records: &[TrialRecord]) -> Result<Vec<Value>, String> {
+pub fn verdicts(plan: &Plan, records: &[TrialRecord]) -> Result<Vec<Verdict>, String> {
     if plan.partial {
         return Ok(Vec::new());
     }
@@ -84,15 +96,8 @@ pub fn verdicts(plan: &Plan, records: &[TrialRecord]) -> Result<Vec<Value>, Stri
         claims::Context::new(&experiment.published, &experiment.shared_noise, experiment.seed);
     let factors = factors(plan);
     let trials = findings(plan, records, &factors).trials();
-    experiment
-        .claims
-        .iter()
-        .map(|written| {
-            let claim: Claim =
-                serde_json::from_value(written.clone()).map_err(|e| format!("claim: {e}"))?;
-            Ok(claims::judge(&claim, &trials, &context)?.to_json())
-        })
-        .collect()
+    let about_the_study = claims(plan)?.into_iter().filter(|claim| !claim.circumstance);
+    about_the_study.map(|claim| claims::judge(&claim, &trials, &context)).collect()
 }
 
 /// Factors with their values, as results name them.
@@ -179,7 +184,12 @@ fn results(plan: &Plan, records: &[TrialRecord]) -> Result<Vec<(String, Vec<u8>)
         };
         files.push((format!("figures/{}.svg", request.id), svg.into_bytes()));
     }
-    let claims = json!(verdicts(plan, records)?);
-    files.push(("claims.json".to_owned(), (crate::json::canonical(&claims) + "\n").into_bytes()));
+    files.push(("claims.json".to_owned(), verdicts_json(&verdicts(plan, records)?)));
     Ok(files)
+}
+
+/// A list of verdicts as bundles hold it.
+pub(super) fn verdicts_json(verdicts: &[Verdict]) -> Vec<u8> {
+    let list: Vec<Value> = verdicts.iter().map(Verdict::to_json).collect();
+    (crate::json::canonical(&json!(list)) + "\n").into_bytes()
 }

@@ -116,7 +116,7 @@ impl BagInfo {
         self.0.iter().find(|(name, _)| name == label).map(|(_, value)| value.as_str())
     }
 
-    /// The circumstances that the bag tells; `None` where it does not tell them as this program writes them.
+    /// The circumstances that this file tells; `None` where it does not tell them as this program writes them.
     pub fn circumstance(&self) -> Option<Circumstance> {
         let agent = self.get("Bag-Software-Agent")?.strip_prefix("reenact ")?;
         Some(Circumstance {
@@ -130,6 +130,7 @@ impl BagInfo {
                 .filter_map(|(_, value)| value.split_once('='))
                 .map(|(name, value)| (name.to_owned(), value.to_owned()))
                 .collect(),
+            files: Vec::new(),
         })
     }
 }
@@ -170,6 +171,7 @@ mod tests {
             started: Moment(5),
             ended: Moment(9),
             environment: vec![("host".into(), "a=b\nPartial: true".into())],
+            files: Vec::new(),
         };
         let (results, study) = (Sha256Digest::of("r"), Sha256Digest::of("s"));
         let info = BagInfo::of(

@@ -127,6 +127,8 @@ pub struct Circumstance {
     pub ended: Moment,
     /// Host, jobs, toolchain: names and values of one line each. Empty under `SOURCE_DATE_EPOCH`.
     pub environment: Vec<(String, String)>,
+    /// What was measured on the machine, and verdicts on it: paths relative to `circumstances/`, and bytes.
+    pub files: Vec<(String, Vec<u8>)>,
 }
 
 impl Circumstance {
@@ -137,6 +139,7 @@ impl Circumstance {
             started: at,
             ended: at,
             environment: Vec::new(),
+            files: Vec::new(),
         }
     }
 }

@@ -349,6 +349,14 @@ fn title(path: &str) -> (String, String) {
         _ if path.starts_with(format::RESULTS) => {
             (last.into(), "A result derived from the trial records".into())
         }
+        "circumstances/claims.json" => (
+            "Claims about the machine".into(),
+            "The verdict on every claim about wall time, and the numbers that decided it".into(),
+        ),
+        "circumstances/wall-times.csv" => (
+            "Wall times".into(),
+            "One row a trial: the time it took on the machine that ran it".into(),
+        ),
         _ if path.starts_with(format::TRIALS) => {
             (format!("Records of {stem}"), "One line of JSON a trial, in plan order".into())
         }

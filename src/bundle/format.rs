@@ -42,6 +42,9 @@ pub const TRIALS: &str = "trials/";
 /// Tables, figures and verdicts.
 pub const RESULTS: &str = "results/";
 
+/// What the machine of the run measured, and verdicts on it. Not part of the result half.
+pub const CIRCUMSTANCES: &str = "circumstances/";
+
 /// Path of a condition's records, relative to [`PAYLOAD`].
 pub fn records_path(slug: &str) -> String {
     format!("{TRIALS}{slug}.jsonl")

@@ -23,6 +23,7 @@ mod preview;
 mod reader;
 mod readme;
 mod resolved;
+pub mod wall_time;
 mod writer;
 
 #[cfg(test)]

@@ -173,8 +173,12 @@ impl Bundle {
 
     /// Every file under `results/`, by its path there.
     pub fn results(&self) -> impl Iterator<Item = (&str, &[u8])> {
-        self.tree.iter().filter_map(|(path, bytes)| {
-            let path = path.strip_prefix(format::PAYLOAD)?.strip_prefix(format::RESULTS)?;
+        self.under(format::RESULTS)
+    }
+
+    fn under(&self, folder: &'static str) -> impl Iterator<Item = (&str, &[u8])> {
+        self.tree.iter().filter_map(move |(path, bytes)| {
+            let path = path.strip_prefix(format::PAYLOAD)?.strip_prefix(folder)?;
             Some((path, bytes.as_slice()))
         })
     }
@@ -196,7 +200,15 @@ impl Bundle {
 
     /// The circumstances of the run, where the bag tells them.
     pub fn circumstance(&self) -> Option<Circumstance> {
-        bag::BagInfo::parse(self.tree.get(format::BAG_INFO)?).circumstance()
+        let told = bag::BagInfo::parse(self.tree.get(format::BAG_INFO)?).circumstance()?;
+        let files = self.circumstance_files();
+        let files = files.map(|(path, bytes)| (path.to_owned(), bytes.to_vec())).collect();
+        Some(Circumstance { files, ..told })
+    }
+
+    /// Every file under `circumstances/`, by its path there: what the machine of the run measured.
+    pub fn circumstance_files(&self) -> impl Iterator<Item = (&str, &[u8])> {
+        self.under(format::CIRCUMSTANCES)
     }
 
     fn payload(&self, path: &str) -> Option<&[u8]> {

@@ -57,6 +57,11 @@ Checksums show that nothing changed since they were made; who made them, only a 
 | `ro-crate-metadata.json` | the same for machines: RO-Crate 1.1, Provenance Run Crate 0.5 |
 "
     ));
+    if !circumstance.files.is_empty() {
+        text.push_str(
+            "| `circumstances/` | wall times on the machine of the run and verdicts on them: not part of the results |\n",
+        );
+    }
     text
 }
 

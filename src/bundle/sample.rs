@@ -122,6 +122,7 @@ pub(crate) fn circumstance() -> Circumstance {
         started: Moment(1_768_478_400),
         ended: Moment(1_768_478_460),
         environment: vec![("os".into(), "linux".into()), ("jobs".into(), "2".into())],
+        files: Vec::new(),
     }
 }
 

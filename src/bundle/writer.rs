@@ -96,6 +96,9 @@ pub fn seal(content: &BundleContent, circumstance: &Circumstance) -> Result<Seal
         payload.add(&format!("{}{path}", format::RESULTS), bytes.clone())?;
     }
     let results_digest = results_digest(&payload.tree);
+    for (path, bytes) in &circumstance.files {
+        payload.add(&format!("{}{path}", format::CIRCUMSTANCES), bytes.clone())?;
+    }
     let stem = format!("{}-{}", content.name, results_digest.short());
     check_name(&stem)?;
 

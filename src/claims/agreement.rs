@@ -4,13 +4,13 @@ use super::cells::{Values, Where};
 use super::gather::{Bench, Draft, Evidence, Group};
 use super::measuring::{Correlation, Rmse};
 use super::metric::Metric;
-use super::published::{read, selection};
+use super::published::{PublishedCell, read, selection};
 use super::verdict::{CellNumbers, Effect};
 use crate::math::ln;
 use crate::stats::bootstrap::bootstrap;
 use crate::stats::distribution::{normal_sf, student_t_quantile};
 use crate::stats::proportion::{Proportion, newcombe};
-use crate::stats::rank::{pearson, spearman, spearman_interval, spearman_permutation};
+use crate::stats::rank::{midranks, pearson, spearman, spearman_interval, spearman_permutation};
 use crate::stats::summary::mean;
 use crate::stats::{length, real};
 use std::collections::BTreeMap;
@@ -54,11 +54,12 @@ fn pair_up(
         Ok(rows) => rows,
         Err(fault) => return Paired { pairs: Err(fault), cells, notes: Vec::new() },
     };
+    reason = reason.or_else(|| unclear(metrics, published, &rows));
     for name in &metrics.0 {
         let metric = Metric::named(name);
         reason = reason.or_else(|| bench.observations.lacks(&metric));
         for row in &rows {
-            let wanted = row.metric.as_ref().is_none_or(|m| m == name)
+            let wanted = row.speaks_of(name)
                 && only.admits(|factor| row.pins.get(factor).map(String::as_str));
             let (true, Some(value)) = (wanted, row.value) else { continue };
             let cell = selection(&row.pins);
@@ -101,6 +102,32 @@ fn pair_up(
     Paired { pairs: reason.map_or(Ok(pairs), Err), cells, notes }
 }
 
+/// What keeps the metrics of a claim from being found in a table, if anything does.
+fn unclear(metrics: &Values, published: &str, rows: &[PublishedCell]) -> Option<String> {
+    if rows.iter().all(|row| row.coverage.is_none()) {
+        return None;
+    }
+    let mut quantities: Vec<&str> = Vec::new();
+    for name in &metrics.0 {
+        let Some((quantity, _)) = name.rsplit_once("-at-") else {
+            return Some(format!(
+                "the published table `{published}` tells coverages, and `{name}` is at none; name metrics as \
+                 `{name}-at-80`"
+            ));
+        };
+        if !quantities.contains(&quantity) {
+            quantities.push(quantity);
+        }
+    }
+    let told = rows.iter().all(|row| row.metric.is_some());
+    (quantities.len() > 1 && !told).then(|| {
+        format!(
+            "the published table `{published}` holds one quantity, and the claim compares it with {}",
+            quantities.join(" and ")
+        )
+    })
+}
+
 fn too_few(cells: usize, minimum: u64) -> Option<String> {
     ((cells as u64) < minimum.max(4))
         .then(|| format!("{cells} cells to compare, fewer than the minimum of {}", minimum.max(4)))
@@ -118,18 +145,21 @@ pub(super) fn correlation(bench: &Bench<'_>, form: &Correlation) -> Draft {
     let mut paired = pair_up(bench, &form.metric, &form.published, form.scale, &form.r#where);
     let mut notes = paired.notes;
     let evidence = paired.pairs.and_then(|pairs| {
-        let (x, y) = match &form.ratio_to {
-            None => pairs.iter().map(|p| (p.published, p.ours.summary.mean)).unzip(),
+        let points = match &form.ratio_to {
+            None => pairs
+                .iter()
+                .map(|p| Point { runs: &p.pins, x: p.published, y: p.ours.summary.mean })
+                .collect(),
             Some(base) => {
-                let (x, y, lost) = log_ratios(&pairs, base);
+                let (points, lost) = log_ratios(&pairs, base);
                 if lost > 0 {
                     notes.push(format!("{lost} cells have no positive base to take a ratio to"));
                 }
-                (x, y)
+                points
             }
         };
-        too_few(x.len(), form.minimum_n).map_or(Ok(()), Err)?;
-        correlated(bench, &about, &x, &y, form.at_least)
+        too_few(points.len(), form.minimum_n).map_or(Ok(()), Err)?;
+        correlated(bench, &about, &points, form.at_least)
     });
     paired.cells.truncate(MOST_CELLS);
     Draft { about, test: "spearman", cells: paired.cells, conditions: Vec::new(), evidence, notes }
@@ -138,10 +168,29 @@ pub(super) fn correlation(bench: &Bench<'_>, form: &Correlation) -> Draft {
 /// More cells than any paper prints; a bound on what a verdict lists.
 const MOST_CELLS: usize = 1000;
 
+/// A published number beside ours, and whose runs ours is of: several coverages are of the same runs.
+struct Point<'a> {
+    runs: &'a BTreeMap<String, String>,
+    x: f64,
+    y: f64,
+}
+
+/// The places of equal `runs`, in the order of their first: what is measured on the same runs is not independent.
+fn clusters<'a>(runs: impl Iterator<Item = &'a BTreeMap<String, String>>) -> Vec<Vec<usize>> {
+    let mut found: Vec<(&BTreeMap<String, String>, Vec<usize>)> = Vec::new();
+    for (i, runs) in runs.enumerate() {
+        match found.iter_mut().find(|(known, _)| *known == runs) {
+            Some((_, places)) => places.push(i),
+            None => found.push((runs, vec![i])),
+        }
+    }
+    found.into_iter().map(|(_, places)| places).collect()
+}
+
 /// Log ratios to the base cell, published and ours, and how many cells have none.
-fn log_ratios(pairs: &[Pair], base: &Where) -> (Vec<f64>, Vec<f64>, usize) {
+fn log_ratios<'a>(pairs: &'a [Pair], base: &Where) -> (Vec<Point<'a>>, usize) {
     let pins = base.combinations().into_iter().next().unwrap_or_default();
-    let (mut x, mut y, mut lost) = (Vec::new(), Vec::new(), 0);
+    let (mut points, mut lost) = (Vec::new(), 0);
     for pair in pairs {
         let mut wanted = pair.pins.clone();
         wanted.extend(pins.clone());
@@ -156,32 +205,55 @@ fn log_ratios(pairs: &[Pair], base: &Where) -> (Vec<f64>, Vec<f64>, usize) {
                     && base.ours.summary.mean > 0.0
                     && pair.ours.summary.mean > 0.0 =>
             {
-                x.push(ln(pair.published / base.published));
-                y.push(ln(pair.ours.summary.mean / base.ours.summary.mean));
+                points.push(Point {
+                    runs: &pair.pins,
+                    x: ln(pair.published / base.published),
+                    y: ln(pair.ours.summary.mean / base.ours.summary.mean),
+                });
             }
             _ => lost += 1,
         }
     }
-    (x, y, lost)
+    (points, lost)
 }
 
 /// Evidence that the rank correlation reaches a level: its interval (Bonett and Wright 2000) above the level,
-/// and a permutation p-value against none at all.
+/// and a permutation p-value against none at all. Cells that are measured on the same runs count as one in both:
+/// the interval has the width that independent ones of their number would give, and their mean ranks are permuted.
 fn correlated(
     bench: &Bench<'_>,
     about: &str,
-    x: &[f64],
-    y: &[f64],
+    points: &[Point<'_>],
     level: f64,
 ) -> Result<Evidence, String> {
+    let (x, y): (Vec<f64>, Vec<f64>) = points.iter().map(|p| (p.x, p.y)).unzip();
+    let (x, y) = (&x[..], &y[..]);
     let r = spearman(x, y);
     if r.is_nan() {
         return Err("one side is the same in every cell, so there is no correlation".to_owned());
     }
+    let clusters = clusters(points.iter().map(|p| p.runs));
+    if clusters.len() < 4 {
+        return Err(format!(
+            "the cells are of {} independent conditions, fewer than the 4 that a correlation needs",
+            clusters.len()
+        ));
+    }
+    let mean_ranks = |values: &[f64]| -> Vec<f64> {
+        let ranks = midranks(values);
+        let of = |places: &Vec<usize>| mean(&places.iter().map(|&i| ranks[i]).collect::<Vec<_>>());
+        clusters.iter().map(of).collect()
+    };
     let mut stream = bench.stream(about);
-    let permuted = spearman_permutation(x, y, bench.context.permutations, &mut stream).greater;
+    let permuted = spearman_permutation(
+        &mean_ranks(x),
+        &mean_ranks(y),
+        bench.context.permutations,
+        &mut stream,
+    )
+    .greater;
     let fisher = |r: f64| 0.5 * ln((1.0 + r) / (1.0 - r));
-    let standard_error = ((1.0 + r * r / 2.0) / (length(x) - 3.0)).sqrt();
+    let standard_error = ((1.0 + r * r / 2.0) / (length(&clusters) - 3.0)).sqrt();
     let z = (fisher(r) - fisher(level)) / standard_error;
     let (mx, my) = (mean(x), mean(y));
     let xy: f64 = x.iter().zip(y).map(|(a, b)| (a - mx) * (b - my)).sum();
@@ -191,6 +263,7 @@ fn correlated(
         p_against: normal_sf(-z),
         statistics: vec![
             ("cells", length(x)),
+            ("independent-cells", length(&clusters)),
             ("permutation-p", permuted),
             ("pearson", pearson(x, y)),
             ("slope", xy / xx),
@@ -198,7 +271,7 @@ fn correlated(
         effect: Some(Effect {
             name: "spearman",
             value: r,
-            interval: spearman_interval(r, x.len() as u64, bench.confidence()),
+            interval: spearman_interval(r, clusters.len() as u64, bench.confidence()),
             standardised: None,
         }),
     })
@@ -224,9 +297,23 @@ pub(super) fn rmse(bench: &Bench<'_>, form: &Rmse) -> Draft {
 fn distance(bench: &Bench<'_>, about: &str, pairs: &[Pair], form: &Rmse) -> Evidence {
     let differences: Vec<f64> = pairs.iter().map(|p| p.ours.summary.mean - p.published).collect();
     let squares: Vec<f64> = differences.iter().map(|d| d * d).collect();
+    // Cells that are measured on the same runs are drawn together.
+    let clusters = clusters(pairs.iter().map(|p| &p.pins));
+    let sums: Vec<f64> =
+        clusters.iter().map(|places| places.iter().map(|&i| squares[i]).sum()).collect();
+    let sizes: Vec<f64> = clusters.iter().map(|places| length(places)).collect();
+    let places: Vec<f64> = (0..clusters.len()).map(|i| real(i as u64)).collect();
     let found = bootstrap(
-        &[&squares],
-        |drawn| mean(&drawn[0]).sqrt(),
+        &[&places],
+        |drawn| {
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "places of clusters"
+            )]
+            let total = |of: &[f64]| drawn[0].iter().map(|&i| of[i as usize]).sum::<f64>();
+            (total(&sums) / total(&sizes)).sqrt()
+        },
         bench.context.resamples,
         bench.confidence(),
         &mut bench.stream(about),
@@ -234,7 +321,11 @@ fn distance(bench: &Bench<'_>, about: &str, pairs: &[Pair], form: &Rmse) -> Evid
     let count =
         |holds: &dyn Fn(f64) -> bool| found.statistics.iter().filter(|&&x| holds(x)).count() as u64;
     let share = |n: u64| (real(n) + 1.0) / (length(&found.statistics) + 1.0);
-    let mut statistics = vec![("cells", length(pairs)), ("bias", mean(&differences))];
+    let mut statistics = vec![
+        ("cells", length(pairs)),
+        ("independent-cells", length(&clusters)),
+        ("bias", mean(&differences)),
+    ];
     // What guesses score that know the paper's means and nothing else.
     let published: Vec<f64> = pairs.iter().map(|p| p.published).collect();
     let ours: Vec<f64> = pairs.iter().map(|p| p.ours.summary.mean).collect();

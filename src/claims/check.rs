@@ -3,6 +3,7 @@
 use super::Claim;
 use super::cells::{Values, Where};
 use super::expect::Expect;
+use super::measuring::{Bound, That};
 use super::metric::{Metric, WALL_TIME};
 use super::power::Assume;
 use super::terms::{Censored, Order, Pairs, Sides, Statistic, Test};
@@ -138,8 +139,13 @@ impl Faults<'_> {
         let named = expect.metrics();
         self.unless(!named.is_empty(), "metric", || "expected a metric, found none".to_owned());
         for metric in named {
-            if !self.metrics.contains(&metric) {
-                let fault = unknown("metric", &metric, self.metrics.iter());
+            // Outcomes that count together are known where each of them is.
+            let parts: Vec<String> = match Metric::named(&metric) {
+                Metric::Outcome(names) => names.iter().map(|n| format!("outcome:{n}")).collect(),
+                _ => vec![metric],
+            };
+            for part in parts.iter().filter(|part| !self.metrics.contains(part)) {
+                let fault = unknown("metric", part, self.metrics.iter());
                 self.add("metric", fault);
             }
         }
@@ -186,7 +192,7 @@ impl Faults<'_> {
             Expect::Less(_) | Expect::Greater(_) | Expect::Rank(_) => {
                 terms.test == Some(Test::MannWhitney)
             }
-            Expect::Trend(_) | Expect::Share(_) => true,
+            Expect::Trend(_) | Expect::Share(_) | Expect::Every(_) => true,
             Expect::Between(form) => form.statistic != Statistic::Mean,
             Expect::SignTest(form) => form.pairs == Pairs::Trials,
             _ => false,
@@ -252,11 +258,16 @@ impl Faults<'_> {
             }
             Expect::Share(f) => {
                 self.bounds(f.low, f.high, true);
-                let bounded = f.that.at_least.is_some() || f.that.at_most.is_some();
-                let share = Metric::named(&f.that.metric).is_share();
-                self.unless(bounded != share, "that", || {
-                    "a measure needs `at-least` or `at-most`, a share neither".to_owned()
-                });
+                self.that(&f.that);
+            }
+            Expect::Every(f) => self.that(&f.that),
+            Expect::Rate(f) => {
+                for (path, quantity) in [("of.per", &f.of), ("than.per", &f.than)] {
+                    let share = quantity.per.as_ref().is_some_and(|m| Metric::named(m).is_share());
+                    self.unless(!share, path, || {
+                        "expected a measure; a share is counted per trial anyway".to_owned()
+                    });
+                }
             }
             Expect::Trend(f) => {
                 let scores: Vec<f64> = f.along.iter().map(|s| s.score).collect();
@@ -306,6 +317,28 @@ impl Faults<'_> {
                 self.margin("scale", f.scale);
                 self.margin("at-most", f.at_most);
                 f.baseline.iter().for_each(|factor| self.factor("baseline", factor));
+            }
+        }
+    }
+
+    fn that(&mut self, that: &That) {
+        let bounds = [("that.at-least", &that.at_least), ("that.at-most", &that.at_most)];
+        let bounded = bounds.iter().any(|(_, bound)| bound.is_some());
+        let share = Metric::named(&that.metric).is_share();
+        self.unless(bounded != share, "that", || {
+            "a measure needs `at-least` or `at-most`, a share neither".to_owned()
+        });
+        for (path, bound) in bounds {
+            let Some(Bound::Factor(name)) = bound else { continue };
+            match self.factors.iter().find(|(factor, _)| factor == name) {
+                None => self.factor(path, name),
+                Some((_, values)) => {
+                    let word = values.iter().find(|value| value.parse::<f64>().is_err());
+                    self.unless(word.is_none(), path, || {
+                        let word = word.map_or("", String::as_str);
+                        format!("`{name}` has the value `{word}`, which is no number")
+                    });
+                }
             }
         }
     }

@@ -141,6 +141,26 @@
 //!     where: {strategy: frontier}
 //!     low: 0.5
 //! ```
+//! `every`: each single trial meets a condition, which may be the value of a factor. No test: one trial that does
+//! not meet it contradicts the claim.
+//! ```yaml
+//! id: D10
+//! says: a trial is a failure if it has not reached the target by the deadline
+//! paper-table: supports
+//! expect: {every: {that: {metric: time-s, at-most: deadline-s}, censored: reached-only}}
+//! ```
+//! `rate`: of the same trials, one quantity is lower or higher than another, each summed per trial or `per` something
+//! else; by bootstrap over trials.
+//! ```yaml
+//! id: D7b
+//! says: aggressive maneuvers possibly increase collisions
+//! paper-table: silent
+//! expect:
+//!   rate:
+//!     of: {metric: fast-collisions, per: fast-maneuvers}
+//!     direction: greater
+//!     than: {metric: slow-collisions, per: slow-maneuvers}
+//! ```
 //! `correlation-with-published`: Spearman's correlation over the published cells, optionally of log ratios to
 //! a base cell.
 //! ```yaml
@@ -171,8 +191,8 @@
 
 use super::cells::Where;
 use super::comparing::{Comparison, Equivalence, Homogeneity, Ranking, Trend};
-use super::measuring::{Correlation, Level, Rmse, Share, SignTest, Spread};
-use super::terms::{Censored, Correction, Sides, Test};
+use super::measuring::{Correlation, Every, Level, Rate, Rmse, Share, SignTest, Spread};
+use super::terms::{Censored, Correction, Sides, Test, five_percent};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -200,6 +220,10 @@ pub enum Expect {
     Spread(Spread),
     /// A share of trials meets a condition.
     Share(Share),
+    /// Every trial meets a condition.
+    Every(Every),
+    /// Of the same trials, one quantity is lower or higher than another.
+    Rate(Rate),
     /// Our cells correlate with the published ones.
     CorrelationWithPublished(Correlation),
     /// Our cells lie near the published ones.
@@ -249,6 +273,8 @@ impl Expect {
             Self::SignTest(_) => "sign-test",
             Self::Spread(_) => "spread",
             Self::Share(_) => "share",
+            Self::Every(_) => "every",
+            Self::Rate(_) => "rate",
             Self::CorrelationWithPublished(_) => "correlation-with-published",
             Self::RmseWithPublished(_) => "rmse-with-published",
         }
@@ -266,6 +292,13 @@ impl Expect {
             Self::SignTest(f) => f.metric.0.clone(),
             Self::Spread(f) => f.metric.0.clone(),
             Self::Share(f) => vec![f.that.metric.clone()],
+            Self::Every(f) => vec![f.that.metric.clone()],
+            Self::Rate(f) => [&f.of, &f.than]
+                .into_iter()
+                .flat_map(|quantity| [Some(&quantity.metric), quantity.per.as_ref()])
+                .flatten()
+                .cloned()
+                .collect(),
             Self::CorrelationWithPublished(f) => f.metric.0.clone(),
             Self::RmseWithPublished(f) => f.metric.0.clone(),
         }
@@ -305,6 +338,11 @@ impl Expect {
             Self::Homogeneous(f) => Terms { censored: f.censored, ..corrected!(f) },
             Self::Spread(f) => Terms { censored: f.censored, ..corrected!(f) },
             Self::Share(f) => Terms { censored: Censored::Worst, ..corrected!(f) },
+            // Nothing is estimated, so there is no level; the usual one stands for it.
+            Self::Every(f) => {
+                Terms { censored: f.censored, ..Terms::new(five_percent(), f.minimum_n) }
+            }
+            Self::Rate(f) => corrected!(f),
             Self::SignTest(f) => Terms {
                 sides: f.sides,
                 censored: f.censored,
@@ -368,6 +406,14 @@ impl Expect {
                 repeated = Some(&f.for_each);
             }
             Self::Share(f) => {
+                add("where", &f.r#where);
+                repeated = Some(&f.for_each);
+            }
+            Self::Every(f) => {
+                add("where", &f.r#where);
+                repeated = Some(&f.for_each);
+            }
+            Self::Rate(f) => {
                 add("where", &f.r#where);
                 repeated = Some(&f.for_each);
             }

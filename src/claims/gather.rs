@@ -11,6 +11,9 @@ use crate::rng::{Seeds, Stream};
 use crate::stats::proportion::{Proportion, chi_square_homogeneity, fisher_exact};
 use crate::stats::summary::{Summary, median};
 
+/// The test that counts trials and estimates nothing, so that it has no p-value.
+pub(super) const COUNT: &str = "count";
+
 /// Everything a form needs at hand.
 pub(super) struct Bench<'a> {
     pub(super) claim: &'a str,

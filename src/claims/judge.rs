@@ -1,12 +1,12 @@
 //! From a claim and the trials to a verdict.
 
 use super::expect::{Expect, Terms};
-use super::gather::{Bench, Draft, Evidence};
+use super::gather::{Bench, COUNT, Draft, Evidence};
 use super::metric::WALL_TIME;
 use super::observations::Observations;
 use super::terms::{Correction, Sides};
-use super::verdict::{ComparisonVerdict, Judgement, Verdict};
-use super::{Claim, agreement, comparison, equality, level, sign, spread};
+use super::verdict::{CellNumbers, ComparisonVerdict, Judgement, Verdict};
+use super::{Claim, agreement, comparison, equality, level, rate, sign, spread};
 use crate::stats::distribution::normal_quantile;
 use crate::stats::multiple::holm;
 use crate::stats::real;
@@ -63,7 +63,12 @@ pub fn judge_observations(
     let machine = claim.expect.metrics().into_iter().find(|m| m.starts_with(WALL_TIME));
     let drafts = match &claim.expect {
         _ if !claim.circumstance && machine.is_some() => {
-            vec![not_a_result(&machine.unwrap_or_default())]
+            let metric = machine.unwrap_or_default();
+            let reason = format!(
+                "`{metric}` depends on the machine: such claims are marked `circumstance: true` and judged apart \
+                 from the results"
+            );
+            vec![untestable(metric, reason)]
         }
         Expect::Less(form) => comparison::less(&bench, form),
         Expect::Greater(form) => comparison::greater(&bench, form),
@@ -73,6 +78,8 @@ pub fn judge_observations(
         Expect::Homogeneous(form) => equality::homogeneous(&bench, form),
         Expect::Between(form) => level::between(&bench, form),
         Expect::Share(form) => level::share(&bench, form),
+        Expect::Every(form) => level::every(&bench, form),
+        Expect::Rate(form) => rate::rate(&bench, form),
         Expect::SignTest(form) => vec![sign::sign_test(&bench, form)],
         Expect::Spread(form) => spread::spread(&bench, form),
         Expect::CorrelationWithPublished(form) => vec![agreement::correlation(&bench, form)],
@@ -81,17 +88,22 @@ pub fn judge_observations(
     conclude(claim, &bench, drafts)
 }
 
-/// Wall times say nothing of the study.
-fn not_a_result(metric: &str) -> Draft {
+/// The verdict on a claim for which nothing was measured, for this `reason`.
+pub fn not_measured(claim: &Claim, reason: &str, context: &Context<'_>) -> Verdict {
+    let observations = Observations::default();
+    let terms = claim.expect.terms();
+    let bench = Bench { claim: &claim.id, observations: &observations, context, terms };
+    let about = claim.expect.metrics().join(" and ");
+    conclude(claim, &bench, vec![untestable(about, reason.to_owned())])
+}
+
+fn untestable(about: String, reason: String) -> Draft {
     Draft {
-        about: metric.to_owned(),
+        about,
         test: "none",
         cells: Vec::new(),
         conditions: Vec::new(),
-        evidence: Err(format!(
-            "`{metric}` depends on the machine: such claims are marked `circumstance: true` and judged apart \
-             from the results"
-        )),
+        evidence: Err(reason),
         notes: Vec::new(),
     }
 }
@@ -137,13 +149,14 @@ fn conclude(claim: &Claim, bench: &Bench<'_>, drafts: Vec<Draft>) -> Verdict {
                 trials_to_decide(trials, p, &terms, total)
             })
             .flatten();
+        let tested = evidence.is_some() && draft.test != COUNT;
         comparisons.push(ComparisonVerdict {
             about: draft.about,
             judgement,
             reason,
             test: draft.test,
-            p_for: evidence.as_ref().map(|_| (raw_for[i], p_for[i])),
-            p_against: evidence.as_ref().map(|_| (raw_against[i], p_against[i])),
+            p_for: tested.then_some((raw_for[i], p_for[i])),
+            p_against: tested.then_some((raw_against[i], p_against[i])),
             statistics: evidence.as_ref().map(|e| e.statistics.clone()).unwrap_or_default(),
             effect: evidence.and_then(|e| e.effect),
             cells: draft.cells,
@@ -207,6 +220,16 @@ fn sum_up(
     let reason = match (judgement, total) {
         (Judgement::CannotBeTested, _) => {
             first_reason.unwrap_or_else(|| "the claim compares nothing".to_owned())
+        }
+        (_, 1) if comparisons[0].test == COUNT => {
+            let counted = comparisons[0].cells.first();
+            let of = |pick: fn(&CellNumbers) -> u64| counted.map_or(0, pick);
+            format!(
+                "{} of {} trials that reached it, {} in all",
+                of(|cell| cell.successes.unwrap_or(0)),
+                of(|cell| cell.reached),
+                of(|cell| cell.trials)
+            )
         }
         (_, 1) => {
             let (p, which) = match judgement {

@@ -1,11 +1,11 @@
-//! `between` and `share`: one quantity against bounds.
+//! `between`, `share` and `every`: one quantity against bounds.
 
 use super::cells::Where;
-use super::gather::{Bench, Draft, Evidence, Group, varies};
-use super::measuring::{Level, Share, That};
+use super::gather::{Bench, COUNT, Draft, Evidence, Group, varies};
+use super::measuring::{Bound, Every, Level, Share, That};
 use super::metric::Metric;
 use super::terms::{Censored, Statistic};
-use super::verdict::{CellNumbers, Effect};
+use super::verdict::Effect;
 use crate::math::{exp, exp_m1, ln, ln_1p};
 use crate::stats::Interval;
 use crate::stats::bootstrap::bootstrap;
@@ -194,53 +194,96 @@ fn relative(bench: &Bench<'_>, a: &Group, b: &Group, bounds: Bounds) -> Result<E
 pub(super) fn share(bench: &Bench<'_>, form: &Share) -> Vec<Draft> {
     let bounds = Bounds { low: form.low, high: form.high };
     debug_assert_eq!(bench.terms.censored, Censored::Worst, "a run that never got there counts");
-    let metric = Metric::named(&form.that.metric);
-    form.for_each
-        .combinations()
-        .iter()
-        .map(|pins| {
-            let cell = form.r#where.pinned(pins);
-            let condition = condition_in_words(&form.that);
-            let about = format!("share with {condition}: ({cell}) {}", bounds.words());
-            let gathered = bench.gather(std::slice::from_ref(&cell), &metric);
-            let mut cells = gathered.numbers;
-            let evidence = gathered.groups.map(|groups| {
-                let met = groups[0].values.iter().filter(|&&x| meets(&form.that, x)).count() as u64;
-                let share = Proportion::new(met, groups[0].values.len() as u64);
-                for cell in &mut cells {
-                    *cell = CellNumbers { successes: Some(met), ..cell.clone() };
-                }
-                share_level(share, bounds, bench.confidence())
-            });
-            Draft {
-                about,
-                test: "score",
-                cells,
-                conditions: gathered.conditions,
-                evidence,
-                notes: gathered.notes,
-            }
+    let about = format!("share with {}", form.that);
+    let cells = form.for_each.combinations();
+    let cells = cells.iter().map(|pins| form.r#where.pinned(pins));
+    cells
+        .map(|cell| {
+            let about = format!("{about}: ({cell}) {}", bounds.words());
+            let level = |share| Ok(share_level(share, bounds, bench.confidence()));
+            conditioned(bench, &cell, &form.that, about, "score", level)
         })
         .collect()
 }
 
-/// Whether one reading counts. Censored readings are infinite and meet nothing.
-fn meets(that: &That, reading: f64) -> bool {
-    if Metric::named(&that.metric).is_share() {
-        return reading == 1.0;
-    }
-    reading.is_finite()
-        && that.at_least.is_none_or(|bound| reading >= bound)
-        && that.at_most.is_none_or(|bound| reading <= bound)
+/// Nothing is estimated: a trial that does not meet the condition is there or not.
+pub(super) fn every(bench: &Bench<'_>, form: &Every) -> Vec<Draft> {
+    let cells = form.for_each.combinations();
+    let cells = cells.iter().map(|pins| form.r#where.pinned(pins));
+    cells
+        .map(|cell| {
+            let about = format!("every trial with {}: ({cell})", form.that);
+            conditioned(bench, &cell, &form.that, about, COUNT, |share| {
+                let all = share.successes == share.trials;
+                let (p_for, p_against) = if all { (0.0, 1.0) } else { (1.0, 0.0) };
+                Ok(Evidence { p_for, p_against, statistics: Vec::new(), effect: None })
+            })
+        })
+        .collect()
 }
 
-fn condition_in_words(that: &That) -> String {
-    let mut words = that.metric.clone();
-    if let Some(bound) = that.at_least {
-        words.push_str(&format!(" >= {bound}"));
+/// Counts the trials of `cell` that meet a condition and weighs their share.
+fn conditioned(
+    bench: &Bench<'_>,
+    cell: &Where,
+    that: &That,
+    about: String,
+    test: &'static str,
+    weigh: impl Fn(Proportion) -> Result<Evidence, String>,
+) -> Draft {
+    let metric = Metric::named(&that.metric);
+    let gathered = bench.gather(std::slice::from_ref(cell), &metric);
+    let mut cells = gathered.numbers;
+    let evidence = gathered.groups.and_then(|_| {
+        let share = met(bench, that, &metric, &gathered.conditions)?;
+        for cell in &mut cells {
+            cell.successes = Some(share.successes);
+        }
+        weigh(share)
+    });
+    Draft { about, test, cells, conditions: gathered.conditions, evidence, notes: gathered.notes }
+}
+
+/// How many of the trials that count meet `that`. A run that never reached the measure meets nothing, and counts
+/// unless only those that did are looked at.
+fn met(
+    bench: &Bench<'_>,
+    that: &That,
+    metric: &Metric,
+    conditions: &[usize],
+) -> Result<Proportion, String> {
+    let (mut met, mut counted) = (0, 0);
+    for &i in conditions {
+        let limit =
+            |bound: &Option<Bound>| bound.as_ref().map(|bound| limit(bench, bound, i)).transpose();
+        let (low, high) = (limit(&that.at_least)?, limit(&that.at_most)?);
+        let meets = |reading: f64| {
+            if metric.is_share() {
+                return reading == 1.0;
+            }
+            low.is_none_or(|low| reading >= low) && high.is_none_or(|high| reading <= high)
+        };
+        for reading in bench.observations.readings(&[i], metric).values {
+            counted +=
+                u64::from(reading.is_some() || bench.terms.censored != Censored::ReachedOnly);
+            met += u64::from(reading.is_some_and(meets));
+        }
     }
-    if let Some(bound) = that.at_most {
-        words.push_str(&format!(" <= {bound}"));
+    Ok(Proportion::new(met, counted))
+}
+
+/// A bound in one condition.
+fn limit(bench: &Bench<'_>, bound: &Bound, condition: usize) -> Result<f64, String> {
+    match bound {
+        Bound::Number(number) => Ok(*number),
+        Bound::Factor(factor) => {
+            let value = bench.observations.value(condition, factor);
+            value.and_then(|text| text.parse().ok()).ok_or_else(|| {
+                format!(
+                    "the factor `{factor}` is no number in ({})",
+                    bench.observations.name(condition)
+                )
+            })
+        }
     }
-    words
 }

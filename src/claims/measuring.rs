@@ -1,10 +1,11 @@
-//! Forms that hold one quantity against bounds, itself elsewhere, or the paper: `between`, `share`, `spread`,
-//! `sign-test`, `correlation-with-published`, `rmse-with-published`.
+//! Forms that hold one quantity against bounds, itself elsewhere, another of the same trials, or the paper:
+//! `between`, `share`, `every`, `spread`, `sign-test`, `rate`, `correlation-with-published`, `rmse-with-published`.
 
 use super::cells::{ForEach, Values, Where};
 use super::terms::{Censored, Correction, Pairs, Side, Sides, Statistic, five_percent, one, ten};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::fmt;
 
 /// `between`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -116,9 +117,48 @@ pub struct That {
     /// A measure; or `success`, `outcome:NAME`, which need no bound.
     pub metric: String,
     /// The measure is at least this.
-    pub at_least: Option<f64>,
+    pub at_least: Option<Bound>,
     /// The measure is at most this.
-    pub at_most: Option<f64>,
+    pub at_most: Option<Bound>,
+}
+
+/// What a measure is held against: a number, or the value that a factor has in the trial's condition.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Bound {
+    /// A number in the measure's unit.
+    Number(f64),
+    /// Name of a factor whose values are numbers in the measure's unit.
+    Factor(String),
+}
+
+impl fmt::Display for Bound {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => number.fmt(f),
+            Self::Factor(name) => f.write_str(name),
+        }
+    }
+}
+
+impl fmt::Display for That {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.metric)?;
+        if let Some(bound) = &self.at_least {
+            write!(f, " >= {bound}")?;
+        }
+        if let Some(bound) = &self.at_most {
+            write!(f, " <= {bound}")?;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for Quantity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.metric)?;
+        self.per.iter().try_for_each(|per| write!(f, " per {per}"))
+    }
 }
 
 /// `share`.
@@ -146,6 +186,65 @@ pub struct Share {
     /// How many of the comparisons must hold; default all.
     pub at_least: Option<usize>,
     /// Runs per cell without which nothing is judged.
+    #[serde(default = "ten")]
+    pub minimum_n: u64,
+}
+
+/// `every`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Every {
+    /// What each trial must meet.
+    pub that: That,
+    /// Which trials.
+    #[serde(default)]
+    pub r#where: Where,
+    /// Repeated over these.
+    #[serde(default)]
+    pub for_each: ForEach,
+    /// Trials without which nothing is judged.
+    #[serde(default = "ten")]
+    pub minimum_n: u64,
+    /// What becomes of runs that did not reach the measure; `reached-only` leaves them out.
+    #[serde(default)]
+    pub censored: Censored,
+}
+
+/// A quantity counted over trials: a sum, by default per trial.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Quantity {
+    /// What is summed: a measure, or a share of trials.
+    pub metric: String,
+    /// What it is divided by; default the number of trials.
+    pub per: Option<String>,
+}
+
+/// `rate`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Rate {
+    /// The first quantity.
+    pub of: Quantity,
+    /// Which side it lies on.
+    pub direction: Side,
+    /// The second, of the same trials.
+    pub than: Quantity,
+    /// The cell or pool.
+    #[serde(default)]
+    pub r#where: Where,
+    /// Repeated over these.
+    #[serde(default)]
+    pub for_each: ForEach,
+    /// Level of significance.
+    #[serde(default = "five_percent")]
+    pub alpha: f64,
+    /// Over the comparisons of this claim.
+    #[serde(default)]
+    pub correction: Correction,
+    /// How many of the comparisons must hold; default all.
+    pub at_least: Option<usize>,
+    /// Trials without which nothing is judged.
     #[serde(default = "ten")]
     pub minimum_n: u64,
 }

@@ -11,13 +11,18 @@ pub const FAILED: &str = "panicked";
 /// How the names of metrics begin that depend on the machine, not on the study.
 pub const WALL_TIME: &str = "wall-time";
 
+/// The metrics that a run measures of the machine, one value a trial (s): the whole trial, the mean over the
+/// mind's choices of where to go, and the longest of these.
+pub const WALL_TIME_COLUMNS: [&str; 3] =
+    ["wall-time-s", "wall-time-s-per-selection", "wall-time-s-longest-selection"];
+
 /// A metric of the trials table.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Metric {
     /// `success`: share of trials whose outcome is in [`SUCCESS`].
     Success,
-    /// `outcome:NAME`: share of trials with that outcome.
-    Outcome(String),
+    /// `outcome:NAME`, `outcome:NAME|NAME`: share of trials with that outcome, or one of those.
+    Outcome(Vec<String>),
     /// A numeric column by its name; empty where the run did not reach it.
     Measure(String),
 }
@@ -26,7 +31,7 @@ impl Metric {
     /// The metric of this name.
     pub fn named(name: &str) -> Self {
         match name.strip_prefix("outcome:") {
-            Some(outcome) => Self::Outcome(outcome.to_owned()),
+            Some(outcomes) => Self::Outcome(outcomes.split('|').map(str::to_owned).collect()),
             None if name == "success" => Self::Success,
             None => Self::Measure(name.to_owned()),
         }
@@ -41,7 +46,7 @@ impl Metric {
     pub(crate) fn counts(&self, outcome: &str) -> Option<bool> {
         match self {
             Self::Success => Some(SUCCESS.contains(&outcome)),
-            Self::Outcome(name) => Some(name == outcome),
+            Self::Outcome(names) => Some(names.iter().any(|name| name == outcome)),
             Self::Measure(_) => None,
         }
     }
@@ -51,7 +56,7 @@ impl fmt::Display for Metric {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Success => f.write_str("success"),
-            Self::Outcome(name) => write!(f, "outcome:{name}"),
+            Self::Outcome(names) => write!(f, "outcome:{}", names.join("|")),
             Self::Measure(name) => f.write_str(name),
         }
     }
@@ -63,11 +68,16 @@ mod tests {
 
     #[test]
     fn names_read_back() {
-        for name in ["success", "outcome:collided", "time-s"] {
+        for name in ["success", "outcome:collided", "outcome:late|stalled", "time-s"] {
             assert_eq!(Metric::named(name).to_string(), name);
         }
         assert_eq!(Metric::Success.counts("explored"), Some(true));
         assert_eq!(Metric::named("outcome:late").counts("reached"), Some(false));
+        let either = Metric::named("outcome:late|stalled");
+        assert_eq!(
+            ["late", "stalled", "reached"].map(|o| either.counts(o)),
+            [true, true, false].map(Some)
+        );
         assert!(!Metric::named("time-s").is_share());
     }
 }

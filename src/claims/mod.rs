@@ -26,6 +26,7 @@ pub mod metric;
 pub mod observations;
 pub mod power;
 pub mod published;
+mod rate;
 mod sign;
 mod spread;
 pub mod terms;
@@ -33,7 +34,7 @@ pub mod verdict;
 
 pub use check::check_all;
 pub use expect::Expect;
-pub use judge::{Context, judge, judge_observations};
+pub use judge::{Context, judge, judge_observations, not_measured};
 pub use observations::Observations;
 pub use verdict::{Judgement, Score, Verdict};
 

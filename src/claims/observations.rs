@@ -139,12 +139,7 @@ impl Observations {
     /// The conditions that `cell` selects.
     pub(crate) fn select(&self, cell: &Where) -> Vec<usize> {
         (0..self.conditions.len())
-            .filter(|&i| {
-                cell.admits(|factor| {
-                    let place = self.factors.iter().position(|f| f == factor)?;
-                    Some(self.conditions[i].values[place].as_str())
-                })
-            })
+            .filter(|&i| cell.admits(|factor| self.value(i, factor)))
             .collect()
     }
 
@@ -192,6 +187,12 @@ impl Observations {
             .filter(|(factor, _)| !left_out.contains(factor))
             .map(|(_, value)| value.as_str())
             .collect()
+    }
+
+    /// The value of `factor` in a condition.
+    pub(crate) fn value(&self, condition: usize, factor: &str) -> Option<&str> {
+        let place = self.factors.iter().position(|f| f == factor)?;
+        Some(self.conditions[condition].values[place].as_str())
     }
 
     /// A condition in words.

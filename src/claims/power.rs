@@ -218,9 +218,7 @@ fn published_truth<'a>(
     value_of: &impl Fn(&str) -> Option<&'a str>,
 ) -> Option<(f64, Option<f64>)> {
     rows.iter()
-        .find(|row| {
-            row.metric.as_ref().is_none_or(|m| m == metric) && selection(&row.pins).admits(value_of)
-        })
+        .find(|row| row.speaks_of(metric) && selection(&row.pins).admits(value_of))
         .and_then(|row| Some((row.value? * scale, row.sd.map(|sd| sd * scale))))
 }
 

@@ -2,8 +2,9 @@
 //!
 //! A published table is tidy: one row per printed number. Columns, in any order: factors by the manifest's
 //! names (a factor that is not a column is pooled), `value`, and where the paper prints them `sd` (sample
-//! standard deviation, in the unit of `value`), `n` (runs) and `metric` (the claim's metric name, where one
-//! table holds several). Other columns (`note`, `page`) are for readers and are ignored. An empty `value` is
+//! standard deviation, in the unit of `value`), `n` (runs), `metric` (the claim's metric name, where one
+//! table holds several) and `coverage-percent`: a row at 70 then speaks of the metric that ends in `-at-70`,
+//! so that `distance-m-at-70` is found in a table of distances. Other columns (`note`, `page`) are for readers and are ignored. An empty `value` is
 //! a number the paper does not print.
 
 use super::cells::{Values, Where};
@@ -17,12 +18,29 @@ pub struct PublishedCell {
     pub pins: BTreeMap<String, String>,
     /// Metric of its row, where the table says.
     pub metric: Option<String>,
+    /// Coverage of its row (percent), where the table says.
+    pub coverage: Option<String>,
     /// The number, in the table's unit; `None` where the paper prints none.
     pub value: Option<f64>,
     /// Its sample standard deviation.
     pub sd: Option<f64>,
     /// Its runs.
     pub n: Option<u64>,
+}
+
+impl PublishedCell {
+    /// Whether the number is one of `metric`.
+    pub fn speaks_of(&self, metric: &str) -> bool {
+        let (quantity, coverage) = match &self.coverage {
+            None => (metric, None),
+            Some(_) => match metric.rsplit_once("-at-") {
+                Some((quantity, coverage)) => (quantity, Some(coverage)),
+                None => return false,
+            },
+        };
+        let named = |m: &String| m == quantity || m == metric;
+        coverage == self.coverage.as_deref() && self.metric.as_ref().is_none_or(named)
+    }
 }
 
 /// The rows of a published table over the factors `factors`.
@@ -51,16 +69,23 @@ pub fn read(table: &Table, factors: &[String]) -> Result<Vec<PublishedCell>, Str
             Value::Missing => None,
             name => Some(name.to_string()),
         };
+        let coverage = match table.value(row, "coverage-percent") {
+            Value::Missing => None,
+            percent => Some(percent.to_string()),
+        };
         let pins: BTreeMap<String, String> = factors
             .iter()
             .filter(|factor| table.column(factor).is_some())
             .filter(|factor| *table.value(row, factor) != Value::Missing)
             .map(|factor| (factor.clone(), table.value(row, factor).to_string()))
             .collect();
-        if let Some(first) = cells.iter().position(|c| c.pins == pins && c.metric == metric) {
+        let same =
+            |c: &PublishedCell| c.pins == pins && c.metric == metric && c.coverage == coverage;
+        if let Some(first) = cells.iter().position(same) {
             return Err(format!("rows {} and {} speak of the same cell", first + 1, i + 1));
         }
-        cells.push(PublishedCell { pins, metric, value: number("value")?, sd: number("sd")?, n });
+        let (value, sd) = (number("value")?, number("sd")?);
+        cells.push(PublishedCell { pins, metric, coverage, value, sd, n });
     }
     Ok(cells)
 }

@@ -5,6 +5,9 @@ use crate::stats::assert_close;
 use crate::table::{Table, Value};
 use std::collections::BTreeMap;
 
+mod deadline;
+mod forms;
+mod levels;
 mod reporting;
 mod rules;
 

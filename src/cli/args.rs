@@ -114,6 +114,12 @@ pub(super) struct PlanArgs {
     /// Print what the key of this trial is made of: 8 hex digits of it, or CONDITION/NUMBER
     #[arg(long, value_name = "TRIAL")]
     pub(super) explain: Option<String>,
+    /// Say how likely the planned trials, and other numbers of them, are to decide each claim
+    #[arg(long, conflicts_with = "explain")]
+    pub(super) power: bool,
+    /// How `--power` is written
+    #[arg(long, value_enum, default_value = "human", requires = "power")]
+    pub(super) format: Format,
 }
 
 #[derive(Debug, Args)]

@@ -1,6 +1,7 @@
 //! The claims of a manifest, held against its factors, measures and published tables.
 
 use super::Experiment;
+use crate::claims::metric::WALL_TIME_COLUMNS;
 use crate::claims::{self, Claim};
 use crate::document::Diagnostic;
 use crate::studies::prior_map::MILESTONES;
@@ -60,5 +61,6 @@ fn prior_map_measures() -> Vec<String> {
         names.push(format!("distance-m-at-{percent}"));
         names.push(format!("time-s-at-{percent}"));
     }
+    names.extend(WALL_TIME_COLUMNS.map(str::to_owned));
     names
 }

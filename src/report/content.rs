@@ -27,6 +27,8 @@ pub struct ReportContent {
     pub figures: Vec<Figure>,
     /// The claims judged; empty where the manifest has none or the run is partial.
     pub claims: Vec<ClaimRow>,
+    /// Claims about the machine of the run, which are no results; mostly empty.
+    pub machine_claims: Vec<ClaimRow>,
     /// Choices the paper leaves open, with their reasons.
     pub assumptions: Vec<Assumption>,
     /// The sealed inputs.

@@ -22,6 +22,8 @@ pub fn content_of(bundle: &Bundle, plan: &Plan) -> Result<ReportContent, String>
     let factors = assemble::factors(plan);
     let findings = assemble::findings(plan, &records, &factors);
     let cite = experiment.cite.as_ref();
+    let machine_verdicts =
+        bundle.circumstance_files().find(|(path, _)| *path == "claims.json").map(|(_, b)| b);
     Ok(ReportContent {
         title: experiment.title.clone(),
         citation: Citation {
@@ -42,7 +44,8 @@ pub fn content_of(bundle: &Bundle, plan: &Plan) -> Result<ReportContent, String>
             .map(|request| tables::table(&findings, request, plan))
             .collect(),
         figures: figures(bundle, plan),
-        claims: claims(bundle)?,
+        claims: claims("results/claims.json", bundle.result("claims.json"))?,
+        machine_claims: claims("circumstances/claims.json", machine_verdicts)?,
         assumptions: experiment
             .assumptions
             .iter()
@@ -149,20 +152,34 @@ fn figures(bundle: &Bundle, plan: &Plan) -> Vec<Figure> {
         .collect()
 }
 
-fn claims(bundle: &Bundle) -> Result<Vec<ClaimRow>, String> {
-    let Some(bytes) = bundle.result("claims.json") else { return Ok(Vec::new()) };
-    let verdicts: Vec<Value> =
-        serde_json::from_slice(bytes).map_err(|e| format!("results/claims.json: {e}"))?;
+fn claims(path: &str, bytes: Option<&[u8]>) -> Result<Vec<ClaimRow>, String> {
+    let Some(bytes) = bytes else { return Ok(Vec::new()) };
+    let verdicts: Vec<Value> = serde_json::from_slice(bytes).map_err(|e| format!("{path}: {e}"))?;
     let text = |v: &Value, key: &str| v[key].as_str().unwrap_or_default().to_owned();
     let row = |v: &Value| ClaimRow {
         id: text(v, "id"),
         says: text(v, "says"),
         cite: text(v, "cite"),
         verdict: text(v, "verdict"),
-        numbers: text(v, "summary"),
+        numbers: numbers(v),
         paper_table: text(v, "paper-table"),
     };
     Ok(verdicts.iter().map(row).collect())
+}
+
+/// The sentence that decided a verdict, and of a single comparison the effect with its interval.
+fn numbers(verdict: &Value) -> String {
+    let reason = verdict["reason"].as_str().unwrap_or_default().to_owned();
+    let Some([only]) = verdict["comparisons"].as_array().map(Vec::as_slice) else { return reason };
+    let effect = &only["effect"];
+    let number = |key: &str| effect[key].as_f64().map(|x| format!("{x:.3}"));
+    let name = effect["name"].as_str().map(|name| name.replace('-', " "));
+    match (name, number("value"), number("low"), number("high")) {
+        (Some(name), Some(value), Some(low), Some(high)) => {
+            format!("{name} {value} ({low} to {high}), {reason}")
+        }
+        _ => reason,
+    }
 }
 
 fn commands(bundle: &Bundle) -> Vec<Command> {

@@ -47,6 +47,7 @@ mod tests {
             "id=\"limits\"",
             "id=\"headline\"",
             "id=\"claims\"",
+            "id=\"machine-claims\"",
             "id=\"table-1\"",
             "id=\"coverage\"",
             "id=\"assumptions\"",
@@ -73,6 +74,7 @@ mod tests {
         let page = page(&ReportContent { title: "Nothing".into(), ..ReportContent::default() });
         for part in [
             "id=\"claims\"",
+            "id=\"machine-claims\"",
             "id=\"tables\"",
             "id=\"figures\"",
             "id=\"assumptions\"",

@@ -302,6 +302,19 @@ fn the_bootstrap_knows_the_spread_of_a_mean() {
     assert_ne!(found, draw(4));
 }
 
+/// The arithmetic of the bootstrap to the last digits: the same resamples, drawn by this stream, through numpy.
+#[test]
+fn the_bootstrap_takes_numpys_quantiles_of_its_resamples() {
+    let values = [3.1, 4.1, 5.9, 2.6, 5.3, 5.8, 9.7, 9.3, 2.3, 8.4, 6.2, 6.4];
+    let mut stream = Seeds::new(3, Vec::new()).stream("test");
+    let found = bootstrap(&[&values], |s| mean(&s[0]), 199, 0.9, &mut stream);
+    // numpy.quantile(means, [0.05, 0.95]), numpy.std(means, ddof=1), numpy.mean(values)
+    assert_close(found.interval.low, 4.844_166_666_666_666, FINE);
+    assert_close(found.interval.high, 6.750_833_333_333_333, FINE);
+    assert_close(found.standard_error, 0.612_908_397_012_503_8, FINE);
+    assert_close(found.estimate, 5.758_333_333_333_333, FINE);
+}
+
 proptest! {
     #[test]
     fn fisher_sums_to_one_and_is_symmetric(k1 in 0_u64..30, k2 in 0_u64..30, more1 in 1_u64..30, more2 in 1_u64..30) {

@@ -175,10 +175,29 @@ pub struct TrialSpec {
     pub setup: Setup,
 }
 
+/// Times parts of a trial, for claims about the machine. No record depends on it.
+pub trait Stopwatch {
+    /// A mind is asked what to do next.
+    fn asked(&mut self);
+    /// To answer, it chose where to go.
+    fn chose(&mut self);
+}
+
+/// Nobody takes the time.
+impl Stopwatch for () {
+    fn asked(&mut self) {}
+    fn chose(&mut self) {}
+}
+
 /// Runs a trial: a pure function of `spec`.
 pub fn execute(spec: &TrialSpec) -> TrialRecord {
+    execute_timed(spec, &mut ())
+}
+
+/// Runs a trial under the eyes of `watch`. The record is the one that [`execute`] yields.
+pub fn execute_timed(spec: &TrialSpec, watch: &mut dyn Stopwatch) -> TrialRecord {
     match &spec.setup {
-        Setup::PriorMap(setup) => prior_map::run(spec, setup, None),
+        Setup::PriorMap(setup) => prior_map::run(spec, setup, None, watch),
         Setup::Deadline(setup) => deadline::run(spec, setup, None),
     }
 }
@@ -187,7 +206,7 @@ pub fn execute(spec: &TrialSpec) -> TrialRecord {
 pub fn reenact(spec: &TrialSpec) -> (TrialRecord, recording::Recording) {
     let mut recording = recording::Recording::default();
     let record = match &spec.setup {
-        Setup::PriorMap(setup) => prior_map::run(spec, setup, Some(&mut recording)),
+        Setup::PriorMap(setup) => prior_map::run(spec, setup, Some(&mut recording), &mut ()),
         Setup::Deadline(setup) => deadline::run(spec, setup, Some(&mut recording)),
     };
     (record, recording)

@@ -7,16 +7,16 @@ use crate::bundle::{
 use crate::studies::TrialRecord;
 
 /// Everything that does not follow from the manifest, the inputs and the records; and what could not be judged.
-pub(super) fn check(bundle: &Bundle, replanned: &dyn Replanned) -> (Vec<Fault>, Option<Fault>) {
+pub(super) fn check(bundle: &Bundle, replanned: &dyn Replanned) -> (Vec<Fault>, Vec<Fault>) {
     let mut faults = trials(bundle, &replanned.trials());
     let content = match replanned.content() {
         Ok(content) => content,
         // Records of other trials need not make results.
-        Err(_) if !faults.is_empty() => return (faults, None),
+        Err(_) if !faults.is_empty() => return (faults, Vec::new()),
         Err(problem) => {
             let path = format!("{}{}", format::PAYLOAD, format::TRIALS);
             faults.push(Fault::new(path, "records that make results", problem));
-            return (faults, None);
+            return (faults, Vec::new());
         }
     };
     // The circumstance half is derived as well where the bag tells the circumstances and this version wrote it.
@@ -30,7 +30,7 @@ pub(super) fn check(bundle: &Bundle, replanned: &dyn Replanned) -> (Vec<Fault>, 
                 "content that can be sealed",
                 problem.to_string(),
             ));
-            return (faults, None);
+            return (faults, Vec::new());
         }
     };
     let mut differing = files(bundle.tree(), &derived, in_result_half);
@@ -41,7 +41,7 @@ pub(super) fn check(bundle: &Bundle, replanned: &dyn Replanned) -> (Vec<Fault>, 
         }
     }
     faults.extend(differing);
-    let note = told.is_none().then(|| {
+    let untold = told.is_none().then(|| {
         let found = match bundle.form() {
             Form::Crate => "a crate without its bag".to_owned(),
             _ => bundle
@@ -55,7 +55,15 @@ pub(super) fn check(bundle: &Bundle, replanned: &dyn Replanned) -> (Vec<Fault>, 
         )
         .hint("metadata, preview and README were not derived again; the results were")
     });
-    (faults, note)
+    let measured = bundle.circumstance_files().next().map(|_| {
+        Fault::new(
+            format!("{}{}", format::PAYLOAD, format::CIRCUMSTANCES),
+            "what follows from the records",
+            "what the machine of the run measured, and verdicts on it",
+        )
+        .hint("no part of the results; checksums hold it, nothing can derive it again")
+    });
+    (faults, untold.into_iter().chain(measured).collect())
 }
 
 /// Planned trials against records: one fault a condition, however many of its trials differ.

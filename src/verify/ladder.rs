@@ -180,9 +180,9 @@ fn climb_on(report: &mut Report, bundle: &Bundle, options: &Options, pipeline: &
             return;
         }
     };
-    let (faults, note) = derived::check(bundle, replanned.as_ref());
+    let (faults, notes) = derived::check(bundle, replanned.as_ref());
     report.note(Level::Derived, Severity::Error, faults);
-    report.note(Level::Derived, Severity::Note, note);
+    report.note(Level::Derived, Severity::Note, notes);
     if options.level <= Level::Derived || !report.is_clear() {
         return;
     }

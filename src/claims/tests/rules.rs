@@ -20,21 +20,26 @@ fn known() -> Known {
         "success",
         "outcome:late",
         "time-s",
+        "fast-collisions",
+        "fast-maneuvers",
+        "slow-collisions",
+        "slow-maneuvers",
         "time-s-at-70",
         "distance-m-at-70",
         "distance-m-at-80",
         "distance-m-at-90",
+        "wall-time-s-per-selection",
     ]);
     (factors, metrics, owned(&["success-percent"]))
 }
 
-fn faults(expect: &str) -> Vec<String> {
+pub(super) fn faults(expect: &str) -> Vec<String> {
     let (factors, metrics, published) = known();
     claim(expect).check(&factors, &metrics, &published)
 }
 
 /// The fenced YAML of a text, each line without `prefix`.
-fn examples(text: &str, prefix: &str) -> Vec<String> {
+pub(super) fn examples(text: &str, prefix: &str) -> Vec<String> {
     let mut found = Vec::new();
     let mut open: Option<String> = None;
     for line in text.lines() {
@@ -73,10 +78,12 @@ fn every_form_has_an_example_that_parses_and_checks() {
             "between",
             "correlation-with-published",
             "equivalent",
+            "every",
             "greater",
             "homogeneous",
             "less",
             "rank",
+            "rate",
             "rmse-with-published",
             "share",
             "sign-test",
@@ -111,7 +118,7 @@ fn faults_are_named_with_their_place_and_the_nearest_name() {
              strategy, deadline-s, prior, furnished, environment)",
             "claim `X`: expect.less.than.where.start: unknown value `D` (known: A, B, C)",
             "claim `X`: expect.less.metric: unknown metric `sucess`; did you mean `success`? (known: success, \
-             outcome:late, time-s, time-s-at-70, distance-m-at-70, distance-m-at-80, distance-m-at-90)",
+             outcome:late, time-s, fast-collisions, fast-maneuvers, slow-collisions, slow-maneuvers, time-s-at-70, distance-m-at-70, distance-m-at-80, distance-m-at-90, wall-time-s-per-selection)",
         ]
     );
     assert_eq!(

@@ -13,4 +13,5 @@ pub(super) mod schema;
 pub(super) mod show;
 pub(super) mod solve_cmdp;
 mod tables;
+mod verdicts;
 pub(super) mod verify;

@@ -1,4 +1,6 @@
-//! `reenact plan`: the trials that would run, or what one trial's key is made of.
+//! `reenact plan`: the trials that would run, what one trial's key is made of, or what they would decide.
+
+mod power;
 
 use crate::cli::args::PlanArgs;
 use crate::cli::calibrate::Calibrator;
@@ -9,7 +11,7 @@ use crate::provenance::{Environment, processors};
 use crate::runner::TrialStore as _;
 use crate::store::DirectoryStore;
 
-/// Lists or explains.
+/// Lists, explains or estimates.
 pub(in crate::cli) fn run(
     args: &PlanArgs,
     environment: &Environment,
@@ -22,6 +24,10 @@ pub(in crate::cli) fn run(
     if let Some(wanted) = &args.explain {
         let spec = plan.find(wanted).map_err(Failure::not_understood)?;
         terminal.result(&plan.explain(spec));
+        return Ok(Exit::Yes);
+    }
+    if args.power {
+        terminal.result(&power::power(&plan, args.format)?);
         return Ok(Exit::Yes);
     }
     let mut text = String::new();

@@ -1,7 +1,9 @@
 //! `reenact run`: plan, simulate, seal.
 
-use super::tables;
+use super::{tables, verdicts};
+use crate::bundle::wall_time::{self, WallTimes};
 use crate::bundle::{Form, Sealed, assemble, seal};
+use crate::claims::Verdict;
 use crate::cli::args::{Format, RunArgs};
 use crate::cli::calibrate::Calibrator;
 use crate::cli::exit::{Exit, Failure};
@@ -9,13 +11,14 @@ use crate::cli::load;
 use crate::cli::progress::Progress;
 use crate::cli::terminal::{Terminal, counted};
 use crate::plan::Plan;
-use crate::provenance::{Environment, RunClock, processors};
+use crate::provenance::{Environment, RunClock, TrialWatch, processors};
 use crate::runner::{Observer, RunError, RunEvent, Scheduler, TrialStore};
 use crate::store::{self, DirectoryStore};
-use crate::studies::{self, Outcome, TrialRecord};
+use crate::studies::{self, Outcome, TrialRecord, TrialSpec};
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 /// Runs every manifest in turn.
 pub(in crate::cli) fn run(
@@ -52,19 +55,44 @@ fn run_one(
     let calibrator = Calibrator::Run { scheduler: &scheduler, store: store.as_ref() };
     let loaded = load::manifest(manifest, &args.select.set, calibrator, terminal)?;
     let (plan, selection) = load::plan(loaded.experiment, &args.select)?;
-    let (records, cached) = execute(&plan, &scheduler, store.as_ref(), terminal)?;
+    let Executed { records, cached, times } =
+        execute(&plan, &scheduler, store.as_ref(), terminal)?;
     let content = assemble::assemble(&plan, loaded.source.text.as_bytes(), &selection, &records)
         .map_err(Failure::failed)?;
-    let sealed = seal(&content, &clock.circumstance(environment, scheduler.jobs()))
-        .map_err(Failure::failed)?;
+    let times = match environment.source_date_epoch {
+        None => Ok(&times),
+        Some(_) => Err("wall times are not measured where SOURCE_DATE_EPOCH is set"),
+    };
+    let measured = wall_time::measured(&plan, &records, times).map_err(Failure::failed)?;
+    let mut circumstance = clock.circumstance(environment, scheduler.jobs());
+    circumstance.files = measured.files;
+    let sealed = seal(&content, &circumstance).map_err(Failure::failed)?;
     let path = store::publish(&args.out, &sealed.file_name(), &sealed.zip(Form::Bag))
         .map_err(|e| Failure::failed(format!("cannot write to `{}`: {e}", args.out.display())))?;
-    let done = Done { plan, records, cached, sealed, path, wall_seconds: clock.elapsed_seconds() };
+    let done = Done {
+        verdicts: assemble::verdicts(&plan, &records).map_err(Failure::failed)?,
+        machine_verdicts: measured.verdicts,
+        plan,
+        records,
+        cached,
+        sealed,
+        path,
+        wall_seconds: clock.elapsed_seconds(),
+    };
     match args.format {
         Format::Human => done.tell(terminal),
-        Format::Json | Format::Junit => terminal.result(&done.to_json()?),
+        Format::Json | Format::Junit => terminal.result(&done.to_json()),
     }
     Ok(if done.failed() > 0 { Exit::Failed } else { Exit::Yes })
+}
+
+/// What the scheduler brought.
+struct Executed {
+    records: Vec<TrialRecord>,
+    /// How many of them the store held.
+    cached: usize,
+    /// Of the others that did not fail.
+    times: WallTimes,
 }
 
 fn execute(
@@ -72,7 +100,7 @@ fn execute(
     scheduler: &Scheduler,
     store: Option<&DirectoryStore>,
     terminal: Terminal,
-) -> Result<(Vec<TrialRecord>, usize), Failure> {
+) -> Result<Executed, Failure> {
     let progress = Progress::new(terminal);
     let cached = AtomicUsize::new(0);
     let observer = |event: &RunEvent<'_>| {
@@ -81,21 +109,36 @@ fn execute(
         }
         progress.notice(event);
     };
+    let times = Mutex::new(WallTimes::new());
+    let executor = |spec: &TrialSpec| {
+        let mut watch = TrialWatch::start();
+        let record = studies::execute_timed(spec, &mut watch);
+        let time = watch.stop();
+        times.lock().unwrap_or_else(PoisonError::into_inner).insert(spec.key, time);
+        record
+    };
     let records = scheduler.run(
         &plan.trials,
-        &studies::execute,
+        &executor,
         store.map(|store| store as &dyn TrialStore),
         &observer,
     );
     progress.finish();
     let records = records.map_err(|e: RunError| Failure::failed(e))?;
-    Ok((records, cached.into_inner()))
+    Ok(Executed {
+        records,
+        cached: cached.into_inner(),
+        times: times.into_inner().unwrap_or_else(PoisonError::into_inner),
+    })
 }
 
 /// A finished run.
 struct Done {
     plan: Plan,
     records: Vec<TrialRecord>,
+    verdicts: Vec<Verdict>,
+    /// On claims about this machine.
+    machine_verdicts: Vec<Verdict>,
     cached: usize,
     sealed: Sealed,
     path: PathBuf,
@@ -111,12 +154,6 @@ impl Done {
         self.records.iter().map(|r| r.sim_seconds).sum()
     }
 
-    fn verdicts(&self) -> Result<Map<String, Value>, Failure> {
-        let verdicts = assemble::verdicts(&self.plan, &self.records).map_err(Failure::failed)?;
-        let id_and_verdict = |v: &Value| Some((v["id"].as_str()?.to_owned(), v["verdict"].clone()));
-        Ok(verdicts.iter().filter_map(id_and_verdict).collect())
-    }
-
     fn tell(&self, terminal: Terminal) {
         let mut text = format!("{}\n", self.plan.experiment.title);
         if self.plan.partial {
@@ -129,6 +166,7 @@ impl Done {
             text.push_str(&tables::table(&findings, request));
             text.push('\n');
         }
+        text.push_str(&verdicts::in_words(&self.verdicts, &self.machine_verdicts));
         text.push_str(&self.summary());
         for record in self.records.iter().filter(|r| r.outcome == Outcome::Panicked) {
             let name = format!("{}/{}", record.condition().slug(), record.trial);
@@ -167,9 +205,13 @@ impl Done {
         text
     }
 
-    fn to_json(&self) -> Result<String, Failure> {
+    fn to_json(&self) -> String {
+        let by_id = |verdicts: &[Verdict]| -> Map<String, Value> {
+            let entry = |v: &Verdict| (v.id.clone(), v.judgement.to_string().into());
+            verdicts.iter().map(entry).collect()
+        };
         let path = std::path::absolute(&self.path).unwrap_or_else(|_| self.path.clone());
-        Ok(json!({
+        let mut line = json!({
             "bundle": path,
             "bundle_id": format!("sha256:{}", self.sealed.bundle_id),
             "results_digest": format!("sha256:{}", self.sealed.results_digest),
@@ -180,8 +222,11 @@ impl Done {
             "sim_seconds": self.sim_seconds(),
             "wall_seconds": self.wall_seconds,
             "partial": self.plan.partial,
-            "claims": self.verdicts()?,
-        })
-        .to_string())
+            "claims": by_id(&self.verdicts),
+        });
+        if !self.machine_verdicts.is_empty() {
+            line["circumstance_claims"] = by_id(&self.machine_verdicts).into();
+        }
+        line.to_string()
     }
 }

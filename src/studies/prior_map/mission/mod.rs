@@ -15,7 +15,7 @@ use crate::geometry::{Outline, Pose};
 use crate::robot::{Lidar, Scan};
 use crate::sim::{Distribution, DriveNoise, OdometryNoise, Scene, Simulator};
 use crate::studies::recording::Recording;
-use crate::studies::{Outcome, TrialRecord, TrialSpec};
+use crate::studies::{Outcome, Stopwatch, TrialRecord, TrialSpec};
 use crate::units::{Seconds, Tick};
 use recorder::Recorder;
 use reference::Reference;
@@ -54,8 +54,14 @@ impl Prepared {
     }
 }
 
-/// Runs the trial, writing everything down in `recording` where there is one. The record is the same either way.
-pub fn run(spec: &TrialSpec, setup: &Setup, recording: Option<&mut Recording>) -> TrialRecord {
+/// Runs the trial, writing everything down in `recording` where there is one. The record is the same either way,
+/// and whatever `watch` does.
+pub fn run(
+    spec: &TrialSpec,
+    setup: &Setup,
+    recording: Option<&mut Recording>,
+    watch: &mut dyn Stopwatch,
+) -> TrialRecord {
     let prepared = match setup.prepared() {
         Ok(prepared) => prepared,
         Err(cause) => return TrialRecord::panicked(spec, cause),
@@ -90,6 +96,7 @@ pub fn run(spec: &TrialSpec, setup: &Setup, recording: Option<&mut Recording>) -
         trace: Trace::new(prepared.reference.total()),
         recorder: recording.map(|recording| Recorder::new(recording, setup, &prepared.visible)),
         moved: (setup.start, Tick(0)),
+        watch,
     };
     mission.run(spec)
 }
@@ -104,6 +111,7 @@ struct Mission<'a> {
     recorder: Option<Recorder<'a>>,
     /// Where the robot was when it last had moved on, and when.
     moved: (Pose, Tick),
+    watch: &'a mut dyn Stopwatch,
 }
 
 impl Mission<'_> {
@@ -114,7 +122,12 @@ impl Mission<'_> {
         let (outcome, cause) = loop {
             if self.sim.now() >= next_control {
                 next_control = next_control + CONTROL_PERIOD;
+                let choices = self.mind.choices();
+                self.watch.asked();
                 let twist = self.mind.control(self.sim.odometry());
+                if self.mind.choices() > choices {
+                    self.watch.chose();
+                }
                 self.sim.command(twist);
                 self.note_state();
                 if let Some(ending) = self.ending(limit) {

@@ -1,0 +1,90 @@
+//! Wall times of trials and the claims about them: measured, not derived, so they live in the circumstance half.
+
+use super::assemble;
+use crate::claims::metric::WALL_TIME_COLUMNS;
+use crate::claims::{self, Verdict};
+use crate::digest::TrialKey;
+use crate::plan::Plan;
+use crate::studies::TrialRecord;
+use crate::table::{Table, Value};
+use std::collections::BTreeMap;
+
+/// How long one trial took on the machine that ran it.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct WallTime {
+    /// The whole trial (s).
+    pub trial_s: f64,
+    /// Each choice of where to go (s), in order.
+    pub selections_s: Vec<f64>,
+}
+
+/// Wall times of the trials that were executed; those that a store held have none.
+pub type WallTimes = BTreeMap<TrialKey, WallTime>;
+
+/// Verdicts on the claims about the machine, and the files under `circumstances/` that hold them.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Measured {
+    /// In the manifest's order.
+    pub verdicts: Vec<Verdict>,
+    /// As [`super::Circumstance::files`] takes them; none where nothing is claimed of the machine.
+    pub files: Vec<(String, Vec<u8>)>,
+}
+
+/// Judges the claims about the machine by the `times` of `plan`'s trials, or says of each why there are none.
+///
+/// # Errors
+/// Where a claim cannot be judged at all, in words.
+pub fn measured(
+    plan: &Plan,
+    records: &[TrialRecord],
+    times: Result<&WallTimes, &str>,
+) -> Result<Measured, String> {
+    let claims = assemble::claims(plan)?;
+    let claims: Vec<_> = claims.iter().filter(|claim| claim.circumstance).collect();
+    if plan.partial || claims.is_empty() {
+        return Ok(Measured::default());
+    }
+    let experiment = &plan.experiment;
+    let context =
+        claims::Context::new(&experiment.published, &experiment.shared_noise, experiment.seed);
+    let mut files = Vec::new();
+    let verdicts = match times {
+        Ok(times) => {
+            let table = table(plan, records, times);
+            files.push(("wall-times.csv".to_owned(), table.to_csv().into_bytes()));
+            let judged = claims.iter().map(|claim| claims::judge(claim, &table, &context));
+            judged.collect::<Result<Vec<_>, _>>()?
+        }
+        Err(reason) => {
+            claims.iter().map(|claim| claims::not_measured(claim, reason, &context)).collect()
+        }
+    };
+    files.push(("claims.json".to_owned(), assemble::verdicts_json(&verdicts)));
+    Ok(Measured { verdicts, files })
+}
+
+/// One row a trial: key, factors, number, outcome and the columns of [`WALL_TIME_COLUMNS`].
+fn table(plan: &Plan, records: &[TrialRecord], times: &WallTimes) -> Table {
+    let factors = assemble::factors(plan);
+    let columns = ["key"]
+        .into_iter()
+        .chain(factors.iter().map(|(name, _)| name.as_str()))
+        .chain(["trial", "outcome"])
+        .chain(WALL_TIME_COLUMNS);
+    let mut table = Table::new(columns);
+    for record in records {
+        let condition = record.condition();
+        let mut row: Vec<Value> = vec![record.key.hex().into()];
+        row.extend(factors.iter().map(|(name, _)| condition.value(name).map(str::to_owned).into()));
+        row.push(i64::from(record.trial).into());
+        row.push(record.outcome.name().into());
+        let time = times.get(&record.key);
+        let selections = time.map_or(&[][..], |time| &time.selections_s);
+        let longest = selections.iter().copied().reduce(f64::max);
+        #[expect(clippy::cast_precision_loss, reason = "choices of one trial")]
+        let mean = longest.map(|_| selections.iter().sum::<f64>() / selections.len() as f64);
+        row.extend([time.map(|time| time.trial_s), mean, longest].map(Value::from));
+        table.push(row);
+    }
+    table
+}

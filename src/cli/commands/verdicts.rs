@@ -1,0 +1,44 @@
+//! Verdicts in print: what the paper's table shows beside what we find, and the reproduction score.
+
+use crate::claims::{Judgement, Score, Verdict};
+
+/// The verdicts on a study's claims with their score, and those on the machine, which count for nothing; empty
+/// where nothing is claimed. A function of the verdicts alone: no lock changes what is printed.
+pub(super) fn in_words(verdicts: &[Verdict], machine: &[Verdict]) -> String {
+    let mut text = String::new();
+    if !verdicts.is_empty() {
+        text.push_str(&list("Claims", verdicts));
+        text.push_str(&format!("reproduction: {}\n\n", Score::of(verdicts)));
+    }
+    if !machine.is_empty() {
+        text.push_str(&list("Claims about the machine (not among the results)", machine));
+        text.push('\n');
+    }
+    text
+}
+
+fn list(title: &str, verdicts: &[Verdict]) -> String {
+    let width = |texts: &mut dyn Iterator<Item = String>| {
+        texts.map(|text| text.chars().count()).max().unwrap_or(0)
+    };
+    let id = width(&mut verdicts.iter().map(|v| v.id.clone())).max(5);
+    let mut text = format!("{title}\n  {:id$}  {:16}  paper's table\n", "claim", "we find");
+    for verdict in verdicts {
+        text.push_str(&format!(
+            "  {:id$}  {:16}  {}\n",
+            verdict.id,
+            verdict.judgement.to_string(),
+            verdict.paper_table
+        ));
+        if verdict.judgement == Judgement::CannotBeTested {
+            text.push_str(&format!("  {:id$}  {}\n", "", verdict.reason));
+        }
+        if let Some(trials) = verdict.trials_to_decide {
+            text.push_str(&format!(
+                "  {:id$}  {trials} trials per condition would have decided it\n",
+                ""
+            ));
+        }
+    }
+    text
+}

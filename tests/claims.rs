@@ -1,0 +1,122 @@
+//! Claims from the command line: their power before a run, their verdicts after it, and where each is kept.
+
+use assert_cmd::Command;
+use std::path::Path;
+use tempfile::TempDir;
+
+/// What a command wrote to stdout; it must have ended well and said nothing else.
+fn reenact(folder: &Path, words: &[&str], pinned: bool) -> String {
+    let mut command = Command::cargo_bin("reenact").unwrap();
+    command.args(words).current_dir(folder).env("REENACT_STORE", folder.join("store"));
+    if pinned {
+        command.env("SOURCE_DATE_EPOCH", "1600000000");
+    } else {
+        command.env_remove("SOURCE_DATE_EPOCH");
+    }
+    let output = command.output().unwrap();
+    assert_eq!(
+        (String::from_utf8_lossy(&output.stderr).as_ref(), output.status.code()),
+        ("", Some(0))
+    );
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// A starter study of two trials that makes these claims.
+fn study(claims: &str) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    reenact(folder.path(), &["init", "demo"], true);
+    let manifest = folder.path().join("demo/demo.yaml");
+    let text = std::fs::read_to_string(&manifest).unwrap();
+    std::fs::write(&manifest, format!("{text}claims:\n{claims}")).unwrap();
+    folder
+}
+
+const PAGE: &str = include_str!("../docs/claims.md");
+
+#[test]
+fn power_is_answered_as_documented() {
+    let blocks = PAGE.split("\n```yaml\n").skip(1).filter_map(|rest| rest.split_once("\n```\n"));
+    let example = blocks.map(|(block, _)| block).find(|block| block.contains("power:")).unwrap();
+    let folder = study(&format!("{example}\n"));
+    let answer = reenact(folder.path(), &["plan", "demo/demo.yaml", "--power"], true);
+    assert!(
+        PAGE.contains(&format!("\n```\n{answer}```\n")),
+        "docs/claims.md should show:\n{answer}"
+    );
+    let words = ["plan", "demo/demo.yaml", "--power", "--format", "json"];
+    let line: serde_json::Value =
+        serde_json::from_str(&reenact(folder.path(), &words, true)).unwrap();
+    assert_eq!((&line["planned"], &line["studies"]), (&5.into(), &200.into()));
+    let claim = &line["claims"][0];
+    assert_eq!((&claim["id"], &claim["enough"]), (&"P1".into(), &20.into()));
+    assert_eq!(claim["ladder"].as_array().unwrap().len(), 2);
+    assert_eq!(claim["planned"]["trials"], 5);
+}
+
+const CLAIMS: &str = "\
+- id: P1
+  says: the floor plan shortens exploration
+  paper-table: supports
+  expect: {less: {metric: distance-m-at-80, where: {prior: floor-plan}, than: {where: {prior: none}}}}
+- id: P21
+  says: a selection takes milliseconds
+  paper-table: silent
+  circumstance: true
+  expect: {between: {metric: wall-time-s-per-selection, statistic: median, high: 1000, minimum-n: 2}}
+";
+
+/// The bytes of a file of a bundle that was exported as a folder.
+fn sealed(folder: &Path, bundle: &str, path: &str) -> Option<String> {
+    std::fs::read_to_string(folder.join(bundle).join("data").join(path)).ok()
+}
+
+#[test]
+fn claims_about_the_machine_are_circumstances() {
+    let desk = study(CLAIMS);
+    let folder = desk.path();
+    let words = ["run", "demo/demo.yaml", "--set", "trials=1", "--no-cache"];
+    let measured = reenact(folder, &words, false);
+    let told = "\
+Claims
+  claim  we find           paper's table
+  P1     cannot-be-tested  supports
+         (prior=floor-plan) has 1 runs to compare, fewer than the minimum of 10
+reproduction: 0 of 1 claims supported, 0 contradicted, 0 inconclusive, 1 cannot be tested
+
+Claims about the machine (not among the results)
+  claim  we find           paper's table
+  P21    inconclusive      silent
+";
+    assert!(measured.contains(told), "{measured}");
+    let bundle = measured.lines().last().unwrap();
+    let exported = reenact(folder, &["export", bundle, "--dir", "-o", "measured"], false);
+    let exported = exported.trim();
+    let results = sealed(folder, exported, "results/claims.json").unwrap();
+    assert!(results.contains("\"id\":\"P1\"") && !results.contains("P21"), "{results}");
+    let verdicts = sealed(folder, exported, "circumstances/claims.json").unwrap();
+    assert!(verdicts.contains("\"id\":\"P21\"") && !verdicts.contains("\"P1\""), "{verdicts}");
+    let times = sealed(folder, exported, "circumstances/wall-times.csv").unwrap();
+    let head = "key,prior,trial,outcome,wall-time-s,wall-time-s-per-selection,wall-time-s-longest-selection";
+    assert_eq!((times.lines().next(), times.lines().count()), (Some(head), 3));
+    // Verification derives everything else and says that it cannot derive this.
+    let answer = reenact(folder, &["verify", bundle], false);
+    let note = "note at level 3: data/circumstances/: expected what follows from the records, found what the machine of \
+                the run measured, and verdicts on it (no part of the results; checksums hold it, nothing can derive it again)";
+    assert!(answer.contains(note), "{answer}");
+    reenact(folder, &["report", bundle, "-o", "page.html"], false);
+    let page = std::fs::read_to_string(folder.join("page.html")).unwrap();
+    assert!(page.contains("id=\"claims\"") && page.contains("id=\"machine-claims\""));
+
+    // Pinned, nothing is measured, and the results are the same.
+    let pinned = reenact(folder, &words, true);
+    let unmeasured = "  P21    cannot-be-tested  silent
+         wall times are not measured where SOURCE_DATE_EPOCH is set
+";
+    assert!(pinned.contains(unmeasured), "{pinned}");
+    let digest = |answer: &str| answer.lines().rev().nth(1).map(str::to_owned);
+    assert_eq!(digest(&pinned), digest(&measured));
+    let bundle = pinned.lines().last().unwrap();
+    let exported = reenact(folder, &["export", bundle, "--dir", "-o", "pinned"], true);
+    assert_eq!(sealed(folder, exported.trim(), "circumstances/wall-times.csv"), None);
+    assert_eq!(sealed(folder, exported.trim(), "results/claims.json"), Some(results));
+}
