@@ -7,7 +7,7 @@ pub mod prior_map;
 mod record;
 pub mod recording;
 
-pub use record::{Outcome, SeriesPoint, TrialRecord};
+pub use record::{CHAIN_STEP_S, Outcome, SeriesPoint, TrialRecord, first_divergence};
 
 use crate::digest::TrialKey;
 use crate::rng::Seeds;

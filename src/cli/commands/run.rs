@@ -1,20 +1,21 @@
 //! `reenact run`: plan, simulate, seal.
 
-use super::tables;
+use super::execution::{Execution, execute};
+use super::locked::{self, Held};
+use super::{probe, tables};
 use crate::bundle::{Form, Sealed, assemble, seal};
 use crate::cli::args::{Format, RunArgs};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::load;
-use crate::cli::progress::Progress;
 use crate::cli::terminal::{Terminal, counted};
+use crate::compare::Lock;
 use crate::plan::Plan;
 use crate::provenance::{Environment, RunClock, processors};
-use crate::runner::{Observer, RunError, RunEvent, Scheduler, TrialStore};
-use crate::store::{self, DirectoryStore};
-use crate::studies::{self, Outcome, TrialRecord};
+use crate::runner::Scheduler;
+use crate::store;
+use crate::studies::{Outcome, TrialRecord};
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Runs every manifest in turn.
 pub(in crate::cli) fn run(
@@ -25,10 +26,18 @@ pub(in crate::cli) fn run(
     if args.jobs == Some(0) {
         return Err(Failure::not_understood("`--jobs` must be at least 1, found 0"));
     }
+    // A missing lock is told before anything is simulated.
+    let locks = locked::locks(args, terminal)?;
     let mut exit = Exit::Yes;
-    for manifest in &args.manifests {
-        if run_one(manifest, args, environment, terminal)? == Exit::Failed {
-            exit = Exit::Failed;
+    for (manifest, lock) in args.manifests.iter().zip(locks) {
+        let one = match lock {
+            Some(lock) if args.lock.probe => {
+                probe::run(manifest, &lock, args, environment, terminal)?
+            }
+            lock => run_one(manifest, lock.as_ref(), args, environment, terminal)?,
+        };
+        if one.code() > exit.code() {
+            exit = one;
         }
     }
     Ok(exit)
@@ -36,6 +45,7 @@ pub(in crate::cli) fn run(
 
 fn run_one(
     manifest: &Path,
+    lock: Option<&Lock>,
     args: &RunArgs,
     environment: &Environment,
     terminal: Terminal,
@@ -45,50 +55,32 @@ fn run_one(
     let (plan, selection) = load::plan(loaded.experiment, &args.select)?;
     let scheduler =
         Scheduler::new(args.jobs.unwrap_or_else(processors)).map_err(Failure::failed)?;
-    let (records, cached) = execute(&plan, &scheduler, args, environment, terminal)?;
+    let how = Execution { store: !args.no_cache, twice: args.twice };
+    let (records, cached) = execute(&plan, &scheduler, how, environment, terminal)?;
     let content = assemble::assemble(&plan, loaded.source.text.as_bytes(), &selection, &records)
         .map_err(Failure::failed)?;
     let sealed = seal(&content, &clock.circumstance(environment, scheduler.jobs()))
         .map_err(Failure::failed)?;
     let path = store::publish(&args.out, &sealed.file_name(), &sealed.zip(Form::Bag))
         .map_err(|e| Failure::failed(format!("cannot write to `{}`: {e}", args.out.display())))?;
-    let done = Done { plan, records, cached, sealed, path, wall_seconds: clock.elapsed_seconds() };
+    let held = lock
+        .map(|lock| Held::against(lock, manifest, &sealed, locked::extent(args)))
+        .transpose()?;
+    let wall_seconds = clock.elapsed_seconds();
+    let twice = args.twice;
+    let done = Done { plan, records, cached, twice, sealed, held, path, wall_seconds };
     match args.format {
         Format::Human => done.tell(terminal),
         Format::Json | Format::Junit => terminal.result(&done.to_json()?),
     }
-    Ok(if done.failed() > 0 { Exit::Failed } else { Exit::Yes })
-}
-
-fn execute(
-    plan: &Plan,
-    scheduler: &Scheduler,
-    args: &RunArgs,
-    environment: &Environment,
-    terminal: Terminal,
-) -> Result<(Vec<TrialRecord>, usize), Failure> {
-    let kept = if args.no_cache {
-        None
+    let drifted = done.held.as_ref().is_some_and(|held| held.told(terminal));
+    Ok(if done.failed() > 0 {
+        Exit::Failed
+    } else if drifted {
+        Exit::No
     } else {
-        Some(DirectoryStore::new(environment.store().map_err(Failure::not_understood)?))
-    };
-    let progress = Progress::new(terminal);
-    let cached = AtomicUsize::new(0);
-    let observer = |event: &RunEvent<'_>| {
-        if let RunEvent::Started { cached: known, .. } = event {
-            cached.store(*known, Ordering::Relaxed);
-        }
-        progress.notice(event);
-    };
-    let records = scheduler.run(
-        &plan.trials,
-        &studies::execute,
-        kept.as_ref().map(|store| store as &dyn TrialStore),
-        &observer,
-    );
-    progress.finish();
-    let records = records.map_err(|e: RunError| Failure::failed(e))?;
-    Ok((records, cached.into_inner()))
+        Exit::Yes
+    })
 }
 
 /// A finished run.
@@ -96,7 +88,9 @@ struct Done {
     plan: Plan,
     records: Vec<TrialRecord>,
     cached: usize,
+    twice: bool,
     sealed: Sealed,
+    held: Option<Held>,
     path: PathBuf,
     wall_seconds: f64,
 }
@@ -129,6 +123,12 @@ impl Done {
             text.push('\n');
         }
         text.push_str(&self.summary());
+        if self.twice {
+            text.push_str("every trial was executed twice and gave the same bytes\n");
+        }
+        if let Some(held) = &self.held {
+            text.push_str(&held.in_words());
+        }
         for record in self.records.iter().filter(|r| r.outcome == Outcome::Panicked) {
             let name = format!("{}/{}", record.condition().slug(), record.trial);
             terminal.error(&format!("trial {name} failed: {}", record.cause));
@@ -168,7 +168,7 @@ impl Done {
 
     fn to_json(&self) -> Result<String, Failure> {
         let path = std::path::absolute(&self.path).unwrap_or_else(|_| self.path.clone());
-        Ok(json!({
+        let mut line = json!({
             "bundle": path,
             "bundle_id": format!("sha256:{}", self.sealed.bundle_id),
             "results_digest": format!("sha256:{}", self.sealed.results_digest),
@@ -180,7 +180,10 @@ impl Done {
             "wall_seconds": self.wall_seconds,
             "partial": self.plan.partial,
             "claims": self.verdicts()?,
-        })
-        .to_string())
+        });
+        if let Some(held) = &self.held {
+            line["drift"] = held.drift();
+        }
+        Ok(line.to_string())
     }
 }
