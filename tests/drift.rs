@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
-/// A folder with the starter study, one trial a condition, and a store of its own.
+/// A folder with the starter study, one trial of half a minute a condition, and a store of its own.
 struct Desk {
     folder: TempDir,
 }
@@ -22,7 +22,8 @@ impl Desk {
     fn new() -> Self {
         let desk = Self { folder: tempfile::tempdir().unwrap() };
         assert_eq!(desk.run(&["init", "demo"]).code, 0);
-        desk.edit("demo/demo.yaml", "trials: 5", "trials: 1");
+        let short = "trials: 1\nparameters: {mission: {time-limit-s: 30}}";
+        desk.edit("demo/demo.yaml", "trials: 5", short);
         desk
     }
 
@@ -60,7 +61,7 @@ impl Desk {
         }
     }
 
-    /// The first state hashes of the locked trial 0 of the condition `slug`.
+    /// What the lock has of the condition `slug`.
     fn locked(&self, slug: &str) -> serde_json::Value {
         let lock: serde_json::Value = serde_json::from_str(&self.read("demo/demo.lock")).unwrap();
         let conditions = lock["conditions"].as_array().unwrap();
@@ -68,12 +69,13 @@ impl Desk {
     }
 }
 
-/// `text` with short digests, keys and simulated seconds hidden.
+/// `text` with short digests, simulated seconds and the number of settings hidden.
 fn redacted(text: &str) -> String {
     let mut out = String::new();
     for line in text.split_inclusive('\n') {
         let line = match line.split_once(" after ") {
             Some((head, rest)) if rest.ends_with(" s\n") => format!("{head} after N s\n"),
+            _ if line.starts_with("  settings ") => "  settings              N  same\n".to_owned(),
             _ => line.to_owned(),
         };
         let mut parts = line.split("sha256:");
@@ -134,15 +136,15 @@ commit it; `reenact run --locked --probe demo/demo.yaml` finds drift
     let key = desk.locked("none")["first-trial"]["key"].as_str().unwrap()[..8].to_owned();
     let drift = format!(
         "\
-DRIFT  none/0        explored after N s
-same   floor-plan/0  explored after N s
+DRIFT  none/0        time-limit after N s
+same   floor-plan/0  time-limit after N s
 
 demo/demo.yaml has drifted from demo/demo.lock (trial 0 of every condition)
 
   inputs                2  same
   manifest                 same
   engine                   same
-  settings             86  same
+  settings              N  same
   conditions            2  same
   trials                2  1 changed
 
@@ -183,8 +185,8 @@ If this is meant, write the lock anew with `reenact lock demo/demo.yaml` and say
     // As it should be, in both forms.
     let answer = desk.run(&["run", "demo/demo.yaml", "--locked", "--probe"]);
     let same = "\
-same   none/0        explored after N s
-same   floor-plan/0  explored after N s
+same   none/0        time-limit after N s
+same   floor-plan/0  time-limit after N s
 trial 0 of every condition is as in demo/demo.lock
 ";
     assert_eq!((redacted(&answer.stdout), answer.stderr.as_str(), answer.code), (s(same), "", 0));
@@ -209,6 +211,14 @@ trial 0 of every condition is as in demo/demo.lock
         })
     );
     assert_eq!(answer.code, 0);
+
+    // What a merge left behind is no lock, and is written anew.
+    desk.write("demo/demo.lock", &format!("<<<<<<< ours\n{blessed}=======\n>>>>>>> theirs\n"));
+    let answer = desk.run(&["lock", "demo/demo.yaml"]);
+    let wrote = "wrote demo/demo.lock anew: the old one could not be read; the reason belongs in CHANGELOG.md, in the same \
+                 commit\n";
+    assert_eq!((answer.stdout.as_str(), answer.code), (wrote, 0));
+    assert_eq!(desk.read("demo/demo.lock"), blessed);
 }
 
 #[test]
@@ -265,6 +275,7 @@ fn a_parameter_that_changed_is_named_by_probe_and_run_and_the_bundles_are_told_a
 fn requests_about_drift_that_are_not_understood_end_with_2() {
     let desk = Desk::new();
     desk.write("new.lock", "{\"lock-format\": 7}\n");
+    desk.write("demo/demo.lock", "{\"lock-format\": 7}\n");
     desk.write("x.zip", "hello");
     for (words, says) in [
         (
@@ -295,6 +306,13 @@ fn requests_about_drift_that_are_not_understood_end_with_2() {
         "a damaged bundle leaves the question open"
     );
     assert_eq!(desk.run(&["run", "demo/demo.yaml", "--probe"]).code, 2, "--probe needs --locked");
+    assert_eq!(
+        desk.run(&["lock", "demo/demo.yaml"]).code,
+        2,
+        "an older program takes nothing back"
+    );
+    assert_eq!(desk.read("demo/demo.lock"), "{\"lock-format\": 7}\n");
+    assert_eq!(desk.run(&["run", "demo/demo.yaml", "--locked"]).code, 2);
 }
 
 #[test]
