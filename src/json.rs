@@ -23,6 +23,51 @@ pub fn canonical_of<T: Serialize>(value: &T) -> String {
     canonical(&serde_json::to_value(value).expect("our own types serialise to JSON"))
 }
 
+/// Breaks canonical JSON into indented lines with a final line feed, for people and for line-wise tools; the text of
+/// every value stays as it is.
+pub fn indented(canonical: &str) -> String {
+    let (mut out, mut depth, mut quoted, mut escaped) = (String::new(), 0_usize, false, false);
+    let mut characters = canonical.chars().peekable();
+    while let Some(c) = characters.next() {
+        if quoted {
+            out.push(c);
+            quoted = escaped || c != '"';
+            escaped = c == '\\' && !escaped;
+            continue;
+        }
+        match c {
+            '{' | '[' if matches!(characters.peek(), Some('}' | ']')) => {
+                out.push(c);
+                out.extend(characters.next());
+            }
+            '{' | '[' => {
+                depth += 1;
+                out.push(c);
+                out.push('\n');
+                out.push_str(&"  ".repeat(depth));
+            }
+            '}' | ']' => {
+                depth -= 1;
+                out.push('\n');
+                out.push_str(&"  ".repeat(depth));
+                out.push(c);
+            }
+            ',' => {
+                out.push_str(",\n");
+                out.push_str(&"  ".repeat(depth));
+            }
+            ':' => out.push_str(": "),
+            '"' => {
+                quoted = true;
+                out.push(c);
+            }
+            _ => out.push(c),
+        }
+    }
+    out.push('\n');
+    out
+}
+
 fn write(value: &Value, out: &mut String) {
     match value {
         Value::Object(map) => {
@@ -85,5 +130,16 @@ mod tests {
     fn near_misses_differ() {
         assert_ne!(canonical(&json!(["ab", "c"])), canonical(&json!(["a", "bc"])));
         assert_ne!(canonical(&json!({"a": "1"})), canonical(&json!({"a": 1})));
+    }
+
+    #[test]
+    fn indentation_changes_no_value() {
+        let value = json!({"a": [1, {}, [], "x\\\",{[:"], "b": {"c": null, "d": 1e300}});
+        let text = indented(&canonical(&value));
+        assert_eq!(serde_json::from_str::<Value>(&text).unwrap(), value);
+        assert_eq!(
+            text,
+            "{\n  \"a\": [\n    1,\n    {},\n    [],\n    \"x\\\\\\\",{[:\"\n  ],\n  \"b\": {\n    \"c\": null,\n    \"d\": 1e300\n  }\n}\n"
+        );
     }
 }

@@ -47,7 +47,8 @@ pub mod plan;
 pub mod bundle;
 pub mod runner;
 
-// Layer 7: checking a sealed bundle.
+// Layer 7: checking a sealed bundle, and comparing it with another or with a lock.
+pub mod compare;
 pub mod verify;
 
 // Layer 8: what people look at.

@@ -79,7 +79,7 @@ impl Resolved {
 
     /// Canonical JSON, indented for people.
     pub(crate) fn to_bytes(&self) -> Vec<u8> {
-        indented(&json::canonical_of(self)).into_bytes()
+        json::indented(&json::canonical_of(self)).into_bytes()
     }
 
     /// Reads the document; a newer format is told apart before anything else is looked at.
@@ -110,65 +110,9 @@ impl Resolved {
     }
 }
 
-/// Breaks canonical JSON into indented lines; the text of every value stays as it is.
-fn indented(canonical: &str) -> String {
-    let (mut out, mut depth, mut quoted, mut escaped) = (String::new(), 0_usize, false, false);
-    let mut characters = canonical.chars().peekable();
-    while let Some(c) = characters.next() {
-        if quoted {
-            out.push(c);
-            quoted = escaped || c != '"';
-            escaped = c == '\\' && !escaped;
-            continue;
-        }
-        match c {
-            '{' | '[' if matches!(characters.peek(), Some('}' | ']')) => {
-                out.push(c);
-                out.extend(characters.next());
-            }
-            '{' | '[' => {
-                depth += 1;
-                out.push(c);
-                out.push('\n');
-                out.push_str(&"  ".repeat(depth));
-            }
-            '}' | ']' => {
-                depth -= 1;
-                out.push('\n');
-                out.push_str(&"  ".repeat(depth));
-                out.push(c);
-            }
-            ',' => {
-                out.push_str(",\n");
-                out.push_str(&"  ".repeat(depth));
-            }
-            ':' => out.push_str(": "),
-            '"' => {
-                quoted = true;
-                out.push(c);
-            }
-            _ => out.push(c),
-        }
-    }
-    out.push('\n');
-    out
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use serde_json::json;
-
-    #[test]
-    fn indentation_changes_no_value() {
-        let value = json!({"a": [1, {}, [], "x\\\",{[:"], "b": {"c": null, "d": 1e300}});
-        let text = indented(&json::canonical(&value));
-        assert_eq!(serde_json::from_str::<serde_json::Value>(&text).unwrap(), value);
-        assert_eq!(
-            text,
-            "{\n  \"a\": [\n    1,\n    {},\n    [],\n    \"x\\\\\\\",{[:\"\n  ],\n  \"b\": {\n    \"c\": null,\n    \"d\": 1e300\n  }\n}\n"
-        );
-    }
 
     #[test]
     fn a_newer_format_is_refused_with_help() {

@@ -26,6 +26,10 @@ pub(super) enum Command {
     Plan(PlanArgs),
     /// Check a bundle: safe, intact, coherent, derived, re-executed
     Verify(VerifyArgs),
+    /// Tell what changed between two bundles or locks
+    Diff(DiffArgs),
+    /// Write down what a manifest's run yields, so that drift is found
+    Lock(LockArgs),
     /// Write a bundle as one offline HTML page
     Report(ReportArgs),
     /// Write a bundle in another form
@@ -90,9 +94,25 @@ pub(super) struct RunArgs {
     /// Neither read nor write the store of finished trials
     #[arg(long)]
     pub(super) no_cache: bool,
+    #[command(flatten)]
+    pub(super) lock: AgainstLockArgs,
+    /// Execute every trial twice, without the store; a difference ends with 3
+    #[arg(long)]
+    pub(super) twice: bool,
     /// How the answer is written
     #[arg(long, value_enum, default_value = "human")]
     pub(super) format: Format,
+}
+
+/// Whether and how the lock is held against a run.
+#[derive(Debug, Args)]
+pub(super) struct AgainstLockArgs {
+    /// Compare with the lock beside the manifest; drift ends with 1
+    #[arg(long)]
+    pub(super) locked: bool,
+    /// Only run trial 0 of every condition anew and compare it with the lock; seal nothing
+    #[arg(long, requires = "locked")]
+    pub(super) probe: bool,
 }
 
 #[derive(Debug, Args)]
@@ -141,6 +161,47 @@ pub(super) struct VerifyArgs {
     /// How the answer is written
     #[arg(long, value_enum, default_value = "human")]
     pub(super) format: Format,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct DiffArgs {
+    /// The old one: a bundle (zip or folder) or a .lock file
+    pub(super) a: PathBuf,
+    /// The new one
+    pub(super) b: PathBuf,
+    /// By how much a metric (or, without METRIC, any number) may differ (repeatable): 0.5, 1%, distance-m=0.5
+    #[arg(long, value_name = "[METRIC=]NUMBER[%]")]
+    pub(super) tolerance: Vec<String>,
+    /// How the answer is written
+    #[arg(long, value_enum, default_value = "human")]
+    pub(super) format: DiffFormat,
+    /// Write the answer to this file
+    #[arg(short, long, value_name = "FILE")]
+    pub(super) output: Option<PathBuf>,
+}
+
+/// How differences are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum DiffFormat {
+    /// For people
+    Human,
+    /// One compact line of JSON
+    Json,
+    /// One self-contained page
+    Html,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct LockArgs {
+    /// Manifests to lock, one after another
+    #[arg(required = true)]
+    pub(super) manifests: Vec<PathBuf>,
+    /// Threads [default: all processors]
+    #[arg(short, long, value_name = "N")]
+    pub(super) jobs: Option<usize>,
+    /// Neither read nor write the store of finished trials
+    #[arg(long)]
+    pub(super) no_cache: bool,
 }
 
 #[derive(Debug, Args)]

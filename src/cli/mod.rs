@@ -75,6 +75,8 @@ fn dispatch(
         Command::Check(args) => commands::check::run(&args, terminal),
         Command::Plan(args) => commands::plan::run(&args, environment, terminal),
         Command::Verify(args) => commands::verify::run(&args, terminal),
+        Command::Diff(args) => commands::diff::run(&args, terminal),
+        Command::Lock(args) => commands::lock::run(&args, environment, terminal),
         Command::Report(args) => commands::report::run(&args, terminal),
         Command::Export(args) => commands::export::run(&args, terminal),
         Command::Replay(args) => commands::replay::run(&args, terminal),

@@ -5,6 +5,7 @@
 
 mod agreement;
 mod content;
+mod difference;
 mod gather;
 mod inline_svg;
 mod pack;
@@ -21,6 +22,7 @@ pub use content::{
     Assumption, Citation, ClaimRow, Command, Figure, Headline, InputRow, Measured, OutcomeCount,
     ReportCell, ReportContent, ReportRow, ReportTable,
 };
+pub use difference::difference_page;
 pub use gather::content_of;
 pub use page::page;
 pub use replay::replay_page;

@@ -6,11 +6,13 @@ mod event;
 mod executor;
 mod scheduler;
 mod trial_store;
+mod twice;
 
 pub use event::{Observer, RunEvent, Silent};
 pub use executor::{Executor, Mock};
 pub use scheduler::{RunError, Scheduler};
 pub use trial_store::{StoreError, TrialStore};
+pub use twice::{Nondeterminism, Twice};
 
 #[cfg(test)]
 mod tests;

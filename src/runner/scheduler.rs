@@ -1,6 +1,6 @@
 //! Trials on all cores. The only file that names the thread pool.
 
-use super::{Executor, Observer, RunEvent, StoreError, TrialStore};
+use super::{Executor, Nondeterminism, Observer, RunEvent, StoreError, TrialStore};
 use crate::studies::{Outcome, TrialRecord, TrialSpec};
 use rayon::prelude::*;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -20,6 +20,21 @@ pub enum RunError {
     /// The store refused.
     #[error(transparent)]
     Store(#[from] StoreError),
+    /// Trials executed twice gave two records.
+    #[error(
+        "trial {}/{} (key {}): expected the same bytes twice, found sha256:{} and sha256:{} {}; {count} of {executed} \
+         trials differ: the engine is not deterministic, so nothing is stored or sealed; please report it, with the \
+         manifest and its inputs",
+        first.condition, first.trial, first.key, first.first, first.second, first.divergence
+    )]
+    Nondeterministic {
+        /// The first of them.
+        first: Box<Nondeterminism>,
+        /// How many there are.
+        count: usize,
+        /// Of how many.
+        executed: usize,
+    },
 }
 
 /// A pool of its own, so that neither the environment nor other users of the thread pool matter.
@@ -76,7 +91,7 @@ impl Scheduler {
             let finished =
                 cached.into_par_iter().enumerate().with_max_len(1).map(|(index, cached)| {
                     let is_cached = cached.is_some();
-                    let record = cached.unwrap_or_else(|| execute(executor, &plan[index]));
+                    let record = cached.unwrap_or_else(|| attempt(executor, &plan[index]));
                     if let (Some(store), false, true) =
                         (store, is_cached, record.outcome != Outcome::Panicked)
                     {
@@ -103,7 +118,8 @@ fn recall(store: &dyn TrialStore, spec: &TrialSpec) -> Result<Option<TrialRecord
     Ok(Some(record))
 }
 
-fn execute(executor: &dyn Executor, spec: &TrialSpec) -> TrialRecord {
+/// The record of `spec`, also where the executor panics.
+pub(super) fn attempt(executor: &dyn Executor, spec: &TrialSpec) -> TrialRecord {
     catch_unwind(AssertUnwindSafe(|| executor.execute(spec))).unwrap_or_else(|payload| {
         let cause = payload
             .downcast_ref::<String>()

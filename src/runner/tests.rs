@@ -155,3 +155,69 @@ fn a_full_disk_ends_the_run_and_keeps_what_was_stored() {
     );
     assert_eq!(store.records.lock().unwrap().len(), 3);
 }
+
+/// Trials that give the same bytes at first sight; those of `numbers` are spoilt by `spoil` every second time.
+fn flaky(
+    numbers: &'static [u32],
+    spoil: fn(&mut TrialRecord),
+) -> impl Fn(&TrialSpec) -> TrialRecord + Sync {
+    let seen = Mutex::new(BTreeMap::<u32, usize>::new());
+    move |spec: &TrialSpec| {
+        let mut record = Mock::default().execute(spec);
+        let mut seen = seen.lock().unwrap();
+        let times = seen.entry(spec.trial).or_default();
+        *times += 1;
+        if numbers.contains(&spec.trial) && *times == 2 {
+            drop(seen);
+            spoil(&mut record);
+        }
+        record
+    }
+}
+
+#[test]
+fn twice_finds_what_is_not_deterministic_and_names_the_first_divergent_step() {
+    let plan = plan(6);
+    let executor = flaky(&[4, 2], |record| {
+        record.chain[1] = "0".repeat(16);
+        record.measures.insert("distance-m".to_owned(), Some(1.5));
+    });
+    let twice = Twice::new(&executor);
+    let records = run(3, &plan, &twice);
+    assert_eq!(records, run(1, &plan, &Mock::default()), "the first of the two is kept");
+    let mut spoilt = records[2].clone();
+    spoilt.chain[1] = "0".repeat(16);
+    spoilt.measures.insert("distance-m".to_owned(), Some(1.5));
+    assert_eq!(
+        twice.verdict(6).unwrap_err().to_string(),
+        format!(
+            "trial none/2 (key {}): expected the same bytes twice, found sha256:{} and sha256:{} whose states first differ \
+             between 10 s and 20 s of simulated time; 2 of 6 trials differ: the engine is not deterministic, so nothing \
+             is stored or sealed; please report it, with the manifest and its inputs",
+            plan[2].key,
+            Sha256Digest::of(records[2].to_line()),
+            Sha256Digest::of(spoilt.to_line()),
+        )
+    );
+}
+
+#[test]
+fn twice_finds_a_panic_that_comes_once_and_is_content_with_one_that_comes_twice() {
+    let executor = flaky(&[1], |_| panic!("once in a while"));
+    let twice = Twice::new(&executor);
+    run(2, &plan(3), &twice);
+    let Err(RunError::Nondeterministic { first, count, executed }) = twice.verdict(3) else {
+        panic!("a panic that comes once was missed");
+    };
+    assert_eq!((first.trial, count, executed), (1, 1, 3));
+
+    let failing = Mock { panicking: vec![1] };
+    let twice = Twice::new(&failing);
+    let records = run(2, &plan(3), &twice);
+    assert_eq!(
+        records,
+        run(1, &plan(3), &failing),
+        "a panicked trial stays a record with its cause"
+    );
+    assert_eq!(twice.verdict(3), Ok(()));
+}

@@ -14,7 +14,7 @@ mod state_chain;
 
 pub use factor_value::FactorValue;
 pub use findings::Findings;
-pub use record::{Outcome, SeriesPoint, TrialRecord};
+pub use record::{CHAIN_STEP_S, Outcome, SeriesPoint, TrialRecord, first_divergence};
 pub use requests::{FigureLayout, FigureRequest, TableLayout, TableRequest};
 
 use crate::digest::TrialKey;

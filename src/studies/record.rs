@@ -122,12 +122,18 @@ impl TrialRecord {
     /// The first instant (s of simulated time) after which this record and `other` differ, by their hash
     /// chains; `None` where the chains agree as far as both go.
     pub fn first_divergence(&self, other: &Self) -> Option<f64> {
-        let common = self.chain.len().min(other.chain.len());
-        let first =
-            (0..common)
-                .find(|&i| self.chain[i] != other.chain[i])
-                .or((self.chain.len() != other.chain.len()).then_some(common))?;
-        #[expect(clippy::cast_precision_loss, reason = "chains are short")]
-        Some(first as f64 * 10.0)
+        first_divergence(&self.chain, &other.chain)
     }
+}
+
+/// Simulated time between two hashes of a chain (s).
+pub const CHAIN_STEP_S: f64 = 10.0;
+
+/// The first instant (s of simulated time) after which the trials of two hash chains differ, or one goes on alone;
+/// `None` where the chains are the same.
+pub fn first_divergence(a: &[String], b: &[String]) -> Option<f64> {
+    let common = a.len().min(b.len());
+    let first = (0..common).find(|&i| a[i] != b[i]).or((a.len() != b.len()).then_some(common))?;
+    #[expect(clippy::cast_precision_loss, reason = "chains are short")]
+    Some(first as f64 * CHAIN_STEP_S)
 }

@@ -3,9 +3,14 @@
 pub(super) mod cache;
 pub(super) mod check;
 pub(super) mod completions;
+pub(super) mod diff;
+mod execution;
 pub(super) mod export;
 pub(super) mod init;
+pub(super) mod lock;
+mod locked;
 pub(super) mod plan;
+mod probe;
 pub(super) mod replay;
 pub(super) mod report;
 pub(super) mod run;

@@ -1,24 +1,22 @@
 //! `reenact run`: plan, simulate, seal.
 
-use super::{tables, verdicts};
-use crate::bundle::wall_time::{self, WallTimes};
+use super::execution::{Executed, Execution, Times};
+use super::locked::{self, Held};
+use super::{probe, tables, verdicts};
+use crate::bundle::wall_time;
 use crate::bundle::{Form, Sealed, assemble, seal};
 use crate::claims::Verdict;
 use crate::cli::args::{Format, RunArgs};
-use crate::cli::calibrate::Calibrator;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::load;
-use crate::cli::progress::Progress;
 use crate::cli::terminal::{Terminal, counted};
+use crate::compare::Lock;
 use crate::plan::Plan;
-use crate::provenance::{Environment, RunClock, TrialWatch, processors};
-use crate::runner::{Observer, RunError, RunEvent, Scheduler, TrialStore};
-use crate::store::{self, DirectoryStore};
-use crate::studies::{self, Outcome, TrialRecord, TrialSpec};
+use crate::provenance::{Environment, RunClock};
+use crate::store;
+use crate::studies::{Outcome, TrialRecord};
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
 
 /// Runs every manifest in turn.
 pub(in crate::cli) fn run(
@@ -29,10 +27,18 @@ pub(in crate::cli) fn run(
     if args.jobs == Some(0) {
         return Err(Failure::not_understood("`--jobs` must be at least 1, found 0"));
     }
+    // A missing lock is told before anything is simulated.
+    let locks = locked::locks(args, terminal)?;
     let mut exit = Exit::Yes;
-    for manifest in &args.manifests {
-        if run_one(manifest, args, environment, terminal)? == Exit::Failed {
-            exit = Exit::Failed;
+    for (manifest, lock) in args.manifests.iter().zip(locks) {
+        let one = match lock {
+            Some(lock) if args.lock.probe => {
+                probe::run(manifest, &lock, args, environment, terminal)?
+            }
+            lock => run_one(manifest, lock.as_ref(), args, environment, terminal)?,
+        };
+        if one.code() > exit.code() {
+            exit = one;
         }
     }
     Ok(exit)
@@ -40,23 +46,18 @@ pub(in crate::cli) fn run(
 
 fn run_one(
     manifest: &Path,
+    lock: Option<&Lock>,
     args: &RunArgs,
     environment: &Environment,
     terminal: Terminal,
 ) -> Result<Exit, Failure> {
     let clock = RunClock::start();
-    let scheduler =
-        Scheduler::new(args.jobs.unwrap_or_else(processors)).map_err(Failure::failed)?;
-    let store = if args.no_cache {
-        None
-    } else {
-        Some(DirectoryStore::new(environment.store().map_err(Failure::not_understood)?))
-    };
-    let calibrator = Calibrator::Run { scheduler: &scheduler, store: store.as_ref() };
-    let loaded = load::manifest(manifest, &args.select.set, calibrator, terminal)?;
+    let execution = Execution::new(args.jobs, args.no_cache, environment)?;
+    let loaded =
+        load::manifest(manifest, &args.select.set, execution.calibrator(), terminal)?;
     let (plan, selection) = load::plan(loaded.experiment, &args.select)?;
-    let Executed { records, cached, times } =
-        execute(&plan, &scheduler, store.as_ref(), terminal)?;
+    let how = if args.twice { Times::Twice } else { Times::Once };
+    let Executed { records, cached, times } = execution.execute(&plan, how, terminal)?;
     let content = assemble::assemble(&plan, loaded.source.text.as_bytes(), &selection, &records)
         .map_err(Failure::failed)?;
     let times = match environment.source_date_epoch {
@@ -64,18 +65,23 @@ fn run_one(
         Some(_) => Err("wall times are not measured where SOURCE_DATE_EPOCH is set"),
     };
     let measured = wall_time::measured(&plan, &records, times).map_err(Failure::failed)?;
-    let mut circumstance = clock.circumstance(environment, scheduler.jobs());
+    let mut circumstance = clock.circumstance(environment, execution.jobs());
     circumstance.files = measured.files;
     let sealed = seal(&content, &circumstance).map_err(Failure::failed)?;
     let path = store::publish(&args.out, &sealed.file_name(), &sealed.zip(Form::Bag))
         .map_err(|e| Failure::failed(format!("cannot write to `{}`: {e}", args.out.display())))?;
+    let held = lock
+        .map(|lock| Held::against(lock, manifest, &sealed, locked::extent(args)))
+        .transpose()?;
     let done = Done {
         verdicts: assemble::verdicts(&plan, &records).map_err(Failure::failed)?,
         machine_verdicts: measured.verdicts,
         plan,
         records,
         cached,
+        twice: args.twice,
         sealed,
+        held,
         path,
         wall_seconds: clock.elapsed_seconds(),
     };
@@ -83,52 +89,13 @@ fn run_one(
         Format::Human => done.tell(terminal),
         Format::Json | Format::Junit => terminal.result(&done.to_json()),
     }
-    Ok(if done.failed() > 0 { Exit::Failed } else { Exit::Yes })
-}
-
-/// What the scheduler brought.
-struct Executed {
-    records: Vec<TrialRecord>,
-    /// How many of them the store held.
-    cached: usize,
-    /// Of the others that did not fail.
-    times: WallTimes,
-}
-
-fn execute(
-    plan: &Plan,
-    scheduler: &Scheduler,
-    store: Option<&DirectoryStore>,
-    terminal: Terminal,
-) -> Result<Executed, Failure> {
-    let progress = Progress::new(terminal);
-    let cached = AtomicUsize::new(0);
-    let observer = |event: &RunEvent<'_>| {
-        if let RunEvent::Started { cached: known, .. } = event {
-            cached.store(*known, Ordering::Relaxed);
-        }
-        progress.notice(event);
-    };
-    let times = Mutex::new(WallTimes::new());
-    let executor = |spec: &TrialSpec| {
-        let mut watch = TrialWatch::start();
-        let record = studies::execute_timed(spec, &mut watch);
-        let time = watch.stop();
-        times.lock().unwrap_or_else(PoisonError::into_inner).insert(spec.key, time);
-        record
-    };
-    let records = scheduler.run(
-        &plan.trials,
-        &executor,
-        store.map(|store| store as &dyn TrialStore),
-        &observer,
-    );
-    progress.finish();
-    let records = records.map_err(|e: RunError| Failure::failed(e))?;
-    Ok(Executed {
-        records,
-        cached: cached.into_inner(),
-        times: times.into_inner().unwrap_or_else(PoisonError::into_inner),
+    let drifted = done.held.as_ref().is_some_and(|held| held.told(terminal));
+    Ok(if done.failed() > 0 {
+        Exit::Failed
+    } else if drifted {
+        Exit::No
+    } else {
+        Exit::Yes
     })
 }
 
@@ -140,7 +107,9 @@ struct Done {
     /// On claims about this machine.
     machine_verdicts: Vec<Verdict>,
     cached: usize,
+    twice: bool,
     sealed: Sealed,
+    held: Option<Held>,
     path: PathBuf,
     wall_seconds: f64,
 }
@@ -168,6 +137,12 @@ impl Done {
         }
         text.push_str(&verdicts::in_words(&self.verdicts, &self.machine_verdicts));
         text.push_str(&self.summary());
+        if self.twice {
+            text.push_str("every trial was executed twice and gave the same bytes\n");
+        }
+        if let Some(held) = &self.held {
+            text.push_str(&held.in_words());
+        }
         for record in self.records.iter().filter(|r| r.outcome == Outcome::Panicked) {
             let name = format!("{}/{}", record.condition().slug(), record.trial);
             terminal.error(&format!("trial {name} failed: {}", record.cause));
@@ -226,6 +201,9 @@ impl Done {
         });
         if !self.machine_verdicts.is_empty() {
             line["circumstance_claims"] = by_id(&self.machine_verdicts).into();
+        }
+        if let Some(held) = &self.held {
+            line["drift"] = held.drift();
         }
         line.to_string()
     }

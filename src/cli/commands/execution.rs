@@ -1,0 +1,111 @@
+//! Executing a plan: with the store or without, once or twice.
+
+use crate::bundle::wall_time::WallTimes;
+use crate::cli::calibrate::Calibrator;
+use crate::cli::exit::Failure;
+use crate::cli::progress::Progress;
+use crate::cli::terminal::Terminal;
+use crate::plan::Plan;
+use crate::provenance::{Environment, TrialWatch, processors};
+use crate::runner::{Executor, Observer, RunEvent, Scheduler, TrialStore, Twice};
+use crate::store::DirectoryStore;
+use crate::studies::{self, TrialRecord, TrialSpec};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+/// Threads, and the store of finished trials.
+#[derive(Debug)]
+pub(super) struct Execution {
+    scheduler: Scheduler,
+    store: Option<DirectoryStore>,
+}
+
+/// What a plan's execution brought.
+pub(super) struct Executed {
+    pub(super) records: Vec<TrialRecord>,
+    /// How many of them the store held.
+    pub(super) cached: usize,
+    /// Of the others that did not fail.
+    pub(super) times: WallTimes,
+}
+
+/// How the trials of a plan are executed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Times {
+    /// Once, unless the store has them.
+    Once,
+    /// Once, whatever the store has; nothing is kept.
+    Anew,
+    /// Twice, whatever the store has, to find what is not deterministic; nothing is kept.
+    Twice,
+}
+
+impl Execution {
+    /// `jobs` threads, all processors by default, and the store unless it is not to be used.
+    pub(super) fn new(
+        jobs: Option<usize>,
+        no_cache: bool,
+        environment: &Environment,
+    ) -> Result<Self, Failure> {
+        let scheduler = Scheduler::new(jobs.unwrap_or_else(processors)).map_err(Failure::failed)?;
+        let store = if no_cache {
+            None
+        } else {
+            Some(DirectoryStore::new(environment.store().map_err(Failure::not_understood)?))
+        };
+        Ok(Self { scheduler, store })
+    }
+
+    /// Threads at work.
+    pub(super) fn jobs(&self) -> usize {
+        self.scheduler.jobs()
+    }
+
+    /// Who runs the calibration that a manifest asks for.
+    pub(super) fn calibrator(&self) -> Calibrator<'_> {
+        Calibrator::Run { scheduler: &self.scheduler, store: self.store.as_ref() }
+    }
+
+    /// The record of every trial of `plan`, in its order.
+    pub(super) fn execute(
+        &self,
+        plan: &Plan,
+        times: Times,
+        terminal: Terminal,
+    ) -> Result<Executed, Failure> {
+        let progress = Progress::new(terminal);
+        let cached = AtomicUsize::new(0);
+        let observer = |event: &RunEvent<'_>| {
+            if let RunEvent::Started { cached: known, .. } = event {
+                cached.store(*known, Ordering::Relaxed);
+            }
+            progress.notice(event);
+        };
+        let walls = Mutex::new(WallTimes::new());
+        let timed = |spec: &TrialSpec| {
+            let mut watch = TrialWatch::start();
+            let record = studies::execute_timed(spec, &mut watch);
+            let time = watch.stop();
+            walls.lock().unwrap_or_else(PoisonError::into_inner).insert(spec.key, time);
+            record
+        };
+        let twice = (times == Times::Twice).then(|| Twice::new(&timed));
+        let executor: &dyn Executor = match &twice {
+            Some(twice) => twice,
+            None => &timed,
+        };
+        let store = self.store.as_ref().filter(|_| times == Times::Once);
+        let store = store.map(|store| store as &dyn TrialStore);
+        let records = self.scheduler.run(&plan.trials, executor, store, &observer);
+        progress.finish();
+        let records = records.map_err(Failure::failed)?;
+        if let Some(twice) = twice {
+            twice.verdict(records.len()).map_err(Failure::failed)?;
+        }
+        Ok(Executed {
+            records,
+            cached: cached.into_inner(),
+            times: walls.into_inner().unwrap_or_else(PoisonError::into_inner),
+        })
+    }
+}

@@ -1,0 +1,175 @@
+//! What one side says, by meaning: the half of a bundle, or the part of it that a lock keeps.
+
+use super::Settings;
+use crate::bundle::{Bundle, Fault};
+use crate::digest::{FileDigest, ResultsDigest, Sha256Digest, TrialKey};
+use crate::studies::TrialRecord;
+use serde_json::Value;
+use std::collections::BTreeMap;
+
+/// One side of a comparison.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Account {
+    /// Whether a lock says it, which holds less than a bundle.
+    pub is_lock: bool,
+    /// The study's short name.
+    pub name: String,
+    /// The engine that ran the trials.
+    pub engine: String,
+    /// Whether only part of the study was run.
+    pub partial: bool,
+    /// Digest of the manifest's bytes.
+    pub manifest: FileDigest,
+    /// What came out, as one digest.
+    pub results_digest: ResultsDigest,
+    /// Digest of every input, by the path by which the study names it.
+    pub inputs: BTreeMap<String, FileDigest>,
+    /// What was asked, with nothing left to guess.
+    pub settings: Settings,
+    /// The cells, in plan order.
+    pub conditions: Vec<ConditionAccount>,
+    /// Everything under `results/`, by its path there.
+    pub results: BTreeMap<String, ResultFile>,
+    /// The verdict on each claim, by its id.
+    pub claims: BTreeMap<String, String>,
+}
+
+/// A cell.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ConditionAccount {
+    /// Its file name under `trials/`, without extension.
+    pub slug: String,
+    /// How many trials it has.
+    pub trials: usize,
+    /// Digest of all its records' lines.
+    pub records: Sha256Digest,
+    /// The trials this side can tell about: all of them in a bundle, trial 0 in a lock.
+    pub known: Vec<TrialAccount>,
+}
+
+/// A trial, without its curve.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TrialAccount {
+    /// Its identity.
+    pub key: TrialKey,
+    /// Its number within the condition.
+    pub number: u32,
+    /// Why it ended.
+    pub outcome: String,
+    /// How, in words, where the outcome alone does not say.
+    pub cause: String,
+    /// Its measures with their units in the names, and `sim-seconds`.
+    pub measures: BTreeMap<String, Option<f64>>,
+    /// Its state hashes.
+    pub chain: Vec<String>,
+    /// Digest of its record's line.
+    pub sha256: Sha256Digest,
+}
+
+/// A file under `results/`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ResultFile {
+    /// Digest of its bytes.
+    pub digest: FileDigest,
+    /// Its text, where this side holds it and it is one.
+    pub text: Option<String>,
+}
+
+/// The measure that stands for a record's simulated time (s).
+pub(super) const SIM_SECONDS: &str = "sim-seconds";
+
+impl TrialAccount {
+    /// The account of a record's line.
+    ///
+    /// # Errors
+    /// Where the line is no record, in words.
+    pub fn of_line(line: &str) -> Result<Self, String> {
+        let record = TrialRecord::from_line(line)?;
+        let mut measures = record.measures;
+        measures.insert(SIM_SECONDS.to_owned(), Some(record.sim_seconds));
+        Ok(Self {
+            key: record.key,
+            number: record.trial,
+            outcome: record.outcome.name().to_owned(),
+            cause: record.cause,
+            measures,
+            chain: record.chain,
+            sha256: Sha256Digest::of(line),
+        })
+    }
+}
+
+impl Account {
+    /// The account of a bundle.
+    ///
+    /// # Errors
+    /// Every line that is no record, and `results/claims.json` where it is no list of claims.
+    pub fn of_bundle(bundle: &Bundle) -> Result<Self, Vec<Fault>> {
+        let mut faults = Vec::new();
+        let mut conditions = Vec::new();
+        for entry in bundle.conditions() {
+            let (mut known, mut all) = (Vec::new(), String::new());
+            for (i, line) in bundle.record_lines(&entry.slug).enumerate() {
+                all.push_str(line);
+                all.push('\n');
+                match TrialAccount::of_line(line) {
+                    Ok(trial) => known.push(trial),
+                    Err(problem) => faults.push(Fault::new(
+                        format!("data/trials/{}.jsonl:{}", entry.slug, i + 1),
+                        "a trial record",
+                        problem,
+                    )),
+                }
+            }
+            let (slug, records) = (entry.slug.clone(), Sha256Digest::of(&all));
+            conditions.push(ConditionAccount { slug, trials: known.len(), records, known });
+        }
+        let results = bundle.results().map(|(path, bytes)| {
+            let digest = FileDigest(Sha256Digest::of(bytes));
+            let text = std::str::from_utf8(bytes).ok().map(str::to_owned);
+            (path.to_owned(), ResultFile { digest, text })
+        });
+        let results: BTreeMap<_, _> = results.collect();
+        let claims = verdicts(&results).map_err(|fault| faults.push(fault)).unwrap_or_default();
+        if !faults.is_empty() {
+            return Err(faults);
+        }
+        Ok(Self {
+            is_lock: false,
+            name: bundle.name().to_owned(),
+            engine: bundle.engine().to_owned(),
+            partial: bundle.is_partial(),
+            manifest: FileDigest(Sha256Digest::of(bundle.study_yaml())),
+            results_digest: bundle.results_digest(),
+            inputs: bundle
+                .inputs()
+                .iter()
+                .map(|input| (input.as_written.clone(), input.sha256))
+                .collect(),
+            settings: Settings::of(bundle.resolved()),
+            conditions,
+            results,
+            claims,
+        })
+    }
+
+    /// The cell called `slug`.
+    pub fn condition(&self, slug: &str) -> Option<&ConditionAccount> {
+        self.conditions.iter().find(|condition| condition.slug == slug)
+    }
+}
+
+/// Id and verdict of every claim; none where the bundle holds no claims.
+fn verdicts(results: &BTreeMap<String, ResultFile>) -> Result<BTreeMap<String, String>, Fault> {
+    let fault = |found: String| Fault::new("data/results/claims.json", "a list of verdicts", found);
+    let Some(file) = results.get("claims.json") else { return Ok(BTreeMap::new()) };
+    let text = file.text.as_deref().unwrap_or_default();
+    let list: Vec<Value> = serde_json::from_str(text).map_err(|e| fault(e.to_string()))?;
+    let pair = |claim: &Value| Some((word(claim, "id")?, word(claim, "verdict")?));
+    let pairs = list.iter().map(|claim| pair(claim).ok_or_else(|| fault(claim.to_string())));
+    pairs.collect()
+}
+
+fn word(value: &Value, key: &str) -> Option<String> {
+    value[key].as_str().map(str::to_owned)
+}
