@@ -349,6 +349,10 @@ fn title(path: &str) -> (String, String) {
         _ if path.starts_with(format::RESULTS) => {
             (last.into(), "A result derived from the trial records".into())
         }
+        _ if path.starts_with(format::ENGINE) => (
+            "Source of the engine".into(),
+            "What the program that ran the study was built from, with its lock file; data, not to be run unread".into(),
+        ),
         _ if path.starts_with(format::TRIALS) => {
             (format!("Records of {stem}"), "One line of JSON a trial, in plan order".into())
         }

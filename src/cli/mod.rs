@@ -73,7 +73,7 @@ fn dispatch(
         Command::Run(args) => commands::run::run(&args, environment, terminal),
         Command::Check(args) => commands::check::run(&args, terminal),
         Command::Plan(args) => commands::plan::run(&args, environment, terminal),
-        Command::Verify(args) => commands::verify::run(&args, terminal),
+        Command::Verify(args) => commands::verify::run(&args, environment, terminal),
         Command::Report(args) => commands::report::run(&args, terminal),
         Command::Export(args) => commands::export::run(&args, terminal),
         Command::Replay(args) => commands::replay::run(&args, terminal),

@@ -1,7 +1,7 @@
 //! `reenact run`: plan, simulate, seal.
 
 use super::tables;
-use crate::bundle::{Form, Sealed, assemble, seal};
+use crate::bundle::{Form, Sealed, assemble, capsule, seal_with};
 use crate::cli::args::{Format, RunArgs};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::load;
@@ -48,8 +48,9 @@ fn run_one(
     let (records, cached) = execute(&plan, &scheduler, args, environment, terminal)?;
     let content = assemble::assemble(&plan, loaded.source.text.as_bytes(), &selection, &records)
         .map_err(Failure::failed)?;
-    let sealed = seal(&content, &clock.circumstance(environment, scheduler.jobs()))
-        .map_err(Failure::failed)?;
+    let circumstance = clock.circumstance(environment, scheduler.jobs());
+    let capsule = args.capsule.then(capsule::own);
+    let sealed = seal_with(&content, &circumstance, capsule.as_ref()).map_err(Failure::failed)?;
     let path = store::publish(&args.out, &sealed.file_name(), &sealed.zip(Form::Bag))
         .map_err(|e| Failure::failed(format!("cannot write to `{}`: {e}", args.out.display())))?;
     let done = Done { plan, records, cached, sealed, path, wall_seconds: clock.elapsed_seconds() };
