@@ -35,6 +35,7 @@ const SHELL: &[&str] = &["provenance", "store", "cli"];
 /// One crate, one door: who may name a crate (a file, or a folder with everything below it).
 const DOORS: &[(&str, &[&str])] = &[
     ("annotate_snippets", &["document/diagnostic.rs"]),
+    ("base64ct", &["verify/signature/minisign.rs"]),
     ("clap", &["cli/"]),
     ("clap_complete", &["cli/"]),
     ("clarabel", &["cmdp/solve.rs"]),
@@ -42,6 +43,7 @@ const DOORS: &[(&str, &[&str])] = &[
     ("indicatif", &["cli/"]),
     ("libm", &["math.rs"]),
     ("minijinja", &["report/template.rs"]),
+    ("minisign_verify", &["verify/signature/minisign.rs"]),
     ("png", &["world/map_server/image.rs", "report/show/grid.rs"]),
     ("rand_chacha", &["rng.rs"]),
     ("rapier2d", &["sim/engine.rs"]),
@@ -49,6 +51,7 @@ const DOORS: &[(&str, &[&str])] = &[
     ("roxmltree", &["document/", "robot/", "world/", "report/"]),
     ("serde_yaml", &["document/reader.rs"]),
     ("sha2", &["digest.rs"]),
+    ("ssh_key", &["verify/signature/allowed_signers.rs", "verify/signature/ssh.rs"]),
     ("strsim", &["document/diagnostic.rs"]),
     ("tempfile", &["store.rs"]),
     ("urdf_rs", &["robot/urdf.rs"]),

@@ -1,7 +1,7 @@
 //! The command line as people meet it: whole texts and exit codes.
 
 use assert_cmd::Command;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use tempfile::TempDir;
 
 /// A folder with a starter study in it, and a store of its own.
@@ -256,20 +256,4 @@ fn a_constrained_mdp_is_solved_refused_or_infeasible() {
     let answer = desk.run(&["solve-cmdp", "b.json"]);
     let says = "error: b.json: absorbing[0]: state 7 does not exist; expected an index below 2\n";
     assert_eq!((answer.stderr.as_str(), answer.code), (says, 2));
-}
-
-/// The small bundle in the repository, as a reviewer of years to come would check it.
-#[test]
-fn the_published_quickstart_bundle_still_verifies() {
-    let bundle = Path::new(env!("CARGO_MANIFEST_DIR")).join("artifacts/quickstart-published.zip");
-    let desk = Desk::new();
-    let words =
-        ["verify", bundle.to_str().unwrap(), "--level", "4", "--sample", "2", "--sample-seed", "1"];
-    let answer = desk.run(&words);
-    assert_eq!(
-        answer.code, 0,
-        "{}\nwhere trials were meant to change, publish the quickstart's bundle anew \
-        (SOURCE_DATE_EPOCH=0 reenact run manifests/quickstart.yaml) and say so in CHANGELOG.md",
-        answer.stdout
-    );
 }

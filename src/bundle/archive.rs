@@ -52,23 +52,38 @@ pub struct Archive {
 ///
 /// Fixed dates, permissions and compression, and each file compressed in one piece: equal trees give equal bytes.
 pub fn write(tree: &Tree, root: &str, form: Form) -> Vec<u8> {
-    let options = SimpleFileOptions::default()
-        .compression_method(CompressionMethod::Deflated)
-        .compression_level(Some(6))
-        .last_modified_time(DateTime::default())
-        .unix_permissions(0o644);
     let mut order: Vec<(&String, &Vec<u8>)> = tree.iter().collect();
     order.sort_by_key(|(path, _)| (path.starts_with(format::PAYLOAD), *path != format::BAGIT));
-    let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
-    for (path, bytes) in order {
+    let named = order.into_iter().filter_map(|(path, bytes)| {
         let name = match form {
             Form::Bag => format!("{root}/{path}"),
             Form::Flat => path.clone(),
-            Form::Crate => match path.strip_prefix(format::PAYLOAD) {
-                Some(path) => path.to_owned(),
-                None => continue,
-            },
+            Form::Crate => path.strip_prefix(format::PAYLOAD)?.to_owned(),
         };
+        Some((name, bytes))
+    });
+    let options =
+        options().compression_method(CompressionMethod::Deflated).compression_level(Some(6));
+    pack(named, options)
+}
+
+/// Writes `tree` below the folder `root` without compression, so that the bytes depend on the files alone.
+pub(super) fn store(tree: &Tree, root: &str) -> Vec<u8> {
+    let named = tree.iter().map(|(path, bytes)| (format!("{root}/{path}"), bytes));
+    pack(named, options().compression_method(CompressionMethod::Stored))
+}
+
+/// What makes an archive depend on nothing but its files.
+fn options() -> SimpleFileOptions {
+    SimpleFileOptions::default().last_modified_time(DateTime::default()).unix_permissions(0o644)
+}
+
+fn pack<'a>(
+    files: impl Iterator<Item = (String, &'a Vec<u8>)>,
+    options: SimpleFileOptions,
+) -> Vec<u8> {
+    let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
+    for (name, bytes) in files {
         zip.start_file(name, options).expect("a tree's names are unique and short");
         zip.write_all(bytes).expect("a vector takes every byte");
     }

@@ -357,6 +357,10 @@ fn title(path: &str) -> (String, String) {
             "Wall times".into(),
             "One row a trial: the time it took on the machine that ran it".into(),
         ),
+        _ if path.starts_with(format::ENGINE) => (
+            "Source of the engine".into(),
+            "What the program that ran the study was built from, with its lock file; data, not to be run unread".into(),
+        ),
         _ if path.starts_with(format::TRIALS) => {
             (format!("Records of {stem}"), "One line of JSON a trial, in plan order".into())
         }

@@ -45,6 +45,14 @@ pub const RESULTS: &str = "results/";
 /// What the machine of the run measured, and verdicts on it. Not part of the result half.
 pub const CIRCUMSTANCES: &str = "circumstances/";
 
+/// The engine's own source, where the bundle holds it.
+pub const ENGINE: &str = "engine/";
+
+/// The line that installs the program of `version`.
+pub fn install_line(version: &str) -> String {
+    format!("cargo install reenact --version {version} --locked")
+}
+
 /// Path of a condition's records, relative to [`PAYLOAD`].
 pub fn records_path(slug: &str) -> String {
     format!("{TRIALS}{slug}.jsonl")

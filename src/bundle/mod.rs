@@ -10,6 +10,7 @@
 pub mod archive;
 pub mod assemble;
 pub mod bag;
+pub mod capsule;
 mod content;
 mod crate_actions;
 mod crate_entities;
@@ -30,6 +31,7 @@ mod writer;
 pub(crate) mod sample;
 
 pub use archive::{Archive, Form, Limits};
+pub use capsule::Capsule;
 pub use content::{
     Author, BundleContent, Circumstance, Citation, SealedCondition, SealedInput, seal_inputs,
 };
@@ -37,7 +39,7 @@ pub use fault::Fault;
 pub use moment::Moment;
 pub use reader::{Bundle, OpenError};
 pub use resolved::{ConditionEntry, InputEntry, Resolved};
-pub use writer::{SealError, Sealed, seal};
+pub use writer::{SealError, Sealed, seal, seal_with};
 
 use crate::digest::{ResultsDigest, Sha256Digest};
 use std::collections::BTreeMap;

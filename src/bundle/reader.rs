@@ -211,6 +211,12 @@ impl Bundle {
         self.under(format::CIRCUMSTANCES)
     }
 
+    /// The first file where the engine's own source lies, by its path in the bag. It is data, never to be run.
+    pub fn capsule(&self) -> Option<&str> {
+        let folder = format!("{}{}", format::PAYLOAD, format::ENGINE);
+        self.tree.keys().find(|path| path.starts_with(&folder)).map(String::as_str)
+    }
+
     fn payload(&self, path: &str) -> Option<&[u8]> {
         self.tree.get(&format!("{}{path}", format::PAYLOAD)).map(Vec::as_slice)
     }

@@ -9,8 +9,10 @@ pub(super) fn readme(
     content: &BundleContent,
     circumstance: &Circumstance,
     digest: ResultsDigest,
+    capsule: Option<&str>,
 ) -> String {
     let (version, engine) = (&circumstance.version, &content.engine);
+    let install = format::install_line(version);
     let stem = format!("{}-{}", content.name, digest.short());
     let mut text = format!("# {}\n\n{}\n", content.title, content.description);
     if content.partial {
@@ -37,7 +39,7 @@ bagit.py --validate .
 With Reenact {version} (engine {engine}), which also derives every table from the trial records and runs trials again:
 
 ```
-cargo install reenact --version {version} --locked
+{install}
 reenact verify {stem}.zip                # levels 0 to 3: seconds
 reenact verify {stem}.zip --level 5      # every trial again, bit for bit
 ```
@@ -61,6 +63,23 @@ Checksums show that nothing changed since they were made; who made them, only a 
         text.push_str(
             "| `circumstances/` | wall times on the machine of the run and verdicts on them: not part of the results |\n",
         );
+    }
+    if let Some(capsule) = capsule {
+        text.push_str(&format!(
+            "| `{engine_folder}` | the source of Reenact {version} with its lock file: data, which no check unpacks or runs |
+
+## In ten years
+
+Where `cargo install` no longer finds that version, `{capsule}` holds its source. Unpack it, read it, and build it:
+
+```
+cargo install --path reenact-{version} --locked
+```
+
+The crates that it needs are named in its `Cargo.lock`, each with its digest; they are not in here.
+",
+            engine_folder = format::ENGINE,
+        ));
     }
     text
 }

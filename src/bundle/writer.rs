@@ -1,8 +1,8 @@
 //! Sealing: content and circumstances become a tree of files whose every byte something vouches for.
 
 use super::{
-    BundleContent, Circumstance, Form, Resolved, Tree, archive, bag, crate_metadata, format, names,
-    preview, readme, results_digest,
+    BundleContent, Capsule, Circumstance, Form, Resolved, Tree, archive, bag, crate_metadata,
+    format, names, preview, readme, results_digest,
 };
 use crate::digest::{BundleId, ResultsDigest, Sha256Digest, StudyDigest};
 use thiserror::Error;
@@ -72,6 +72,18 @@ impl Sealed {
 /// # Errors
 /// Where a name is unsafe or taken, or a record is not one line.
 pub fn seal(content: &BundleContent, circumstance: &Circumstance) -> Result<Sealed, SealError> {
+    seal_with(content, circumstance, None)
+}
+
+/// Seals `content` together with the source of the engine that ran it, where one is given.
+///
+/// # Errors
+/// As [`seal`].
+pub fn seal_with(
+    content: &BundleContent,
+    circumstance: &Circumstance,
+    capsule: Option<&Capsule>,
+) -> Result<Sealed, SealError> {
     let mut payload = Payload::default();
     payload.add(format::STUDY, content.study_yaml.clone())?;
     let resolved = Resolved::of(content).to_bytes();
@@ -102,7 +114,12 @@ pub fn seal(content: &BundleContent, circumstance: &Circumstance) -> Result<Seal
     let stem = format!("{}-{}", content.name, results_digest.short());
     check_name(&stem)?;
 
-    payload.add(format::README, readme::readme(content, circumstance, results_digest).into())?;
+    if let Some(capsule) = capsule {
+        payload.add(&capsule.path, capsule.bytes.clone())?;
+    }
+    let source = capsule.map(|capsule| capsule.path.as_str());
+    let readme = readme::readme(content, circumstance, results_digest, source);
+    payload.add(format::README, readme.into())?;
     payload.add(format::LICENSE, readme::license(content).into())?;
     let metadata = crate_metadata::document(
         content,

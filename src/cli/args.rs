@@ -24,7 +24,7 @@ pub(super) enum Command {
     Check(CheckArgs),
     /// List the trials that would run, or explain one
     Plan(PlanArgs),
-    /// Check a bundle: safe, intact, coherent, derived, re-executed
+    /// Check a bundle: safe, intact, coherent, derived, re-executed, replicated
     Verify(VerifyArgs),
     /// Tell what changed between two bundles or locks
     Diff(DiffArgs),
@@ -99,6 +99,9 @@ pub(super) struct RunArgs {
     /// Execute every trial twice, without the store; a difference ends with 3
     #[arg(long)]
     pub(super) twice: bool,
+    /// Seal the source of this program into the bundle as data, for readers in ten years
+    #[arg(long)]
+    pub(super) capsule: bool,
     /// How the answer is written
     #[arg(long, value_enum, default_value = "human")]
     pub(super) format: Format,
@@ -146,15 +149,25 @@ pub(super) struct PlanArgs {
 pub(super) struct VerifyArgs {
     /// The bundle: a zip or a folder
     pub(super) bundle: PathBuf,
-    /// How far to climb: 0 safe, 1 intact, 2 coherent, 3 derived, 4 sampled, 5 re-executed in full
-    #[arg(long, value_name = "0..5", default_value_t = 3)]
+    /// How far to climb: 0 safe, 1 intact, 2 coherent, 3 derived, 4 sampled, 5 re-executed in full, 6 replicated with
+    /// fresh seeds
+    #[arg(long, value_name = "0..6", default_value_t = 3)]
     pub(super) level: u8,
     /// Trials to draw at level 4
     #[arg(long, value_name = "N", default_value_t = 59)]
     pub(super) sample: usize,
-    /// The reviewer's seed for drawing them [default: a fresh one, printed]
+    /// The reviewer's seed for drawing them, and the experiment's at level 6 [default: a fresh one, printed]
     #[arg(long, value_name = "S")]
     pub(super) sample_seed: Option<u64>,
+    /// Keys that may vouch for the bundle: an OpenSSH `allowed_signers` file or a minisign public key
+    #[arg(long, value_name = "FILE")]
+    pub(super) trust: Option<PathBuf>,
+    /// A signature that lies beside the bundle rather than in it
+    #[arg(long, value_name = "FILE", requires = "trust")]
+    pub(super) signature: Option<PathBuf>,
+    /// Where the bundle holds, write a small record of that, ready to be signed and published
+    #[arg(long, value_name = "FILE")]
+    pub(super) attest: Option<PathBuf>,
     /// Threads for re-execution [default: all processors]
     #[arg(short, long, value_name = "N")]
     pub(super) jobs: Option<usize>,
@@ -226,6 +239,9 @@ pub(super) struct ExportArgs {
     /// A folder
     #[arg(long, group = "form")]
     pub(super) dir: bool,
+    /// Put this signature of its `tagmanifest-sha256.txt` into it
+    #[arg(long, value_name = "FILE", conflicts_with = "rocrate")]
+    pub(super) signature: Option<PathBuf>,
     /// Where to write it [default: this folder]
     #[arg(short, long, value_name = "DIR", default_value = ".")]
     pub(super) out: PathBuf,

@@ -74,7 +74,7 @@ fn dispatch(
         Command::Run(args) => commands::run::run(&args, environment, terminal),
         Command::Check(args) => commands::check::run(&args, terminal),
         Command::Plan(args) => commands::plan::run(&args, environment, terminal),
-        Command::Verify(args) => commands::verify::run(&args, terminal),
+        Command::Verify(args) => commands::verify::run(&args, environment, terminal),
         Command::Diff(args) => commands::diff::run(&args, terminal),
         Command::Lock(args) => commands::lock::run(&args, environment, terminal),
         Command::Report(args) => commands::report::run(&args, terminal),

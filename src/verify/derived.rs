@@ -2,8 +2,9 @@
 
 use super::{PlannedTrial, Replanned, difference};
 use crate::bundle::{
-    Bundle, Circumstance, Fault, Form, Moment, Tree, format, in_result_half, seal,
+    Bundle, Circumstance, Fault, Form, Moment, Tree, capsule, format, in_result_half, seal_with,
 };
+use crate::digest::Sha256Digest;
 use crate::studies::TrialRecord;
 
 /// Everything that does not follow from the manifest, the inputs and the records; and what could not be judged.
@@ -22,7 +23,8 @@ pub(super) fn check(bundle: &Bundle, replanned: &dyn Replanned) -> (Vec<Fault>, 
     // The circumstance half is derived as well where the bag tells the circumstances and this version wrote it.
     let told = bundle.circumstance().filter(|c| c.version == format::VERSION);
     let circumstance = told.clone().unwrap_or(Circumstance::reproducible(Moment(0)));
-    let derived = match seal(&content, &circumstance) {
+    let own = bundle.capsule().map(|_| capsule::own());
+    let derived = match seal_with(&content, &circumstance, own.as_ref()) {
         Ok(sealed) => sealed.tree,
         Err(problem) => {
             faults.push(Fault::new(
@@ -34,6 +36,9 @@ pub(super) fn check(bundle: &Bundle, replanned: &dyn Replanned) -> (Vec<Fault>, 
         }
     };
     let mut differing = files(bundle.tree(), &derived, in_result_half);
+    if told.is_some() {
+        differing.extend(source(bundle.tree(), &derived));
+    }
     // Each holds digests or sizes of those before it, and says something new only where those are as they should be.
     for part in [&[format::README, format::LICENSE][..], &[format::METADATA, format::PREVIEW]] {
         if differing.is_empty() && told.is_some() {
@@ -53,7 +58,11 @@ pub(super) fn check(bundle: &Bundle, replanned: &dyn Replanned) -> (Vec<Fault>, 
             format!("circumstances as reenact {} writes them", format::VERSION),
             found,
         )
-        .hint("metadata, preview and README were not derived again; the results were")
+        .hint(if bundle.capsule().is_some() {
+            "metadata, preview and README were not derived again, and the sealed source was not compared; the results were"
+        } else {
+            "metadata, preview and README were not derived again; the results were"
+        })
     });
     let measured = bundle.circumstance_files().next().map(|_| {
         Fault::new(
@@ -125,6 +134,20 @@ fn trials(bundle: &Bundle, planned: &[PlannedTrial]) -> Vec<Fault> {
         }
     }
     faults
+}
+
+/// The engine's source, where the bundle holds it, against that of this very version.
+fn source(found: &Tree, derived: &Tree) -> Vec<Fault> {
+    let folder = format!("{}{}", format::PAYLOAD, format::ENGINE);
+    found
+        .iter()
+        .filter(|(path, bytes)| path.starts_with(&folder) && derived.get(*path) != Some(bytes))
+        .map(|(path, bytes)| {
+            let expected = format!("the source that reenact {} was built from", format::VERSION);
+            Fault::new(path, expected, format!("sha256:{}", Sha256Digest::of(bytes)))
+                .hint("another source, or one of the same version that was changed: build nothing from it")
+        })
+        .collect()
 }
 
 /// Payload files of `found` that differ from those of `derived`, among those whose path within the payload `counts`.

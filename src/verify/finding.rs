@@ -18,14 +18,23 @@ pub enum Level {
     Sampled,
     /// Every trial gives the same bytes again.
     Full,
+    /// The verdicts hold when the whole study is run with fresh seeds.
+    Replicated,
 }
 
 impl Level {
     /// Every level, lowest first.
-    pub const ALL: [Self; 6] =
-        [Self::Safe, Self::Fixity, Self::Coherent, Self::Derived, Self::Sampled, Self::Full];
+    pub const ALL: [Self; 7] = [
+        Self::Safe,
+        Self::Fixity,
+        Self::Coherent,
+        Self::Derived,
+        Self::Sampled,
+        Self::Full,
+        Self::Replicated,
+    ];
 
-    /// The level of that number, 0 to 5.
+    /// The level of that number, 0 to 6.
     pub fn from_number(number: u8) -> Option<Self> {
         Self::ALL.get(usize::from(number)).copied()
     }
@@ -44,6 +53,7 @@ impl Level {
             Self::Derived => "derived",
             Self::Sampled => "sampled",
             Self::Full => "full",
+            Self::Replicated => "replicated",
         }
     }
 }
@@ -64,7 +74,7 @@ impl Serialize for Level {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Severity {
-    /// The bundle is not what it says.
+    /// The bundle is not what it says; at level 6, a verdict that does not hold with fresh seeds.
     Error,
     /// This program cannot judge that far; another version may.
     Obstacle,

@@ -1,8 +1,10 @@
 //! The climb: level by level, collecting everything, and never executing what lower levels found wrong.
 
 use super::reexecution::{self, Sample};
-use super::{Finding, Level, Pipeline, Severity, coherent, derived, fixity};
-use crate::bundle::{Archive, Bundle, Fault, OpenError, format};
+use super::replication::{self, Replication};
+use super::signature::{self, Signed, Vouching};
+use super::{Finding, Level, Pipeline, Severity, coherent, derived, fixity, support};
+use crate::bundle::{Archive, Bundle, Fault, Moment, OpenError, format};
 use crate::digest::{BundleId, ResultsDigest, StudyDigest};
 use serde::Serialize;
 
@@ -13,7 +15,8 @@ pub struct Options {
     pub level: Level,
     /// How many trials level 4 executes.
     pub sample: usize,
-    /// The reviewer's seed for drawing them; the bundle's author must not know it beforehand.
+    /// The reviewer's seed for drawing them, and for level 6 the experiment's; the bundle's author must not know it
+    /// beforehand.
     pub seed: u64,
 }
 
@@ -25,6 +28,8 @@ pub enum Verdict {
     Holds,
     /// The bundle is not what it says: exit code 1.
     Broken,
+    /// The bundle is what it says, and fresh seeds say the opposite of one of its verdicts: exit code 1.
+    NotReplicated,
     /// This program cannot judge that far: exit code 2.
     Unanswered,
 }
@@ -50,15 +55,26 @@ pub struct Report {
     pub results_digest: Option<ResultsDigest>,
     /// What was asked, computed from the files.
     pub study_digest: Option<StudyDigest>,
+    /// Who vouches for it, where that was asked and found good.
+    pub signed: Option<Signed>,
     /// What was executed again, at level 4 or 5.
     pub sample: Option<Sample>,
+    /// What fresh seeds said, at level 6.
+    pub replication: Option<Replication>,
+    /// How long each level took (s), where a clock was given: for CI, and no part of the answer.
+    pub seconds: Vec<(Level, f64)>,
 }
 
 impl Report {
     /// The answer.
     pub fn verdict(&self) -> Verdict {
-        if self.findings.iter().any(|f| f.severity == Severity::Error) {
-            Verdict::Broken
+        let mut errors = self.findings.iter().filter(|f| f.severity == Severity::Error).peekable();
+        if errors.peek().is_some() {
+            if errors.all(|f| f.level == Level::Replicated) {
+                Verdict::NotReplicated
+            } else {
+                Verdict::Broken
+            }
         } else if self.reached == Some(self.asked) {
             Verdict::Holds
         } else {
@@ -88,6 +104,29 @@ impl Report {
     }
 }
 
+/// What a reviewer brings along besides the bundle.
+#[derive(Clone, Copy)]
+pub struct Reviewer<'a> {
+    /// Who must vouch for the bundle.
+    pub vouching: Vouching<'a>,
+    /// Seconds since some instant, to tell how long each level took.
+    pub clock: &'a dyn Fn() -> f64,
+}
+
+impl Reviewer<'_> {
+    /// A reviewer who asks for no signature and has no clock.
+    pub fn anonymous() -> Self {
+        let vouching = Vouching { trust: None, signature: None, now: Moment(0) };
+        Self { vouching, clock: &|| 0.0 }
+    }
+}
+
+impl std::fmt::Debug for Reviewer<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Reviewer").field("vouching", &self.vouching).finish_non_exhaustive()
+    }
+}
+
 /// Climbs as far as asked. `opened` is what `bundle::archive` or `store` made of the file; `pipeline` is what levels 3
 /// and above need.
 pub fn climb(
@@ -95,7 +134,18 @@ pub fn climb(
     options: &Options,
     pipeline: &dyn Pipeline,
 ) -> Report {
-    let mut report = Report {
+    climb_for(&Reviewer::anonymous(), opened, options, pipeline)
+}
+
+/// [`climb`] for a reviewer who wants to know who vouches for the bundle. The signature is checked after level 0 and before
+/// anything else is read; where it is not what the reviewer asked for, the climb ends there.
+pub fn climb_for(
+    reviewer: &Reviewer<'_>,
+    opened: Result<Archive, Vec<Fault>>,
+    options: &Options,
+    pipeline: &dyn Pipeline,
+) -> Report {
+    let report = Report {
         asked: options.level,
         reached: None,
         judged: vec![Level::Safe],
@@ -105,100 +155,169 @@ pub fn climb(
         bundle_id: None,
         results_digest: None,
         study_digest: None,
+        signed: None,
         sample: None,
+        replication: None,
+        seconds: Vec::new(),
     };
-    let archive = match opened {
-        Ok(archive) => archive,
-        Err(faults) => {
-            report.note(Level::Safe, Severity::Error, faults);
-            return report.finish();
-        }
-    };
-    if options.level >= Level::Fixity {
-        report.judged.push(Level::Fixity);
-        report.note(Level::Fixity, Severity::Error, fixity::check(&archive));
-    }
-    if options.level >= Level::Coherent {
-        report.judged.push(Level::Coherent);
-        report.note(Level::Coherent, Severity::Error, coherent::crate_metadata(&archive.tree));
-        report.note(Level::Coherent, Severity::Error, coherent::bag_facts(&archive.tree));
-    }
-    let bundle = match Bundle::open(archive) {
-        Ok(bundle) => bundle,
-        Err(error) => {
-            match error {
-                OpenError::Newer(fault) => {
-                    // What a newer format means by its files is not for this version to say.
-                    report.findings.clear();
-                    report.judged = vec![Level::Safe, Level::Fixity];
-                    report.note(Level::Fixity, Severity::Obstacle, [fault]);
-                }
-                OpenError::Unsafe(faults) | OpenError::Damaged(faults) => {
-                    if options.level >= Level::Coherent {
-                        report.note(Level::Coherent, Severity::Error, faults);
-                    }
-                }
-            }
-            return report.finish();
-        }
-    };
-    report.name = Some(bundle.name().to_owned());
-    report.engine = Some(bundle.engine().to_owned());
-    report.bundle_id = bundle.bundle_id();
-    report.results_digest = Some(bundle.results_digest());
-    report.study_digest = Some(bundle.study_digest());
-    if options.level >= Level::Coherent {
-        report.note(Level::Coherent, Severity::Error, coherent::contents(&bundle));
-    }
-    if options.level >= Level::Derived {
-        report.judged.push(Level::Derived);
-        climb_on(&mut report, &bundle, options, pipeline);
-    }
-    report.finish()
+    let began = (reviewer.clock)();
+    let mut climb = Climb { report, options, pipeline, clock: reviewer.clock, began };
+    climb.lower(opened, &reviewer.vouching);
+    climb.report.finish()
 }
 
-/// Level 3 and above: what needs the engine.
-fn climb_on(report: &mut Report, bundle: &Bundle, options: &Options, pipeline: &dyn Pipeline) {
-    if bundle.engine() != pipeline.engine() {
-        let path = format!("{}{}", format::PAYLOAD, format::RESOLVED);
-        let fault = Fault::new(
-            path,
-            format!("engine {}", pipeline.engine()),
-            format!("engine {}", bundle.engine()),
-        );
-        let hint = "only the engine that ran a study can derive or execute it again; the bundle's README.md has the line \
-                    that installs it";
-        report.note(Level::Derived, Severity::Obstacle, [fault.hint(hint)]);
-        return;
+/// A climb on its way.
+struct Climb<'a> {
+    report: Report,
+    options: &'a Options,
+    pipeline: &'a dyn Pipeline,
+    clock: &'a dyn Fn() -> f64,
+    /// When the level at hand began.
+    began: f64,
+}
+
+impl Climb<'_> {
+    fn wants(&self, level: Level) -> bool {
+        self.options.level >= level
     }
-    let replanned = match pipeline.replan(bundle) {
-        Ok(replanned) => replanned,
-        Err(problem) => {
-            let path = format!("{}{}", format::PAYLOAD, format::STUDY);
-            let fault = Fault::new(path, "a manifest that can be planned again", problem);
-            report.note(Level::Derived, Severity::Error, [fault]);
+
+    /// Notes how long `level` took.
+    fn took(&mut self, level: Level) {
+        let now = (self.clock)();
+        self.report.seconds.push((level, now - self.began));
+        self.began = now;
+    }
+
+    /// Levels 0 to 2, and on where they leave a bundle to read.
+    fn lower(&mut self, opened: Result<Archive, Vec<Fault>>, vouching: &Vouching<'_>) {
+        let archive = match opened {
+            Ok(archive) => archive,
+            Err(faults) => return self.report.note(Level::Safe, Severity::Error, faults),
+        };
+        self.took(Level::Safe);
+        if !self.signature(&archive, vouching) {
             return;
         }
-    };
-    let (faults, notes) = derived::check(bundle, replanned.as_ref());
-    report.note(Level::Derived, Severity::Error, faults);
-    report.note(Level::Derived, Severity::Note, notes);
-    if options.level <= Level::Derived || !report.is_clear() {
-        return;
+        if self.wants(Level::Fixity) {
+            self.report.judged.push(Level::Fixity);
+            self.report.note(Level::Fixity, Severity::Error, fixity::check(&archive));
+            self.took(Level::Fixity);
+        }
+        if self.wants(Level::Coherent) {
+            self.report.judged.push(Level::Coherent);
+            let metadata = coherent::crate_metadata(&archive.tree);
+            self.report.note(Level::Coherent, Severity::Error, metadata);
+            let facts = coherent::bag_facts(&archive.tree);
+            self.report.note(Level::Coherent, Severity::Error, facts);
+        }
+        let bundle = match Bundle::open(archive) {
+            Ok(bundle) => bundle,
+            Err(error) => return self.unreadable(error),
+        };
+        self.report.name = Some(bundle.name().to_owned());
+        self.report.engine = Some(bundle.engine().to_owned());
+        self.report.bundle_id = bundle.bundle_id();
+        self.report.results_digest = Some(bundle.results_digest());
+        self.report.study_digest = Some(bundle.study_digest());
+        if self.wants(Level::Coherent) {
+            let contents = coherent::contents(&bundle);
+            self.report.note(Level::Coherent, Severity::Error, contents);
+            self.took(Level::Coherent);
+        }
+        if self.wants(Level::Derived) {
+            self.report.judged.push(Level::Derived);
+            self.upper(&bundle);
+        }
     }
-    let of = replanned.trials().len();
-    let (level, indices, seed) = if options.level == Level::Full {
-        (Level::Full, (0..of).collect(), None)
-    } else {
-        (Level::Sampled, reexecution::draw(options.seed, options.sample, of), Some(options.seed))
-    };
-    if level == Level::Full {
-        // All trials are a sample, too.
-        report.judged.push(Level::Sampled);
+
+    /// Who vouches; whether to go on.
+    fn signature(&mut self, archive: &Archive, vouching: &Vouching<'_>) -> bool {
+        match signature::check(archive, vouching) {
+            signature::Outcome::Unsigned => true,
+            signature::Outcome::Good(signed) => {
+                self.report.signed = Some(signed);
+                true
+            }
+            signature::Outcome::Unchecked(fault) => {
+                if self.wants(Level::Fixity) {
+                    self.report.note(Level::Fixity, Severity::Note, [fault]);
+                }
+                true
+            }
+            signature::Outcome::Refused(fault) => {
+                self.report.judged.push(Level::Fixity);
+                self.report.note(Level::Fixity, Severity::Error, [fault]);
+                false
+            }
+        }
     }
-    report.judged.push(level);
-    let (sample, faults) = reexecution::check(bundle, replanned.as_ref(), &indices, seed);
-    // A single trial that differs fails the sample as well as the whole.
-    report.note(Level::Sampled, Severity::Error, faults);
-    report.sample = Some(sample);
+
+    fn unreadable(&mut self, error: OpenError) {
+        match error {
+            OpenError::Newer(fault) => {
+                // What a newer format means by its files is not for this version to say.
+                self.report.findings.clear();
+                self.report.judged = vec![Level::Safe, Level::Fixity];
+                self.report.note(Level::Fixity, Severity::Obstacle, [fault]);
+            }
+            OpenError::Unsafe(faults) | OpenError::Damaged(faults) => {
+                if self.wants(Level::Coherent) {
+                    self.report.note(Level::Coherent, Severity::Error, faults);
+                }
+            }
+        }
+    }
+
+    /// Level 3 and above: what needs the engine.
+    fn upper(&mut self, bundle: &Bundle) {
+        let (options, pipeline) = (self.options, self.pipeline);
+        if bundle.engine() != pipeline.engine() {
+            let fault = support::other_engine(bundle, pipeline.engine());
+            self.report.note(Level::Derived, Severity::Obstacle, [fault]);
+            return;
+        }
+        let replanned = match pipeline.replan(bundle) {
+            Ok(replanned) => replanned,
+            Err(problem) => {
+                let path = format!("{}{}", format::PAYLOAD, format::STUDY);
+                let fault = Fault::new(path, "a manifest that can be planned again", problem);
+                self.report.note(Level::Derived, Severity::Error, [fault]);
+                return;
+            }
+        };
+        let (faults, notes) = derived::check(bundle, replanned.as_ref());
+        self.report.note(Level::Derived, Severity::Error, faults);
+        self.report.note(Level::Derived, Severity::Note, notes);
+        self.took(Level::Derived);
+        if !self.wants(Level::Sampled) || !self.report.is_clear() {
+            return;
+        }
+        let of = replanned.trials().len();
+        let (level, indices, seed) = if self.wants(Level::Full) {
+            (Level::Full, (0..of).collect(), None)
+        } else {
+            let drawn = reexecution::draw(options.seed, options.sample, of);
+            (Level::Sampled, drawn, Some(options.seed))
+        };
+        if level == Level::Full {
+            // All trials are a sample, too.
+            self.report.judged.push(Level::Sampled);
+        }
+        self.report.judged.push(level);
+        let (sample, faults) = reexecution::check(bundle, replanned.as_ref(), &indices, seed);
+        // A single trial that differs fails the sample as well as the whole.
+        self.report.note(Level::Sampled, Severity::Error, faults);
+        self.report.sample = Some(sample);
+        self.took(level);
+        if self.wants(Level::Replicated) && self.report.is_clear() {
+            self.report.judged.push(Level::Replicated);
+            let (replication, findings) =
+                replication::check(bundle, replanned.as_ref(), options.seed);
+            for (severity, fault) in findings {
+                self.report.note(Level::Replicated, severity, [fault]);
+            }
+            self.report.replication = replication;
+            self.took(Level::Replicated);
+        }
+    }
 }

@@ -1,8 +1,10 @@
-//! Is this bundle what it says? A ladder from "safe to open" to "every trial again, bit for bit".
+//! Is this bundle what it says? A ladder from "safe to open" to "every trial again, bit for bit" and "fresh seeds agree".
 //!
 //! [`climb`] collects every [`Finding`] of the levels asked for and reports the rung reached. Checksums (level 1) only
 //! show that nothing changed since they were computed; from level 3 on, a forger would have to make the engine agree.
 
+mod attestation;
+mod closeness;
 mod coherent;
 mod derived;
 mod difference;
@@ -12,13 +14,19 @@ mod ladder;
 mod pipeline;
 mod reexecution;
 mod replan;
+mod replication;
 mod report;
+mod signature;
+mod support;
 
 #[cfg(test)]
 mod tests;
 
+pub use closeness::{Apart, Closeness};
 pub use finding::{Finding, Level, Severity};
-pub use ladder::{Options, Report, Verdict, climb};
+pub use ladder::{Options, Report, Reviewer, Verdict, climb, climb_for};
 pub use pipeline::{Pipeline, PlannedTrial, Replanned};
 pub use reexecution::Sample;
 pub use replan::{Reenactment, plan_of};
+pub use replication::{ClaimAgain, Replication, Standing};
+pub use signature::{NAMESPACE, Signed, Trust, Vouching, path_in_bag};

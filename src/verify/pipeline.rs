@@ -1,4 +1,4 @@
-//! What verification asks of the program that ran the study, kept to what levels 3 to 5 need.
+//! What verification asks of the program that ran the study, kept to what levels 3 to 6 need.
 
 use crate::bundle::{Bundle, BundleContent};
 use crate::digest::TrialKey;
@@ -29,6 +29,13 @@ pub trait Replanned {
 
     /// Executes the trials at `indices` of the plan again, never from a store; their record lines in that order.
     fn execute(&self, indices: &[usize]) -> Vec<String>;
+
+    /// Runs the whole study, never from a store, with `seed` in place of the manifest's and everything else as it is, and
+    /// gives what `run` would seal.
+    ///
+    /// # Errors
+    /// Where that does not make a plan or results, in words.
+    fn replicate(&self, seed: u64) -> Result<BundleContent, String>;
 }
 
 /// One trial as the plan has it.

@@ -40,9 +40,16 @@ impl Pipeline for Reenactment {
 /// # Errors
 /// Where they do not make a plan, in words.
 pub fn plan_of(bundle: &Bundle) -> Result<(Plan, Selection), String> {
+    plan_with(bundle, None)
+}
+
+/// The same plan, with `seed` in place of the manifest's where one is given.
+fn plan_with(bundle: &Bundle, seed: Option<u64>) -> Result<(Plan, Selection), String> {
     let study = bundle.resolved();
-    let overrides: Vec<String> = serde_json::from_value(study["overrides"].clone())
+    let mut overrides: Vec<String> = serde_json::from_value(study["overrides"].clone())
         .map_err(|e| format!("overrides: {e}"))?;
+    // As `run --set seed=S` would have it: the last override counts.
+    overrides.extend(seed.map(|seed| format!("seed={seed}")));
     let selection = match study.get("selection") {
         Some(written) => Selection::from_json(written)?,
         None => Selection::default(),
@@ -106,5 +113,14 @@ impl Replanned for Study<'_> {
             .run(&specs, &studies::execute, None, &Silent)
             .map(|records| records.iter().map(TrialRecord::to_line).collect())
             .unwrap_or_default()
+    }
+
+    fn replicate(&self, seed: u64) -> Result<BundleContent, String> {
+        let (plan, selection) = plan_with(self.bundle, Some(seed))?;
+        let records = self
+            .scheduler
+            .run(&plan.trials, &studies::execute, None, &Silent)
+            .map_err(|e| e.to_string())?;
+        assemble::assemble(&plan, self.bundle.study_yaml(), &selection, &records)
     }
 }

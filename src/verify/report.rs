@@ -11,26 +11,29 @@ impl Report {
         let mut text = String::new();
         let mut fact = |name: &str, value: Option<String>| {
             if let Some(value) = value {
-                text.push_str(&format!("{name:<9}{value}\n"));
+                text.push_str(&format!("{name:<9}{}\n", plain(&value)));
             }
         };
         fact("study", self.name.clone());
         fact("engine", self.engine.clone());
         fact("results", self.results_digest.map(|digest| format!("sha256:{digest}")));
         fact("bundle", self.bundle_id.map(|id| format!("sha256:{id}")));
-        for level in Level::ALL.into_iter().filter(|level| *level <= self.asked) {
+        fact("signed", self.signed.as_ref().map(ToString::to_string));
+        let levels = self.levels();
+        let width = levels.iter().map(|level| level.name().len()).max().unwrap_or(0).max(9);
+        for level in levels {
             text.push_str(&format!(
-                "  {} {:<9} {}\n",
+                "  {} {:<width$} {}\n",
                 level.number(),
                 level.name(),
                 self.state(level)
             ));
         }
         for finding in &self.findings {
-            text.push_str(&format!("{finding}\n"));
+            text.push_str(&format!("{}\n", plain(&finding.to_string())));
         }
-        if let Some(sample) = &self.sample {
-            text.push_str(&format!("{}\n", sample.in_words()));
+        for line in self.in_words() {
+            text.push_str(&format!("{line}\n"));
         }
         let reached = self.reached.map_or("no level".to_owned(), |level| format!("level {level}"));
         text.push_str(&format!("reached {reached} of level {}: {}\n", self.asked, self.answer()));
@@ -48,59 +51,100 @@ impl Report {
             "bundle-id": self.bundle_id,
             "results-digest": self.results_digest.map(|digest| format!("sha256:{digest}")),
             "study-digest": self.study_digest,
-            "levels": Level::ALL
+            "signed": self.signed,
+            "levels": self
+                .levels()
                 .into_iter()
-                .filter(|level| *level <= self.asked)
                 .map(|level| json!({"level": level, "name": level.name(), "state": self.state(level)}))
                 .collect::<Vec<_>>(),
             "findings": self.findings,
             "sample": self.sample,
+            "replication": self.replication,
         });
         if let Some(sample) = &self.sample {
             value["sample"]["bound"] = json!(sample.bound());
             value["sample"]["in-words"] = json!(sample.in_words());
         }
+        if let Some(replication) = &self.replication {
+            value["replication"]["in-words"] = json!(replication.in_words());
+        }
         json::canonical(&value)
     }
 
-    /// For CI: JUnit XML, one test case a level.
+    /// For CI: JUnit XML as Jenkins' `junit-10.xsd` has it, one test case a level.
     pub fn to_junit(&self) -> String {
-        let levels: Vec<Level> =
-            Level::ALL.into_iter().filter(|level| *level <= self.asked).collect();
+        let levels = self.levels();
         let of = |level: Level| self.findings.iter().filter(move |finding| finding.level == level);
         let mut cases = String::new();
-        let (mut failures, mut skipped) = (0, 0);
+        let (mut failures, mut skipped, mut total) = (0, 0, 0.0);
         for level in &levels {
-            let broken: Vec<String> = of(*level)
-                .filter(|finding| finding.severity == Severity::Error)
-                .map(Finding::to_string)
-                .collect();
-            let name = escape(&format!("level {level}"));
-            let body = if let Some(first) = broken.first() {
-                failures += 1;
-                format!(
-                    "<failure message=\"{}\">{}</failure>",
-                    printable(first),
-                    printable(&broken.join("\n"))
-                )
-            } else if self.state(*level) == "passed" {
-                String::new()
-            } else {
-                skipped += 1;
-                let why = of(*level).next().map_or("not judged".to_owned(), Finding::to_string);
-                format!("<skipped message=\"{}\"/>", printable(&why))
+            let told = |wanted: fn(Severity) -> bool| -> Vec<String> {
+                of(*level).filter(|f| wanted(f.severity)).map(Finding::to_string).collect()
             };
+            let broken = told(|severity| severity == Severity::Error);
+            let mut body = String::new();
+            if let Some(first) = broken.first() {
+                failures += 1;
+                body.push_str(&format!(
+                    "<failure message=\"{}\" type=\"{}\">{}</failure>",
+                    printable(first),
+                    level.name(),
+                    printable(&broken.join("\n"))
+                ));
+            } else if self.state(*level) != "passed" {
+                skipped += 1;
+                let why = told(|severity| severity == Severity::Obstacle);
+                let why = why.first().map_or("not judged", String::as_str);
+                body.push_str(&format!("<skipped message=\"{}\"/>", printable(why)));
+            }
+            let notes = told(|severity| severity == Severity::Note);
+            if !notes.is_empty() {
+                body.push_str(&format!(
+                    "<system-out>{}</system-out>",
+                    printable(&notes.join("\n"))
+                ));
+            }
+            let seconds =
+                self.seconds.iter().find(|(known, _)| known == level).map_or(0.0, |(_, s)| *s);
+            total += seconds;
             cases.push_str(&format!(
-                "    <testcase classname=\"reenact.verify\" name=\"{name}\">{body}</testcase>\n"
+                "    <testcase name=\"level {level}\" classname=\"reenact.verify\" time=\"{seconds:.3}\">{body}</testcase>\n"
             ));
         }
-        let counts =
-            format!("tests=\"{}\" failures=\"{failures}\" skipped=\"{skipped}\"", levels.len());
+        let counts = format!("tests=\"{}\" failures=\"{failures}\" errors=\"0\"", levels.len());
         let name = printable(self.name.as_deref().unwrap_or("bundle"));
+        let facts = [
+            ("bundle-id", self.bundle_id.map(|id| format!("sha256:{id}"))),
+            ("results-digest", self.results_digest.map(|digest| format!("sha256:{digest}"))),
+            ("engine", self.engine.clone()),
+            ("signed", self.signed.as_ref().map(ToString::to_string)),
+            ("answer", Some(self.answer().to_owned())),
+        ];
+        let mut properties = String::new();
+        for (fact, value) in facts.into_iter().filter_map(|(fact, value)| Some((fact, value?))) {
+            let value = printable(&value);
+            properties.push_str(&format!("      <property name=\"{fact}\" value=\"{value}\"/>\n"));
+        }
+        let words = printable(&self.in_words().join("\n"));
         format!(
-            "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites {counts}>\n  <testsuite name=\"{name}\" {counts} \
-             errors=\"0\">\n{cases}  </testsuite>\n</testsuites>\n"
+            "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"reenact verify\" {counts} \
+             time=\"{total:.3}\">\n  <testsuite name=\"{name}\" {counts} skipped=\"{skipped}\" time=\"{total:.3}\">\n    \
+             <properties>\n{properties}    </properties>\n{cases}    <system-out>{words}</system-out>\n  </testsuite>\n\
+             </testsuites>\n"
         )
+    }
+
+    /// The levels asked for, lowest first.
+    fn levels(&self) -> Vec<Level> {
+        Level::ALL.into_iter().filter(|level| *level <= self.asked).collect()
+    }
+
+    /// What was executed and what it shows, a line each.
+    fn in_words(&self) -> Vec<String> {
+        let sample = self.sample.as_ref().map(super::Sample::in_words);
+        let replication = self.replication.as_ref().map(super::Replication::in_words);
+        let lines = sample.into_iter().chain(replication);
+        lines.flat_map(|text| text.lines().map(plain).collect::<Vec<_>>()).collect()
     }
 
     fn state(&self, level: Level) -> &'static str {
@@ -119,14 +163,21 @@ impl Report {
         match self.verdict() {
             Verdict::Holds => "the bundle is what it says",
             Verdict::Broken => "the bundle is not what it says",
+            Verdict::NotReplicated => {
+                "the bundle is what it says, but not every verdict holds with fresh seeds"
+            }
             Verdict::Unanswered => "this program cannot judge further",
         }
     }
 }
 
-/// `text` as XML can hold it: hostile names may carry control characters.
+/// `text` for a terminal: a hostile bundle's words may carry control characters, which could rewrite what is shown.
+fn plain(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() && c != '\n' { '\u{fffd}' } else { c }).collect()
+}
+
+/// `text` as XML can hold it.
 fn printable(text: &str) -> String {
-    let text: String =
-        text.chars().map(|c| if c.is_control() && c != '\n' { '\u{fffd}' } else { c }).collect();
-    escape(&text)
+    // Two characters that are no control characters have no place in XML either.
+    escape(&plain(text).replace(['\u{fffe}', '\u{ffff}'], "\u{fffd}"))
 }

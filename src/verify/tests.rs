@@ -1,5 +1,8 @@
 //! The tampering suite: every damage is found at the rung that should find it, and named.
 
+mod answers;
+mod replicated;
+
 use super::*;
 use crate::bundle::{Archive, Bundle, BundleContent, Form, Limits, Tree, archive, sample};
 use crate::studies::TrialRecord;
@@ -7,13 +10,17 @@ use crate::studies::TrialRecord;
 /// The sample study's own pipeline: keys follow from the seed in the manifest, records from the keys.
 struct Engine {
     version: &'static str,
+    /// `claims.json` of fresh runs.
+    claims: &'static str,
 }
 
-const ENGINE: Engine = Engine { version: sample::ENGINE };
+const ENGINE: Engine =
+    Engine { version: sample::ENGINE, claims: r#"[{"id":"P1","verdict":"supported"}]"# };
 
 struct Study<'a> {
     bundle: &'a Bundle,
     seed: u64,
+    claims: &'static str,
 }
 
 impl Pipeline for Engine {
@@ -24,7 +31,7 @@ impl Pipeline for Engine {
     fn replan<'a>(&'a self, bundle: &'a Bundle) -> Result<Box<dyn Replanned + 'a>, String> {
         let text = std::str::from_utf8(bundle.study_yaml()).map_err(|e| e.to_string())?;
         let seed = text.lines().find_map(|line| line.strip_prefix("seed: ")?.parse().ok());
-        Ok(Box::new(Study { bundle, seed: seed.ok_or("no seed")? }))
+        Ok(Box::new(Study { bundle, seed: seed.ok_or("no seed")?, claims: self.claims }))
     }
 }
 
@@ -60,6 +67,15 @@ impl Replanned for Study<'_> {
     fn execute(&self, indices: &[usize]) -> Vec<String> {
         let fresh = self.fresh();
         indices.iter().map(|&i| fresh[i].1.to_line()).collect()
+    }
+
+    fn replicate(&self, seed: u64) -> Result<BundleContent, String> {
+        let records = |prior| (0..3).map(|trial| sample::record(seed, prior, trial)).collect();
+        let conditions = ["none", "floor-plan"].map(|prior| (prior, records(prior)));
+        let mut content = sample::content_of(self.bundle.study_yaml(), seed, &conditions);
+        content.results.retain(|(path, _)| path != "claims.json");
+        content.results.push(("claims.json".into(), self.claims.into()));
+        Ok(content)
     }
 }
 
@@ -418,13 +434,8 @@ fn what_cannot_be_judged_is_no_damage() {
 
     let opened = archive::read(sample::zip(), &Limits::default());
     let options = Options { level: Level::Full, sample: 1, seed: 1 };
-    let report = climb(opened, &options, &Engine { version: "test-2" });
+    let report = climb(opened, &options, &Engine { version: "test-2", ..ENGINE });
     assert_eq!((report.verdict(), report.reached), (Verdict::Unanswered, Some(Level::Coherent)));
-    assert_eq!(
-        report.findings[0].to_string(),
-        "obstacle at level 3: data/study.resolved.json: expected engine test-2, found engine test-1 (only the engine that \
-         ran a study can derive or execute it again; the bundle's README.md has the line that installs it)"
-    );
 }
 
 #[test]

@@ -5,14 +5,25 @@ use crate::cli::args::ExportArgs;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::load;
 use crate::cli::terminal::Terminal;
+use crate::verify::path_in_bag;
 
 /// Writes a bundle again.
 pub(in crate::cli) fn run(args: &ExportArgs, terminal: Terminal) -> Result<Exit, Failure> {
     let bundle = load::bundle(&args.bundle)?;
     let stem = format!("{}-{}", bundle.name(), bundle.results_digest().short());
+    let mut tree = bundle.tree().clone();
+    if let Some(signature) = &args.signature {
+        let bytes = load::bytes(signature)?;
+        let path = path_in_bag(&bytes).ok_or_else(|| {
+            let expected =
+                "expected an OpenSSH signature (`ssh-keygen -Y sign`) or one of minisign";
+            Failure::not_understood(format!("`{}`: {expected}", signature.display()))
+        })?;
+        tree.insert(path.to_owned(), bytes);
+    }
     if args.dir {
         let folder = args.out.join(&stem);
-        for (path, bytes) in bundle.tree() {
+        for (path, bytes) in &tree {
             load::write(&folder.join(path), bytes)?;
         }
         terminal.result(&folder.display().to_string());
@@ -24,7 +35,7 @@ pub(in crate::cli) fn run(args: &ExportArgs, terminal: Terminal) -> Result<Exit,
         _ => (Form::Bag, format!("{stem}.zip")),
     };
     let path = args.out.join(name);
-    load::write(&path, &archive::write(bundle.tree(), &stem, form))?;
+    load::write(&path, &archive::write(&tree, &stem, form))?;
     terminal.result(&path.display().to_string());
     Ok(Exit::Yes)
 }

@@ -4,7 +4,7 @@ use super::execution::{Executed, Execution, Times};
 use super::locked::{self, Held};
 use super::{probe, tables, verdicts};
 use crate::bundle::wall_time;
-use crate::bundle::{Form, Sealed, assemble, seal};
+use crate::bundle::{Form, Sealed, assemble, capsule, seal_with};
 use crate::claims::Verdict;
 use crate::cli::args::{Format, RunArgs};
 use crate::cli::exit::{Exit, Failure};
@@ -67,7 +67,8 @@ fn run_one(
     let measured = wall_time::measured(&plan, &records, times).map_err(Failure::failed)?;
     let mut circumstance = clock.circumstance(environment, execution.jobs());
     circumstance.files = measured.files;
-    let sealed = seal(&content, &circumstance).map_err(Failure::failed)?;
+    let capsule = args.capsule.then(capsule::own);
+    let sealed = seal_with(&content, &circumstance, capsule.as_ref()).map_err(Failure::failed)?;
     let path = store::publish(&args.out, &sealed.file_name(), &sealed.zip(Form::Bag))
         .map_err(|e| Failure::failed(format!("cannot write to `{}`: {e}", args.out.display())))?;
     let held = lock

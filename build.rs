@@ -1,0 +1,68 @@
+//! Lists the program's own source, so that `run --capsule` can seal it into a bundle (`src/bundle/capsule.rs`).
+//!
+//! Writes `capsule.rs` to `OUT_DIR`: an array of (path, bytes) that the compiler reads from the files themselves.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Folders taken whole.
+const FOLDERS: [&str; 2] = ["src", "benches"];
+
+/// What else a build needs: `reenact init` holds the last two. A test keeps this list complete.
+const FILES: [&str; 7] = [
+    "Cargo.lock",
+    "LICENSE-APACHE",
+    "LICENSE-MIT",
+    "README.md",
+    "build.rs",
+    "robots/kobuki.urdf",
+    "worlds/basic.yaml",
+];
+
+fn main() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut files: Vec<(String, PathBuf)> =
+        FILES.iter().map(|file| ((*file).to_owned(), root.join(file))).collect();
+    // A package from a registry holds a rewritten manifest beside the one that was written: the same source must give the
+    // same capsule however it was obtained.
+    let as_written = root.join("Cargo.toml.orig");
+    let manifest = if as_written.exists() { as_written } else { root.join("Cargo.toml") };
+    files.push(("Cargo.toml".to_owned(), manifest));
+    for folder in FOLDERS {
+        walk(&root.join(folder), folder, &mut files);
+        println!("cargo::rerun-if-changed={folder}");
+    }
+    for file in FILES.iter().chain(&["Cargo.toml"]) {
+        println!("cargo::rerun-if-changed={file}");
+    }
+    files.sort();
+    let mut text = String::from("&[\n");
+    for (name, path) in &files {
+        let path = path.to_str().expect("the source lies under a path in UTF-8");
+        text.push_str(&format!("    ({name:?}, include_bytes!({path:?}) as &[u8]),\n"));
+    }
+    text.push_str("]\n");
+    #[expect(
+        clippy::disallowed_methods,
+        reason = "cargo tells build scripts where to write by the environment"
+    )]
+    let out = std::env::var_os("OUT_DIR").expect("cargo sets OUT_DIR");
+    fs::write(Path::new(&out).join("capsule.rs"), text).expect("OUT_DIR can be written");
+}
+
+/// Every file below `folder`, called `name` from the root on; hidden files and editors' copies are not source.
+fn walk(folder: &Path, name: &str, files: &mut Vec<(String, PathBuf)>) {
+    for entry in fs::read_dir(folder).expect("the source can be read") {
+        let path = entry.expect("the source can be read").path();
+        let Some(last) = path.file_name().and_then(|last| last.to_str()) else { continue };
+        let name = format!("{name}/{last}");
+        if last.starts_with('.') || last.ends_with('~') {
+            continue;
+        }
+        if path.is_dir() {
+            walk(&path, &name, files);
+        } else {
+            files.push((name, path));
+        }
+    }
+}

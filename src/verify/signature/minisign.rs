@@ -1,0 +1,75 @@
+//! Signatures of minisign, of both its modes (the file itself, or its BLAKE2b hash).
+
+use super::{Refusal, Signed};
+use crate::document::{Diagnostic, Source};
+use base64ct::{Base64, Encoding as _};
+use minisign_verify::{Error, PublicKey, Signature};
+use std::sync::Arc;
+
+/// A trusted public key.
+#[derive(Debug, Clone)]
+pub(super) struct Key {
+    public: PublicKey,
+    id: String,
+    /// The file it was read from: minisign's keys name nobody.
+    file: Arc<str>,
+}
+
+/// Whether `text` is a public key rather than a list of OpenSSH's: the file that `minisign -G` writes, or the key alone.
+pub(super) fn is_public_key(text: &str) -> bool {
+    let line = text.trim();
+    text.starts_with("untrusted comment:") || (line.starts_with("RW") && !line.contains(' '))
+}
+
+impl Key {
+    /// Reads a public key file, or the key alone.
+    pub(super) fn read(source: &Source) -> Result<Self, Vec<Diagnostic>> {
+        let text = &source.text;
+        let mut lines = text.lines().filter(|line| !line.trim().is_empty());
+        let written = lines.next_back().unwrap_or_default();
+        let start = text.find(written).unwrap_or_default();
+        let fault = || {
+            let place = start..start + written.len();
+            vec![
+                Diagnostic::error(source, place, "a minisign key cannot be read")
+                    .label("expected 56 characters beginning with `RW`")
+                    .help("give the public key (minisign.pub), not the secret key and not a signature"),
+            ]
+        };
+        let public = PublicKey::from_base64(written.trim()).map_err(|_| fault())?;
+        let id = id(written.trim()).ok_or_else(fault)?;
+        Ok(Self { public, id, file: source.name.clone() })
+    }
+
+    /// Holds the signature `text` of `message` against this key.
+    pub(super) fn check(&self, text: &str, message: &[u8]) -> Result<Signed, Refusal> {
+        let unreadable = || {
+            let found = "a minisign signature that cannot be read";
+            Refusal::new(found, "it must have four lines; it may be cut short")
+        };
+        let signature = Signature::decode(text).map_err(|_| unreadable())?;
+        match self.public.verify(message, &signature, true) {
+            Ok(()) => {
+                Ok(Signed { by: format!("the owner of `{}`", self.file), key: self.id.clone() })
+            }
+            Err(Error::UnexpectedKeyId) => {
+                let other = text.lines().nth(1).and_then(id).ok_or_else(unreadable)?;
+                Err(Refusal::new(
+                    format!("one by the unknown key {other}"),
+                    "you trust another key; whether the signature fits the bundle cannot be told without its own",
+                ))
+            }
+            Err(_) => Err(Refusal::new(
+                format!("one that does not fit this bundle, by the key {}", self.id),
+                "the bundle was changed after it was signed, or the signature is of another bundle",
+            )),
+        }
+    }
+}
+
+/// A key's id as minisign prints it: bytes 2 to 9 of what is encoded, little-endian, in hex.
+fn id(encoded: &str) -> Option<String> {
+    let bytes = Base64::decode_vec(encoded).ok()?;
+    let id: [u8; 8] = bytes.get(2..10)?.try_into().ok()?;
+    Some(format!("{:016X}", u64::from_le_bytes(id)))
+}

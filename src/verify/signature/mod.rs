@@ -1,0 +1,206 @@
+//! Who vouches for a bundle: detached signatures of `tagmanifest-sha256.txt`, by OpenSSH keys or minisign.
+//!
+//! That file lists the digests of the bag's tag files, and through `manifest-sha256.txt` those of the whole payload, so a
+//! signature of it together with level 1 covers every byte. It is checked before any text of the bundle is read, and only
+//! public keys are ever read here.
+
+mod allowed_signers;
+mod minisign;
+mod ssh;
+
+#[cfg(test)]
+mod tests;
+
+use crate::bundle::{Archive, Fault, Form, Moment, format};
+use crate::document::{Diagnostic, Source};
+use serde::Serialize;
+use std::sync::Arc;
+
+/// The namespace of `ssh-keygen -Y sign -n`, so that a signature made for another purpose vouches for no bundle.
+pub const NAMESPACE: &str = "reenact";
+
+/// The keys whose owners a reviewer trusts.
+#[derive(Debug, Clone)]
+pub struct Trust {
+    name: Arc<str>,
+    keys: Keys,
+}
+
+#[derive(Debug, Clone)]
+enum Keys {
+    Ssh(Vec<allowed_signers::Signer>),
+    Minisign(minisign::Key),
+}
+
+impl Trust {
+    /// Reads an OpenSSH `allowed_signers` file (ssh-keygen(1), ALLOWED SIGNERS) or a minisign public key file.
+    ///
+    /// # Errors
+    /// Every line that is not understood.
+    pub fn read(source: &Source) -> Result<Self, Vec<Diagnostic>> {
+        let keys = if minisign::is_public_key(&source.text) {
+            Keys::Minisign(minisign::Key::read(source)?)
+        } else {
+            Keys::Ssh(allowed_signers::read(source)?)
+        };
+        Ok(Self { name: source.name.clone(), keys })
+    }
+}
+
+/// What a reviewer brings along to see who vouches for a bundle.
+#[derive(Debug, Clone, Copy)]
+pub struct Vouching<'a> {
+    /// Keys that may vouch. Without them a signature is noticed and not checked.
+    pub trust: Option<&'a Trust>,
+    /// A signature beside the bundle, as (name, bytes); it comes before those inside.
+    pub signature: Option<(&'a str, &'a [u8])>,
+    /// When this is: keys may be trusted for a time only.
+    pub now: Moment,
+}
+
+/// A signature that was checked and is good.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Signed {
+    /// The principals that the trusted file names for the key, or the key itself where it names none.
+    pub by: String,
+    /// `SHA256:...` for OpenSSH keys, the key's id for minisign.
+    pub key: String,
+}
+
+impl std::fmt::Display for Signed {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "by {} with the key {}", self.by, self.key)
+    }
+}
+
+/// What was found out about a bundle's signature.
+pub(super) enum Outcome {
+    /// There is none, and none was asked for.
+    Unsigned,
+    /// There is one that nobody asked to check.
+    Unchecked(Fault),
+    /// It is good.
+    Good(Signed),
+    /// It is not what the reviewer asked for.
+    Refused(Fault),
+}
+
+/// The kinds of detached signatures, told by their first bytes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Ssh,
+    Minisign,
+}
+
+impl Kind {
+    fn of(bytes: &[u8]) -> Option<Self> {
+        if bytes.starts_with(b"-----BEGIN SSH SIGNATURE-----") {
+            Some(Self::Ssh)
+        } else if bytes.starts_with(b"untrusted comment:") {
+            Some(Self::Minisign)
+        } else {
+            None
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Ssh => "an OpenSSH signature",
+            Self::Minisign => "a minisign signature",
+        }
+    }
+
+    fn path(self) -> &'static str {
+        match self {
+            Self::Ssh => format::SIGNATURES[0],
+            Self::Minisign => format::SIGNATURES[1],
+        }
+    }
+}
+
+/// The name under which a bag holds the signature `bytes`; `None` where they are of neither kind.
+pub fn path_in_bag(bytes: &[u8]) -> Option<&'static str> {
+    Kind::of(bytes).map(Kind::path)
+}
+
+/// Looks for a signature and checks it where the reviewer says whom to trust.
+pub(super) fn check(archive: &Archive, vouching: &Vouching<'_>) -> Outcome {
+    let inside: Vec<(&str, &[u8])> = format::SIGNATURES
+        .iter()
+        .filter_map(|path| Some((*path, archive.tree.get(*path)?.as_slice())))
+        .collect();
+    let Some(trust) = vouching.trust else {
+        return match vouching.signature.or(inside.first().copied()) {
+            None => Outcome::Unsigned,
+            Some((path, _)) => Outcome::Unchecked(
+                Fault::new(path, "keys to check the signature with", "none")
+                    .hint("name those you trust with `--trust FILE`; unchecked, it says nothing"),
+            ),
+        };
+    };
+    let expected = format!("a signature by a key of `{}`", trust.name);
+    let refuse = |path: &str, found: &str, hint: &str| {
+        Outcome::Refused(Fault::new(path, expected.clone(), found).hint(hint))
+    };
+    if archive.form == Form::Crate {
+        return refuse(
+            format::TAG_MANIFEST,
+            "a crate without its bag",
+            "only the bag holds the list of digests that is signed; ask for the bundle itself",
+        );
+    }
+    let Some(signed) = archive.tree.get(format::TAG_MANIFEST) else {
+        return refuse(format::TAG_MANIFEST, "no list of digests", "nothing here could be signed");
+    };
+    let wanted = match trust.keys {
+        Keys::Ssh(_) => Kind::Ssh,
+        Keys::Minisign(_) => Kind::Minisign,
+    };
+    // Both kinds may lie in one bag: the one that the trusted keys can check is meant.
+    let of_kind = |(_, bytes): &&(&str, &[u8])| Kind::of(bytes) == Some(wanted);
+    let found =
+        vouching.signature.or_else(|| inside.iter().find(of_kind).or(inside.first()).copied());
+    let Some((path, bytes)) = found else {
+        return refuse(
+            format::TAG_MANIFEST,
+            "no signature",
+            "if its author signed it, give the file with `--signature FILE`",
+        );
+    };
+    match Kind::of(bytes) {
+        Some(kind) if kind == wanted => {}
+        Some(kind) => {
+            return refuse(
+                path,
+                kind.name(),
+                "keys of one kind cannot check signatures of the other",
+            );
+        }
+        None => return refuse(path, "neither an OpenSSH nor a minisign signature", ""),
+    }
+    let Ok(text) = std::str::from_utf8(bytes) else {
+        return refuse(path, "bytes that are no text", "");
+    };
+    let answer = match &trust.keys {
+        Keys::Ssh(signers) => ssh::check(signers, text, signed, vouching.now),
+        Keys::Minisign(key) => key.check(text, signed),
+    };
+    match answer {
+        Ok(signed) => Outcome::Good(signed),
+        Err(Refusal { found, hint }) => refuse(path, &found, hint),
+    }
+}
+
+/// Why a signature does not vouch: what was found, and what it may mean.
+#[derive(Debug, PartialEq, Eq)]
+struct Refusal {
+    found: String,
+    hint: &'static str,
+}
+
+impl Refusal {
+    fn new(found: impl Into<String>, hint: &'static str) -> Self {
+        Self { found: found.into(), hint }
+    }
+}

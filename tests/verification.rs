@@ -1,0 +1,288 @@
+//! A reviewer's afternoon, from the outside: who signed it, does it hold with fresh seeds, what can be signed, what remains in
+//! ten years.
+
+use reenact::bundle::{Archive, Form, Limits, archive};
+use reenact::digest::Sha256Digest;
+use reenact::plan::ENGINE_VERSION;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use tempfile::TempDir;
+
+/// A folder to work in.
+struct Desk {
+    folder: TempDir,
+}
+
+/// What a command answered.
+#[derive(Debug)]
+struct Answer {
+    stdout: String,
+    stderr: String,
+    code: i32,
+}
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// The bundle that the repository keeps.
+fn published() -> PathBuf {
+    root().join("artifacts/quickstart-published.zip")
+}
+
+impl Desk {
+    fn new() -> Self {
+        Self { folder: tempfile::tempdir().unwrap() }
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn read(&self, name: &str) -> String {
+        std::fs::read_to_string(self.path(name)).unwrap()
+    }
+
+    fn run(&self, words: &[&str]) -> Answer {
+        let output = Command::new(assert_cmd::cargo::cargo_bin!("reenact"))
+            .args(words)
+            .current_dir(self.folder.path())
+            .env("REENACT_STORE", self.path("store"))
+            .env("SOURCE_DATE_EPOCH", "1600000000")
+            .output()
+            .unwrap();
+        Answer {
+            stdout: String::from_utf8(output.stdout).unwrap(),
+            stderr: String::from_utf8(output.stderr).unwrap(),
+            code: output.status.code().unwrap(),
+        }
+    }
+
+    /// `ssh-keygen` in this folder; `false` where the machine has none.
+    fn ssh_keygen(&self, words: &[&str]) -> bool {
+        let mut command = Command::new("ssh-keygen");
+        command.args(words).current_dir(self.folder.path()).stdin(Stdio::null());
+        match command.output() {
+            Ok(output) => {
+                let told = String::from_utf8_lossy(&output.stderr);
+                assert!(output.status.success(), "ssh-keygen {words:?}: {told}");
+                true
+            }
+            Err(error) => {
+                #[expect(clippy::print_stdout, reason = "a skipped test says so")]
+                {
+                    println!("skipped: no ssh-keygen to sign with on this machine ({error})");
+                }
+                false
+            }
+        }
+    }
+}
+
+/// As docs/verification.md tells authors and readers, with keys made for the occasion.
+#[test]
+fn a_bundle_signed_with_openssh_verifies_by_its_allowed_signers() {
+    let desk = Desk::new();
+    let bundle = published().to_str().unwrap().to_owned();
+    for key in ["author", "stranger"] {
+        if !desk.ssh_keygen(&["-q", "-t", "ed25519", "-N", "", "-C", key, "-f", key]) {
+            return;
+        }
+    }
+    let opened = archive::read(&std::fs::read(published()).unwrap(), &Limits::default()).unwrap();
+    std::fs::write(desk.path("tagmanifest-sha256.txt"), &opened.tree["tagmanifest-sha256.txt"])
+        .unwrap();
+    desk.ssh_keygen(&["-Y", "sign", "-f", "author", "-n", "reenact", "tagmanifest-sha256.txt"]);
+    let trusting = |key: &str, file: &str| {
+        let line = format!("a@example.org namespaces=\"reenact\" {}", desk.read(key));
+        std::fs::write(desk.path(file), line).unwrap();
+    };
+    trusting("author.pub", "signers");
+    trusting("stranger.pub", "strangers");
+
+    let signed =
+        desk.run(&["export", &bundle, "--signature", "tagmanifest-sha256.txt.sig", "-o", "signed"]);
+    assert_eq!((signed.stderr.as_str(), signed.code), ("", 0));
+    let signed = signed.stdout.trim_end();
+    let inside = desk.run(&["verify", "--level", "2", "--trust", "signers", signed]);
+    assert_eq!(inside.code, 0, "{inside:?}");
+    assert!(
+        inside.stdout.contains("\nsigned   by a@example.org with the key SHA256:"),
+        "{inside:?}"
+    );
+    let beside = ["--trust", "signers", "--signature", "tagmanifest-sha256.txt.sig"];
+    let beside = desk.run(&[&["verify", "--level", "2", &bundle], &beside[..]].concat());
+    assert_eq!((beside.code, &beside.stdout), (0, &inside.stdout), "in the bundle or beside it");
+
+    let unknown = desk.run(&["verify", "--trust", "strangers", signed]);
+    assert_eq!(unknown.code, 1);
+    assert!(unknown.stdout.contains("found one by the unknown key SHA256:"), "{unknown:?}");
+    assert!(!unknown.stdout.contains("quickstart"), "no word of the bundle is told: {unknown:?}");
+    let none = desk.run(&["verify", "--trust", "signers", &bundle]);
+    assert_eq!(none.code, 1);
+    assert!(none.stdout.contains("found no signature (if its author signed it"), "{none:?}");
+    let unchecked = desk.run(&["verify", "--level", "2", signed]);
+    assert_eq!(unchecked.code, 0);
+    assert!(unchecked.stdout.contains("name those you trust with `--trust FILE`"), "{unchecked:?}");
+
+    // One digit of one digest.
+    let Archive { form: Form::Bag, mut tree } = opened else { panic!("a bag") };
+    let list = tree.get_mut("tagmanifest-sha256.txt").unwrap();
+    list[0] = if list[0] == b'0' { b'1' } else { b'0' };
+    std::fs::write(desk.path("changed.zip"), archive::write(&tree, "changed", Form::Bag)).unwrap();
+    let words = [
+        "verify",
+        "changed.zip",
+        "--trust",
+        "signers",
+        "--signature",
+        "tagmanifest-sha256.txt.sig",
+    ];
+    let changed = desk.run(&words);
+    assert_eq!(changed.code, 1);
+    assert!(
+        changed.stdout.contains("found one that does not fit this bundle, by the key"),
+        "{changed:?}"
+    );
+}
+
+#[test]
+fn requests_about_signatures_that_make_no_sense_are_refused() {
+    let desk = Desk::new();
+    let bundle = published().to_str().unwrap().to_owned();
+    std::fs::write(desk.path("signers"), "a@example.org ssh-ed25519 AAAA\n").unwrap();
+    let bad = desk.run(&["verify", &bundle, "--trust", "signers"]);
+    assert_eq!((bad.code, bad.stdout.as_str()), (2, ""));
+    assert_eq!(
+        bad.stderr,
+        "error: a trusted key cannot be read\n --> signers:1:15\n  |\n1 | a@example.org ssh-ed25519 AAAA\n  |               \
+         ^^^^^^^^^^^^^^^^ expected a public key such as `ssh-ed25519 AAAA...`\n  |\n  = help: a line is PRINCIPALS [OPTIONS] \
+         KEYTYPE KEY [COMMENT], as in ssh-keygen(1), ALLOWED SIGNERS\n"
+    );
+    let low = desk.run(&["verify", &bundle, "--trust", "signers", "--level", "0"]);
+    assert_eq!(
+        (low.code, low.stderr.as_str()),
+        (
+            2,
+            "error: `--trust` needs `--level 1` or more: a signature vouches for digests, and level 0 compares none\n"
+        )
+    );
+    let no_signature = desk.run(&["export", &bundle, "--signature", "signers"]);
+    assert_eq!(
+        (no_signature.code, no_signature.stderr.as_str()),
+        (
+            2,
+            "error: `signers`: expected an OpenSSH signature (`ssh-keygen -Y sign`) or one of minisign\n"
+        )
+    );
+    let high = desk.run(&["verify", &bundle, "--level", "7"]);
+    let says = "error: `--level` goes from 0 to 6, found 7\n";
+    assert_eq!((high.code, high.stderr.as_str()), (2, says));
+}
+
+/// Two short trials, and a claim that any run bears out.
+const STUDY: &str = "
+reenact: 1
+name: short
+title: A short study
+license: CC-BY-4.0
+study: prior-map
+seed: 7
+trials: 2
+robot: kobuki.urdf
+world: {file: basic.yaml, layers: [walls]}
+start: {x-m: 3, y-m: 2, heading-deg: 0}
+parameters: {mission: {time-limit-s: 20}}
+claims:
+  - id: S1
+    says: half of the rooms is seen before the robot has gone a kilometre
+    paper-table: silent
+    expect: {between: {metric: distance-m-at-50, where: {}, low: 0, high: 1000, minimum-n: 2}}
+";
+
+#[test]
+fn a_study_with_its_engine_sealed_in_replicates_and_is_attested() {
+    let desk = Desk::new();
+    for file in ["robots/kobuki.urdf", "worlds/basic.yaml"] {
+        let name = file.rsplit('/').next().unwrap();
+        std::fs::copy(root().join(file), desk.path(name)).unwrap();
+    }
+    std::fs::write(desk.path("short.yaml"), STUDY).unwrap();
+    let digest = |words: &[&str]| {
+        let run = desk.run(words);
+        assert_eq!((run.stderr.as_str(), run.code), ("", 0));
+        let lines: Vec<String> = run.stdout.lines().rev().take(2).map(str::to_owned).collect();
+        (lines[1].clone(), lines[0].clone())
+    };
+    let (without, _) = digest(&["run", "short.yaml", "--out", "plain"]);
+    let (with, bundle) = digest(&["run", "short.yaml", "--out", "sealed", "--capsule"]);
+    assert_eq!(without, with, "the capsule lies outside of the results");
+
+    let words = [
+        "verify",
+        &bundle,
+        "--level",
+        "6",
+        "--sample-seed",
+        "18446744073709551615",
+        "--attest",
+        "a.json",
+    ];
+    let answer = desk.run(&words);
+    assert_eq!((answer.stderr.as_str(), answer.code), ("wrote a.json\n", 0), "{}", answer.stdout);
+    let says = "run again with the experiment's seed 18446744073709551615: of 1 claims 1 have the same verdict\n  S1: supported (";
+    assert!(answer.stdout.contains(says), "{}", answer.stdout);
+    assert!(
+        answer.stdout.ends_with(
+            "reached level 6 (replicated) of level 6 (replicated): the bundle is what it says\n"
+        ),
+        "{}",
+        answer.stdout
+    );
+    let attested: serde_json::Value = serde_json::from_str(&desk.read("a.json")).unwrap();
+    assert_eq!(
+        (attested["level"].as_u64(), attested["date"].as_str()),
+        (Some(6), Some("2020-09-13T12:26:40+00:00"))
+    );
+    let bytes = std::fs::read(desk.path(&bundle)).unwrap();
+    let tree = archive::read(&bytes, &Limits::default()).unwrap().tree;
+    let id = format!("sha256:{}", Sha256Digest::of(&tree["tagmanifest-sha256.txt"]));
+    assert_eq!(attested["bundle-id"], id);
+    let readme = String::from_utf8(tree["data/README.md"].clone()).unwrap();
+    let install =
+        concat!("\ncargo install reenact --version ", env!("CARGO_PKG_VERSION"), " --locked\n");
+    assert!(
+        readme.contains(install) && readme.contains(&format!("(engine {ENGINE_VERSION})")),
+        "{readme}"
+    );
+
+    std::fs::remove_file(desk.path("a.json")).unwrap();
+    std::fs::write(desk.path("broken.zip"), &bytes[..bytes.len() / 2]).unwrap();
+    let broken = desk.run(&["verify", "broken.zip", "--attest", "a.json"]);
+    let why = "error: wrote no `a.json`: the bundle holds to no level and not to level 3 (derived), as was asked\n";
+    assert_eq!((broken.stderr.as_str(), broken.code), (why, 1));
+    assert!(!desk.path("a.json").exists());
+}
+
+/// The small bundle in the repository, as a reviewer of years to come would check it: wholly, for as long as its engine is
+/// ours; after that as far as any program can, with the way to climb the rest.
+#[test]
+fn the_published_quickstart_bundle_still_verifies() {
+    let desk = Desk::new();
+    let bundle = published().to_str().unwrap().to_owned();
+    let answer = desk.run(&["verify", &bundle, "--level", "5", "--format", "json"]);
+    let report: serde_json::Value = serde_json::from_str(&answer.stdout).unwrap();
+    if report["engine"] == ENGINE_VERSION {
+        assert_eq!(
+            answer.code, 0,
+            "{}\nwhere trials were meant to change, publish the quickstart's bundle anew \
+            (SOURCE_DATE_EPOCH=0 reenact run manifests/quickstart.yaml) and say so in CHANGELOG.md",
+            answer.stdout
+        );
+        assert_eq!(report["reached"], 5);
+    } else {
+        assert_eq!((answer.code, report["reached"].as_u64()), (2, Some(2)), "{}", answer.stdout);
+        let hint = report["findings"][0]["hint"].as_str().unwrap();
+        assert!(hint.contains("`cargo install reenact --version "), "{hint}");
+    }
+}
