@@ -239,6 +239,29 @@ fn show_says_what_was_understood() {
 }
 
 #[test]
+fn a_generated_building_is_drawn_and_written_as_a_world() {
+    let desk = Desk::new();
+    let generated = ["show", "--generate", "office-floor", "--seed", "3"];
+    let answer = desk.run(&[&generated[..], &["-o", "b.yaml"]].concat());
+    assert_eq!((answer.stderr.as_str(), answer.code), ("wrote b.yaml\n", 0));
+    assert!(answer.stdout.starts_with("world: office-floor-3\nsize: "), "{}", answer.stdout);
+    let again = desk.run(&["show", "b.yaml", "-o", "b.svg"]);
+    assert_eq!((again.stdout, again.code), (answer.stdout, 0));
+    let drawn = desk.run(&generated);
+    assert_eq!((drawn.stderr.as_str(), drawn.code), ("wrote office-floor-3.svg\n", 0));
+    let read = |name: &str| std::fs::read_to_string(desk.path(name)).unwrap();
+    assert_eq!(read("office-floor-3.svg"), read("b.svg"));
+    let refused = desk.run(&["show", "b.yaml", "-o", "c.yaml"]);
+    assert_eq!(
+        (refused.stderr.as_str(), refused.code),
+        (
+            "error: only buildings of a family are written as YAML: name an .svg file for drawings\n",
+            2
+        )
+    );
+}
+
+#[test]
 fn a_constrained_mdp_is_solved_refused_or_infeasible() {
     let desk = Desk::new();
     let problem = r#"{"states": ["here", "goal"], "actions": ["walk", "run"], "absorbing": [1], "initial": [[0, 1.0]],

@@ -260,6 +260,34 @@ parameters:
     );
 }
 
+#[test]
+fn generated_buildings_are_named_by_seeds_and_told_apart() {
+    let text = format!(
+        "{HEAD}seed: 1\ntrials: 1\nrobot: kobuki.urdf\nstart: B\nfactors: {{building: [0, 1, 2]}}\n\
+         world: {{generate: {{family: office-floor, seed: {{factor: building}}}}}}\n"
+    );
+    let (experiment, warnings) = resolve_text(&text, &[]).map_err(|f| told(&f)).unwrap();
+    assert_eq!(told(&warnings), "");
+    let inputs: Vec<&str> = experiment.inputs.iter().map(|i| i.as_written.as_str()).collect();
+    assert_eq!(inputs, ["kobuki.urdf"], "a building that is made is no file");
+    let meanings: Vec<String> = experiment.meanings.iter().map(|m| m.world.hex()).collect();
+    let own = |seed: u64| {
+        reenact::world::generate::generate(reenact::world::generate::Family::OfficeFloor, seed)
+            .unwrap()
+            .meaning()
+            .hex()
+    };
+    assert_eq!(meanings, [own(0), own(1), own(2)]);
+    let plan = Plan::of(experiment);
+    let described = &plan.resolved_json()["conditions"][2]["described"]["world"];
+    assert_eq!(described.to_string(), r#"{"generate":{"family":"office-floor","seed":2}}"#);
+
+    // A number and a factor's value are the same seed, so the building is the same.
+    let fixed = text.replace("{factor: building}", "1");
+    let (experiment, _) = resolve_text(&fixed, &[]).map_err(|f| told(&f)).unwrap();
+    assert!(experiment.meanings.iter().all(|m| m.world.hex() == own(1)));
+}
+
 fn resolve_text(text: &str, overrides: &[String]) -> Resolved {
     let file = |path: &str| std::fs::read_to_string(root().join(path)).unwrap();
     let files = InMemory(BTreeMap::from([

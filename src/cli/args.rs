@@ -268,13 +268,28 @@ pub(super) struct ReplayArgs {
 #[derive(Debug, Args)]
 pub(super) struct ShowArgs {
     /// A robot (URDF), world (YAML, SDF) or map (`map_server` YAML)
-    pub(super) file: PathBuf,
-    /// The drawing to write (.svg, or .png for grids) [default: the file's name with .svg, in this folder]
+    #[arg(required_unless_present = "generate", conflicts_with = "generate")]
+    pub(super) file: Option<PathBuf>,
+    /// Instead of a file: a building of this family
+    #[arg(long, value_enum, value_name = "FAMILY")]
+    pub(super) generate: Option<FamilyArg>,
+    /// Which building of the family
+    #[arg(long, default_value_t = 0, requires = "generate")]
+    pub(super) seed: u64,
+    /// The drawing to write (.svg, or .png for grids; .yaml writes a building of a family as a world file)
+    /// [default: the file's name with .svg, in this folder]
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
     /// Cut worlds at this height (m)
     #[arg(long, value_name = "METRES")]
     pub(super) height: Option<f64>,
+}
+
+/// Families of buildings.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum FamilyArg {
+    /// Floors like that of the deadline study
+    OfficeFloor,
 }
 
 #[derive(Debug, Args)]

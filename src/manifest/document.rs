@@ -4,6 +4,7 @@ use super::choice::{Choice, FactorDoc, Ordered};
 use super::parameters::ParametersDoc;
 use crate::studies::StudyKind;
 use crate::studies::{FactorValue, FigureRequest, TableRequest};
+use crate::world::generate::Family;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -112,10 +113,48 @@ pub struct Author {
     pub orcid: Option<String>,
 }
 
-/// A world and the parts of it that stand.
+/// The true world: a file, or a building that is made for the purpose.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum WorldDoc {
+    /// A file.
+    File(WorldFile),
+    /// A building of a family.
+    Generated(GeneratedWorld),
+}
+
+/// A building of a family of buildings.
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
-pub struct WorldDoc {
+pub struct GeneratedWorld {
+    /// Which one.
+    pub generate: GenerateDoc,
+}
+
+/// Which building of which family.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct GenerateDoc {
+    /// The family.
+    pub family: Family,
+    /// The number that names one of them.
+    pub seed: SeedDoc,
+}
+
+/// The number that names one building.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum SeedDoc {
+    /// A whole number from 0.
+    Number(u64),
+    /// The value of a factor, which is a number.
+    Factor(FactorRef),
+}
+
+/// A world in a file and the parts of it that stand.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct WorldFile {
     /// World YAML, or a Gazebo `.world` or `.sdf` file.
     pub file: Choice<String>,
     /// Layers that stand; all where left out.

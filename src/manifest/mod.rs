@@ -26,8 +26,8 @@ pub use claims::check_claims;
 pub use crossing::Factor;
 pub use document::{
     Alpha, Author, BoundingBoxOf, Cite, DerivedFrom, FactorRef, FloorPlanOf, FootprintOf,
-    ManifestDoc, MapPrior, OriginDoc, OwnWorld, PoseDoc, PriorDoc, PriorFrame, PublishedDoc,
-    PublishedFile, StartDoc, UnknownAs, WorldDoc,
+    GenerateDoc, GeneratedWorld, ManifestDoc, MapPrior, OriginDoc, OwnWorld, PoseDoc, PriorDoc,
+    PriorFrame, PublishedDoc, PublishedFile, SeedDoc, StartDoc, UnknownAs, WorldDoc, WorldFile,
 };
 pub use experiment::{Assumption, Experiment, Meanings};
 pub use inputs::{Input, Inputs, WrittenIn};

@@ -1,14 +1,14 @@
-//! The worlds of a manifest's conditions: which file, which layers.
+//! The worlds of a manifest's conditions: which file, which layers; or which building of a family.
 
 use super::crossing::known_or_near;
-use super::document::WorldDoc;
+use super::document::{FactorRef, GenerateDoc, SeedDoc, WorldDoc, WorldFile};
 use super::inputs::normalised;
 use super::readers;
 use super::resolve::{Known, Resolver};
 use crate::digest::MeaningDigest;
 use crate::document::Source;
 use crate::studies::Condition;
-use crate::world::World;
+use crate::world::{World, generate};
 use serde_json::{Value, json};
 use std::sync::Arc;
 
@@ -20,7 +20,7 @@ pub(super) const WALLS: &str = "walls";
 pub(super) struct UsedWorld {
     pub(super) world: Arc<World>,
     pub(super) meaning: MeaningDigest,
-    /// File and layers, as written.
+    /// File and layers as written, or family and seed.
     pub(super) described: Value,
 }
 
@@ -29,6 +29,67 @@ impl Resolver<'_> {
     pub(super) fn world(
         &mut self,
         doc: &WorldDoc,
+        pointer: &str,
+        condition: &Condition,
+    ) -> Option<UsedWorld> {
+        match doc {
+            WorldDoc::File(doc) => self.world_of_file(doc, pointer, condition),
+            WorldDoc::Generated(doc) => {
+                self.generated_world(&doc.generate, &format!("{pointer}/generate"), condition)
+            }
+        }
+    }
+
+    /// A building of a family. No file is sealed for it: the manifest holds what it is made of, and how it is made
+    /// belongs to the engine's version; what it means enters the trials' keys like that of any world.
+    fn generated_world(
+        &mut self,
+        doc: &GenerateDoc,
+        pointer: &str,
+        condition: &Condition,
+    ) -> Option<UsedWorld> {
+        let seed = match &doc.seed {
+            SeedDoc::Number(seed) => *seed,
+            SeedDoc::Factor(FactorRef { factor }) => {
+                let place = format!("{pointer}/seed/factor");
+                self.faults.check_factor(&self.factors, factor, &place, false)?;
+                let value = condition.value(factor)?;
+                let Ok(seed) = value.parse() else {
+                    let message = format!("`{value}`, a value of `{factor}`, is no seed");
+                    let label = "expected a factor whose values are whole numbers from 0";
+                    self.faults.at(&place, message, label);
+                    return None;
+                };
+                seed
+            }
+        };
+        let described = json!({ "generate": { "family": doc.family, "seed": seed } });
+        let key = described.to_string();
+        let known = if let Some(known) = self.worlds.get(&key) {
+            known.clone()
+        } else {
+            let known: Known<World> = match generate::generate(doc.family, seed) {
+                Ok(world) => {
+                    let meaning = world.meaning();
+                    Some((Arc::new(world), meaning))
+                }
+                Err(problem) => {
+                    let help = "choose another seed";
+                    let fault = self.faults.fault(pointer, problem.to_string()).label("made here");
+                    self.faults.push(fault.help(help));
+                    None
+                }
+            };
+            self.worlds.insert(key, known.clone());
+            known
+        };
+        let (world, meaning) = known?;
+        Some(UsedWorld { world, meaning, described })
+    }
+
+    fn world_of_file(
+        &mut self,
+        doc: &WorldFile,
         pointer: &str,
         condition: &Condition,
     ) -> Option<UsedWorld> {

@@ -8,8 +8,8 @@ mod fault;
 
 pub use fault::TagFault;
 
-use super::{RegionKind, Tag};
-use crate::geometry::{Cardinal, Point};
+use super::{Region, RegionKind, Tag};
+use crate::geometry::{Cardinal, Outline, Point};
 use crate::math;
 use std::collections::VecDeque;
 
@@ -185,6 +185,31 @@ impl Topology {
         (0..self.vertices.len())
             .min_by(|a, b| distance(a).total_cmp(&distance(b)))
             .filter(|number| distance(number) <= within)
+    }
+
+    /// Names of the vertices for people, as in the paper's Figure 2: that of the `regions` they lie in, with a letter where
+    /// it holds several (`C1a`, `C1b`, ... from west to east, then from south to north). Outside of all, the tag's id.
+    pub fn names(&self, regions: &[Region]) -> Vec<String> {
+        let region_of = |vertex: &Vertex| {
+            regions.iter().position(|r| Outline::Polygon(r.polygon.clone()).contains(vertex.at))
+        };
+        let homes: Vec<Option<usize>> = self.vertices.iter().map(region_of).collect();
+        let name = |number: usize| {
+            let vertex = &self.vertices[number];
+            let Some(home) = homes[number] else { return vertex.tag.clone() };
+            let here = |n: &usize| homes[*n] == Some(home);
+            let place = |n: usize| (self.vertices[n].at.x, self.vertices[n].at.y);
+            let before =
+                (0..self.vertices.len()).filter(here).filter(|n| place(*n) < place(number));
+            let (before, all) = (before.count(), (0..self.vertices.len()).filter(here).count());
+            let name = &regions[home].name;
+            match u8::try_from(before).ok().filter(|before| *before < 26) {
+                _ if all == 1 => name.clone(),
+                Some(before) => format!("{name}{}", char::from(b'a' + before)),
+                None => format!("{name}-{}", before + 1),
+            }
+        };
+        (0..self.vertices.len()).map(name).collect()
     }
 
     /// How many edges could be taken away before the graph has no loop.

@@ -1,17 +1,30 @@
 //! `reenact show`: draw an input and say what was understood.
 
-use crate::cli::args::ShowArgs;
+use crate::cli::args::{FamilyArg, ShowArgs};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::load;
 use crate::cli::terminal::Terminal;
 use crate::report::show;
+use crate::world::generate::{self, Family};
 use std::path::{Path, PathBuf};
+
+/// A generated building as the world file that it would be.
+fn building(family: FamilyArg, seed: u64) -> Result<(PathBuf, Vec<u8>), Failure> {
+    let FamilyArg::OfficeFloor = family;
+    let doc = generate::document(Family::OfficeFloor, seed)
+        .map_err(|problem| Failure::not_understood(problem.to_string()))?;
+    Ok((PathBuf::from(format!("{}.yaml", doc.name)), doc.to_yaml().into_bytes()))
+}
 
 /// Draws one file.
 pub(in crate::cli) fn run(args: &ShowArgs, terminal: Terminal) -> Result<Exit, Failure> {
-    let bytes = load::bytes(&args.file)?;
-    let folder = args.file.parent().unwrap_or(Path::new(""));
-    let name = args.file.display().to_string();
+    let (file, bytes) = match (&args.file, args.generate) {
+        (Some(file), _) => (file.clone(), load::bytes(file)?),
+        (None, Some(family)) => building(family, args.seed)?,
+        (None, None) => return Err(Failure::not_understood("show needs a file or `--generate`")),
+    };
+    let folder = file.parent().unwrap_or(Path::new(""));
+    let name = file.display().to_string();
     let mut fetch = |path: &str| load::bytes(&folder.join(path)).map_err(|f| f.message);
     let height = args.height.unwrap_or(show::CUT_HEIGHT);
     let drawing = show::draw(&name, &bytes, height, &mut fetch).map_err(|faults| {
@@ -20,15 +33,21 @@ pub(in crate::cli) fn run(args: &ShowArgs, terminal: Terminal) -> Result<Exit, F
     })?;
     terminal.diagnostics(&drawing.warnings);
     let output = args.output.clone().unwrap_or_else(|| {
-        let stem = args.file.file_stem().unwrap_or_default();
+        let stem = file.file_stem().unwrap_or_default();
         PathBuf::from(stem).with_extension("svg")
     });
-    let is_png = output.extension().is_some_and(|e| e.eq_ignore_ascii_case("png"));
-    match (is_png, &drawing.png) {
+    let ends_in = |ending: &str| output.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending));
+    match (ends_in("png"), &drawing.png) {
         (true, Some(png)) => load::write(&output, png)?,
         (true, None) => {
             return Err(Failure::not_understood(
                 "only maps are drawn as PNG: name an .svg file for robots and worlds",
+            ));
+        }
+        (false, _) if ends_in("yaml") && args.generate.is_some() => load::write(&output, &bytes)?,
+        (false, _) if ends_in("yaml") => {
+            return Err(Failure::not_understood(
+                "only buildings of a family are written as YAML: name an .svg file for drawings",
             ));
         }
         (false, _) => load::write(&output, drawing.svg.as_bytes())?,

@@ -271,10 +271,28 @@ impl Canvas {
         }
     }
 
+    /// Where a legend of one's own begins, and the height of its line (px).
+    pub(super) fn legend_at(&self) -> (f64, f64) {
+        let (_, height) = self.size();
+        (LEFT + round_step(self.bounds.width() / 4.0) * self.scale + 80.0, height - 23.0)
+    }
+
     /// The finished file.
     pub(super) fn finish(self, title: &str) -> String {
         let (width, height) = self.size();
         svg::document(width, height, title, self.elements)
+    }
+
+    /// The finished file with another sheet below this one.
+    pub(super) fn finish_above(self, below: Self, title: &str) -> String {
+        let ((width, height), (other_width, other_height)) = (self.size(), below.size());
+        let moved = format!("translate(0 {})", svg::number(height));
+        let group = below
+            .elements
+            .into_iter()
+            .fold(Element::new("g").set("transform", moved), Element::child);
+        let elements = self.elements.into_iter().chain([group]);
+        svg::document(width.max(other_width), height + other_height, title, elements)
     }
 }
 

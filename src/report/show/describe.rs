@@ -1,9 +1,12 @@
 //! What was understood, in words: a few lines of `key: value` for a terminal.
 
 use super::canvas::metres;
-use crate::geometry::Outline;
+use super::graph::summary;
+use super::graph_of;
+use crate::geometry::{Outline, Pose};
 use crate::grid::{Occupancy, OccupancyGrid};
 use crate::robot::{DriveKind, Robot};
+use crate::world::topology::Topology;
 use crate::world::{RegionKind, World};
 
 /// What was understood of a robot.
@@ -111,12 +114,23 @@ pub fn describe_world(world: &World, lidar_height: f64) -> String {
     if !world.tags.is_empty() {
         text.push_str(&format!("tags: {}\n", world.tags.len()));
     }
+    let graph = graph_of(world);
+    match &graph {
+        None => {}
+        Some(Ok(graph)) => text.push_str(&format!("graph: {}\n", summary(graph))),
+        Some(Err(faults)) => {
+            let count = faults.len();
+            text.push_str(&format!("graph: none, the tags break the convention {count} times\n"));
+        }
+    }
+    let graph = graph.and_then(Result::ok);
     for (name, pose) in &world.starts {
         text.push_str(&format!(
-            "start {name}: ({}, {}) m, heading {:.1} deg\n",
+            "start {name}: ({}, {}) m, heading {:.1} deg{}\n",
             metres(pose.x),
             metres(pose.y),
-            pose.heading.to_degrees()
+            pose.heading.to_degrees(),
+            graph.as_ref().map_or_else(String::new, |graph| place(world, graph, *pose)),
         ));
     }
     for (name, goal) in &world.goals {
@@ -124,6 +138,19 @@ pub fn describe_world(world: &World, lidar_height: f64) -> String {
     }
     text.push_str(&format!("warnings: {}\nmeaning: {}\n", world.warnings.len(), world.meaning()));
     text
+}
+
+/// `, at C2c, 2 edges from the goal`: where a start is in the graph.
+fn place(world: &World, graph: &Topology, start: Pose) -> String {
+    let Some(number) = graph.vertex_near(start.position(), 0.5) else {
+        return ", at no vertex".to_owned();
+    };
+    let name = &graph.names(&world.regions)[number];
+    match graph.distances_to_goal()[number] {
+        Some(1) => format!(", at {name}, 1 edge from the goal"),
+        Some(edges) => format!(", at {name}, {edges} edges from the goal"),
+        None => format!(", at {name}, no way to a goal"),
+    }
 }
 
 /// What was understood of the map called `name`.

@@ -5,6 +5,7 @@
 
 mod canvas;
 mod describe;
+mod graph;
 mod grid;
 mod robot;
 mod world;
@@ -16,6 +17,7 @@ pub use world::world_svg;
 
 use crate::document::{Diagnostic, Source};
 use crate::robot::urdf;
+use crate::world::topology::{TagFault, TagScheme, Topology};
 use crate::world::{document as world_document, map_server, sdf};
 
 /// Height (m) at which worlds are cut where no robot says otherwise: the lidar of the studies' Kobuki.
@@ -82,13 +84,25 @@ pub fn draw(
 }
 
 fn drawn_world(world: &crate::world::World, height: f64) -> Drawing {
-    let warning = |text: &String| Diagnostic::placeless(text.clone()).warning();
+    let warning = |text: String| Diagnostic::placeless(text).warning();
+    let breaks = graph_of(world).and_then(Result::err).unwrap_or_default();
     Drawing {
         svg: world_svg(world, height),
         png: None,
         text: describe_world(world, height),
-        warnings: world.warnings.iter().map(warning).collect(),
+        warnings: (world.warnings.iter().cloned())
+            .chain(breaks.iter().map(ToString::to_string))
+            .map(warning)
+            .collect(),
     }
+}
+
+/// The graph that the world's tags mean, where any of them is a vertex tag of the usual colours.
+fn graph_of(world: &crate::world::World) -> Option<Result<Topology, Vec<TagFault>>> {
+    let scheme = TagScheme::default();
+    let is_vertex = |color: &String| [&scheme.corridor, &scheme.room].contains(&color);
+    let any = world.tags.iter().any(|tag| is_vertex(&tag.color));
+    any.then(|| Topology::read(&world.tags, &scheme))
 }
 
 /// Whether the first tag of an XML text, after declarations and comments, is `name`.

@@ -5,6 +5,7 @@ use proptest::prelude::*;
 const KOBUKI: &str = include_str!("../../../robots/kobuki.urdf");
 const PIONEER: &str = include_str!("../../../robots/pioneer3at.urdf");
 const BASIC: &str = include_str!("../../../worlds/basic.yaml");
+const ENGINEERING: &str = include_str!("../../../worlds/engineering-building.yaml");
 const MAP: &str = "image: m.pgm\nresolution: 0.1\norigin: [-1.0, 2.0, 0.0]\nnegate: 0\n\
                    occupied_thresh: 0.65\nfree_thresh: 0.196\n";
 const WORLD: &str = "<!-- a box --><sdf version='1.6'><world name='w'><model name='m'><static>1</static>\
@@ -99,6 +100,55 @@ fn every_kind_is_told_by_its_content() {
 }
 
 #[test]
+fn a_world_with_tags_is_drawn_as_building_and_graph() {
+    let world = drawn("worlds/engineering-building.yaml", ENGINEERING);
+    let told: Vec<&str> = world.text.lines().take(9).collect();
+    assert_eq!(
+        told,
+        [
+            "world: engineering-building",
+            "size: 62.4 x 41.8 m, x 0 to 62.4, y 0 to 41.8",
+            "layer walls: 83 solids, 83 of them at 0.1602 m",
+            "regions: 20 rooms, 4 corridors",
+            "tags: 148",
+            "graph: 49 vertices (26 corridor, 23 room), 49 edges (24 through doors), 1 loop",
+            "start A: (10.5, 37.8) m, heading -90.0 deg, at C2c, 2 edges from the goal",
+            "start B: (24.1, 22.9) m, heading 0.0 deg, at C1f, 6 edges from the goal",
+            "start C: (47, 40.3) m, heading -90.0 deg, at C4d, 15 edges from the goal",
+        ]
+    );
+    assert!(world.warnings.is_empty(), "{:?}", world.warnings);
+    let said = texts(&world.svg);
+    for text in [
+        "engineering-building",
+        "engineering-building: the graph",
+        "exit through a door",
+        "R: to the right",
+        "L: to the left",
+        "C1a",
+        "R2b",
+    ] {
+        assert_eq!(said.iter().filter(|t| *t == text).count(), 1, "{text}: {said:?}");
+    }
+    // Once in each of the two drawings.
+    for text in ["A", "B", "C", "R18", "goal"] {
+        assert_eq!(said.iter().filter(|t| *t == text).count(), 2, "{text}: {said:?}");
+    }
+    // Every edge twice, to the right and back to the left; the legend has one more of the dashed.
+    assert_eq!(world.svg.matches("stroke-dasharray=\"4 2.5\"").count(), 49 + 1);
+
+    let broken = ENGINEERING.replacen("color: blue", "color: bleu", 1);
+    let broken = drawn("b.yaml", &broken);
+    assert!(
+        broken.text.contains("\ngraph: none, the tags break the convention "),
+        "{}",
+        broken.text
+    );
+    let told: Vec<String> = broken.warnings.iter().map(|w| w.message.clone()).collect();
+    assert!(told.iter().any(|w| w.contains("belongs to no vertex")), "{told:?}");
+}
+
+#[test]
 fn of_a_mostly_unknown_map_the_known_part_is_drawn() {
     let mut pixels = vec!["205"; 100 * 100];
     pixels[50 * 100 + 20] = "254";
@@ -137,7 +187,7 @@ fn what_cannot_be_drawn_is_said() {
 proptest! {
     #[test]
     fn whatever_can_be_read_can_be_drawn(edits in edits()) {
-        for text in [KOBUKI, BASIC, MAP, WORLD] {
+        for text in [KOBUKI, BASIC, ENGINEERING, MAP, WORLD] {
             let bytes = mutate(text.as_bytes(), &edits);
             let image = |_: &str| Ok(b"P2 2 2 255\n0 254 205 254".to_vec());
             if let Ok(drawing) = draw("x", &bytes, CUT_HEIGHT, &mut { image }) {

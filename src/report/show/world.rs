@@ -1,8 +1,13 @@
-//! A world cut at the lidar's height: layers in grey, regions, starts, goals and tags.
+//! A world cut at the lidar's height: layers in grey, regions, starts, goals and tags. Where its tags mean a graph, as
+//! the deadline study's Figures 2 and 3: the building above, the graph below.
 
 use super::canvas::{ACCENT, Canvas, FAINT, INK};
+use super::graph::{Mark, badge, graph_sheet, legend_entry, star, tag_mark};
+use super::graph_of;
 use crate::figure::svg::Element;
-use crate::geometry::{Bounds, Outline, Point};
+use crate::geometry::{Bounds, Cardinal, Outline, Point};
+use crate::math;
+use crate::world::topology::{TagScheme, Topology};
 use crate::world::{RegionKind, World};
 
 /// Greys of the layers, in the order walls first, then by name.
@@ -10,6 +15,16 @@ const GREYS: [&str; 5] = ["#2b2b2b", "#8c8c8c", "#b8b8b8", "#6a6a6a", "#d2d2d2"]
 
 /// The world at `lidar_height` m, as an SVG file. What the plane misses is drawn as a thin outline.
 pub fn world_svg(world: &World, lidar_height: f64) -> String {
+    let graph = graph_of(world).and_then(Result::ok);
+    let building = building_sheet(world, lidar_height, graph.as_ref());
+    let title = format!("World {}", world.name);
+    match &graph {
+        None => building.finish(&title),
+        Some(graph) => building.finish_above(graph_sheet(world, graph, lidar_height), &title),
+    }
+}
+
+fn building_sheet(world: &World, lidar_height: f64, graph: Option<&Topology>) -> Canvas {
     let mut bounds = world.bounds();
     for point in
         world.starts.values().map(|pose| pose.position()).chain(world.goals.values().copied())
@@ -59,10 +74,43 @@ pub fn world_svg(world: &World, lidar_height: f64) -> String {
         };
         canvas.push(shape.set("fill", fill));
     }
+    let stars = graph.map_or_else(Vec::new, |graph| goal_stars(&canvas, graph));
+    let marks: Vec<Point> = world.tags.iter().map(|t| t.pose.position()).chain(stars).collect();
     for region in &world.regions {
-        let label = canvas.label(middle(&region.polygon), (0.0, 4.0), 12.0, &region.name);
+        let at = free_spot(&canvas, &region.polygon, &marks);
+        let label = canvas.label(at, (0.0, 4.0), 12.0, &region.name);
         canvas.push(label);
     }
+    match graph {
+        Some(graph) => marked(&mut canvas, world, graph),
+        None => unmarked(&mut canvas, world),
+    }
+    canvas.axes();
+    let subtitle =
+        format!("{:.2} x {:.2} m, cut at {lidar_height} m above the floor", size.0, size.1);
+    canvas.heading(&world.name, &subtitle);
+    let mut legend: Vec<(String, &str, &str)> =
+        layers.iter().map(|layer| ((*layer).to_owned(), grey(layer), INK)).collect();
+    if missed {
+        legend.push(("above or below the cut".to_owned(), "#fff", "#a8a8a8"));
+    }
+    for (kind, name, fill) in
+        [(RegionKind::Room, "room", "#f3efe6"), (RegionKind::Corridor, "corridor", "#e6edf3")]
+    {
+        if world.regions.iter().any(|region| region.kind == kind) {
+            legend.push((name.to_owned(), fill, FAINT));
+        }
+    }
+    if graph.is_some() {
+        mark_legend(&mut canvas);
+    } else {
+        canvas.legend(&legend);
+    }
+    canvas
+}
+
+/// Tags, goals and starts of a world without a graph, each with its name.
+fn unmarked(canvas: &mut Canvas, world: &World) {
     for tag in &world.tags {
         let dot = Outline::Circle { center: tag.pose.position(), radius: 3.0 / canvas.scale() };
         let dot = canvas.outline(&dot).set("fill", "#fff").set("stroke", INK);
@@ -92,24 +140,93 @@ pub fn world_svg(world: &World, lidar_height: f64) -> String {
         let label = canvas.label(start.position(), (0.0, 19.0), 12.0, &format!("start {name}"));
         canvas.push(label.set("font-weight", "bold"));
     }
-    canvas.axes();
-    let subtitle =
-        format!("{:.2} x {:.2} m, cut at {lidar_height} m above the floor", size.0, size.1);
-    canvas.heading(&world.name, &subtitle);
-    let mut legend: Vec<(String, &str, &str)> =
-        layers.iter().map(|layer| ((*layer).to_owned(), grey(layer), INK)).collect();
-    if missed {
-        legend.push(("above or below the cut".to_owned(), "#fff", "#a8a8a8"));
+}
+
+/// Tags by their meaning, starts by their letters, the goal as a star.
+fn marked(canvas: &mut Canvas, world: &World, graph: &Topology) {
+    for start in world.starts.values() {
+        let tip = start.transform(Point::new(30.0 / canvas.scale(), 0.0));
+        canvas.arrow(start.position(), tip, ACCENT);
     }
-    for (kind, name, fill) in
-        [(RegionKind::Room, "room", "#f3efe6"), (RegionKind::Corridor, "corridor", "#e6edf3")]
-    {
-        if world.regions.iter().any(|region| region.kind == kind) {
-            legend.push((name.to_owned(), fill, FAINT));
-        }
+    let scheme = TagScheme::default();
+    for tag in &world.tags {
+        let facing = Cardinal::from_heading(tag.pose.heading);
+        let mark = match &tag.color {
+            color if *color == scheme.corridor => Mark::Vertex(GREEN),
+            color if *color == scheme.room => Mark::Vertex(BLUE),
+            color if *color == scheme.corridor_exit => Mark::Exit("#fff", facing),
+            color if *color == scheme.door_exit => Mark::Exit(YELLOW, facing),
+            _ => continue,
+        };
+        let name = format!("tag {} ({})", tag.id, tag.color);
+        let mark = tag_mark(canvas.at(tag.pose.position()), mark);
+        canvas.push(mark.child(Element::new("title").text(&name)));
     }
-    canvas.legend(&legend);
-    canvas.finish(&format!("World {}", world.name))
+    for at in goal_stars(canvas, graph) {
+        canvas.push(star(canvas.at(at), 10.0));
+    }
+    for (name, start) in &world.starts {
+        let (x, y) = canvas.at(start.position());
+        badge(canvas, (x + 10.5, y - 10.5), name);
+    }
+}
+
+/// Where stars mark goals (m): behind the goal's vertex, seen from its door.
+fn goal_stars(canvas: &Canvas, graph: &Topology) -> Vec<Point> {
+    let star = |number: usize| {
+        let vertex = &graph.vertices[number];
+        let behind = vertex.exits.first().map_or(0.0, |exit| exit.direction.opposite().heading());
+        let (sin, cos) = math::sin_cos(behind);
+        vertex.at + Point::new(cos, sin) * (17.0 / canvas.scale())
+    };
+    graph.goals().map(star).collect()
+}
+
+/// Fills of vertex tags of corridors and rooms and of exits through doors, as the study shows them.
+const GREEN: &str = "#2ca25f";
+const BLUE: &str = "#3c6fd6";
+const YELLOW: &str = "#f7d13d";
+
+fn mark_legend(canvas: &mut Canvas) {
+    let (mut x, y) = canvas.legend_at();
+    for (mark, name) in [
+        (Mark::Vertex(GREEN), "corridor tag"),
+        (Mark::Vertex(BLUE), "room tag"),
+        (Mark::Exit("#fff", Cardinal::East), "exit through a corridor"),
+        (Mark::Exit(YELLOW, Cardinal::East), "exit through a door"),
+    ] {
+        let mark = tag_mark((x + 4.0, y), mark);
+        x = legend_entry(canvas, x, mark, 8.0, name);
+    }
+    x = legend_entry(canvas, x, star((x + 8.0, y), 8.0), 16.0, "goal");
+    let disc =
+        Element::new("circle").at("cx", x + 7.0).at("cy", y).at("r", 7.0).set("fill", ACCENT);
+    legend_entry(canvas, x, disc, 14.0, "start");
+}
+
+/// Where a region's name stands: near its middle, away from `marks` and walls.
+fn free_spot(canvas: &Canvas, polygon: &[Point], marks: &[Point]) -> Point {
+    let center = middle(polygon);
+    let outline = Outline::Polygon(polygon.to_vec());
+    let bounds = outline.bounds();
+    let inside = |at: &Point| {
+        let margin = 14.0 / canvas.scale();
+        outline.contains(*at) && outline.sides().all(|side| side.distance(*at) >= margin)
+    };
+    let score = |at: &Point| {
+        let near = marks.iter().map(|mark| mark.distance(*at));
+        let clear = (near.fold(f64::INFINITY, f64::min) * canvas.scale()).min(30.0);
+        clear - 0.1 * canvas.scale() * at.distance(center)
+    };
+    let steps = (0..=12).map(|i| f64::from(i) / 12.0);
+    steps
+        .clone()
+        .flat_map(|i| steps.clone().map(move |j| (i, j)))
+        .map(|(i, j)| bounds.min + Point::new(i * bounds.width(), j * bounds.height()))
+        .chain([center])
+        .filter(|at| *at == center || inside(at))
+        .max_by(|a, b| score(a).total_cmp(&score(b)))
+        .unwrap_or(center)
 }
 
 /// The centroid of a simple polygon; the mean of its corners where it has no area.

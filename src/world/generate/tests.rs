@@ -122,6 +122,13 @@ fn the_engineering_building_is_of_the_family() {
     let topology = check(&world);
     let rooms = topology.vertices.iter().filter(|v| v.kind == RegionKind::Room).count();
     assert_eq!((topology.vertices.len(), rooms, topology.loops()), (49, 23, 1));
+    let names = topology.names(&world.regions);
+    for name in ["C1a", "C1n", "C2a", "C3e", "C4d", "R1", "R2a", "R2b", "R7a", "R7b", "R18", "R20"]
+    {
+        assert!(names.iter().any(|n| n == name), "{name}: {names:?}");
+    }
+    let c2a = names.iter().position(|name| name == "C2a").unwrap();
+    assert_eq!(topology.vertices[c2a].at, Point::new(10.5, 27.9), "from south to north");
     let distances = topology.distances_to_goal();
     let of = |start: &str| {
         let at = world.starts[start].position();
