@@ -75,7 +75,7 @@ struct Drive {
 }
 
 impl Drive {
-    fn new(place: &Place, start: Pose, noise: DriveNoise, rule: PilotRule, seeds: &Seeds) -> Self {
+    fn new(place: &Place, start: Pose, noise: DriveNoise, rule: &PilotRule, seeds: &Seeds) -> Self {
         let robot = pioneer();
         let scene = Scene {
             visible: &place.walls,
@@ -95,7 +95,7 @@ impl Drive {
         };
         let sim = Simulator::new(scene, seeds);
         let scan = sim.blank_scan();
-        let pilot = Pilot::new(rule, &robot.footprint);
+        let pilot = Pilot::new(*rule, &robot.footprint);
         Self { sim, pilot, scan, detections: Vec::new() }
     }
 
@@ -233,7 +233,7 @@ fn arrivals(
             at(from).y + sign(0.2),
             direction - turn + sign(10_f64.to_radians()),
         );
-        let mut drive = Drive::new(&place, start, noise, PilotRule::default(), &seeds);
+        let mut drive = Drive::new(&place, start, noise, &PilotRule::default(), &seeds);
         let end = drive.leg(Leg { direction, opening, limits }, to, 60.0);
         arrived += u64::from(end == End::Arrived);
     }
@@ -281,7 +281,7 @@ fn leg_follows_leg() {
     let seeds = Seeds::new(5, vec![]);
     let place = Shape::draw(&mut seeds.stream("world"), 0.0).place();
     let rule = PilotRule::default();
-    let mut drive = Drive::new(&place, Pose::default(), WHITE, rule, &seeds);
+    let mut drive = Drive::new(&place, Pose::default(), WHITE, &rule, &seeds);
     let tour = [
         ("b", 0.0, Opening::Corridor),
         ("a", PI, Opening::Corridor),
@@ -305,7 +305,7 @@ fn a_closed_door_is_not_run_into_and_at_last_given_up() {
     let seeds = Seeds::new(6, vec![]);
     let shape = Shape { door: 0.0, ..Shape::draw(&mut seeds.stream("world"), 0.0) };
     let rule = PilotRule { back_off_times: 2, ..PilotRule::default() };
-    let mut drive = Drive::new(&shape.place(), Pose::default(), WHITE, rule, &seeds);
+    let mut drive = Drive::new(&shape.place(), Pose::default(), WHITE, &rule, &seeds);
     let leg = Leg { direction: FRAC_PI_2, opening: Opening::Door, limits: rule.fast };
     assert_eq!(drive.leg(leg, "n", 90.0), End::Late);
     assert!(drive.pilot.is_standing(), "given up");
@@ -317,7 +317,7 @@ fn looking_around_shows_every_tag_around_and_ends_where_it_began() {
     let seeds = Seeds::new(8, vec![]);
     let place = Shape::draw(&mut seeds.stream("world"), 0.0).place();
     let mut drive =
-        Drive::new(&place, Pose::new(0.5, 0.0, 1.0), WHITE, PilotRule::default(), &seeds);
+        Drive::new(&place, Pose::new(0.5, 0.0, 1.0), WHITE, &PilotRule::default(), &seeds);
     drive.pilot.look_around();
     let mut seen = std::collections::BTreeSet::new();
     while !drive.pilot.is_standing() {

@@ -266,3 +266,88 @@ impl Simulator {
         self.touching
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::document::Source;
+    use crate::geometry::Point;
+    use crate::units::Seconds;
+    use crate::world::Tag;
+
+    const PIONEER: &str = include_str!("../../robots/pioneer3at.urdf");
+
+    fn simulator(walls: &[Outline], tags: &[Tag]) -> Simulator {
+        let (robot, _) = robot::urdf::read(&Source::new("p.urdf", PIONEER)).unwrap();
+        let camera = robot.camera.clone().unwrap();
+        let heading = 0.157;
+        let noise = CompassNoise {
+            distribution: Distribution::Uniform,
+            heading,
+            correlation: Seconds(0.1),
+        };
+        let scene = Scene {
+            visible: walls,
+            solid: walls,
+            lidar: robot.lidar.clone().unwrap(),
+            camera: Some(CameraScene { camera, tags, occlusion: Occlusion::None }),
+            compass: robot.compass.clone().map(|compass| (compass, noise)),
+            start: Pose::default(),
+            stepping: Stepping::Near,
+            drive_noise: DriveNoise {
+                distribution: Distribution::Uniform,
+                linear: 0.25,
+                angular: 0.25,
+                correlation: Seconds(0.1),
+            },
+            odometry_noise: OdometryNoise::NONE,
+            robot: &robot,
+        };
+        Simulator::new(scene, &Seeds::new(4, vec![]))
+    }
+
+    #[test]
+    fn what_is_read_when_leaves_no_mark() {
+        let walls = [Outline::rectangle(Point::new(4.0, 0.0), 0.2, 6.0, 0.0)];
+        let tag = Tag { id: "a".into(), color: "green".into(), pose: Pose::new(3.0, 1.0, 0.0) };
+        let drive = |eager: bool| {
+            let mut sim = simulator(&walls, std::slice::from_ref(&tag));
+            let (mut scan, mut seen) = (sim.blank_scan(), Vec::new());
+            sim.command(Twist { linear: 0.3, angular: 0.2 });
+            for second in 1..=4 {
+                sim.advance_to(Tick(3000 * second));
+                if eager || second == 4 {
+                    sim.read_scan(&mut scan);
+                    sim.read_detections(&mut seen);
+                    let compass = sim.read_compass().unwrap();
+                    assert_eq!((scan.stamp, compass.stamp), (sim.now(), sim.now()));
+                    if second == 4 {
+                        return (scan, seen, compass, sim.true_pose());
+                    }
+                }
+            }
+            unreachable!("the fourth second returns")
+        };
+        let (eager, lazy) = (drive(true), drive(false));
+        assert_eq!(eager, lazy);
+        assert_eq!(lazy.1.len(), 1);
+        let truth = lazy.3.relative(tag.pose);
+        assert!(lazy.1[0].pose.position().distance(truth.position()) < 1e-12);
+        assert!((lazy.2.heading - lazy.3.heading).abs() <= 0.157);
+    }
+
+    #[test]
+    fn contact_is_felt_when_the_body_is_there_and_not_before() {
+        let walls = [Outline::rectangle(Point::new(1.0, 0.0), 0.2, 6.0, 0.0)];
+        let mut sim = simulator(&walls, &[]);
+        sim.command(Twist { linear: 0.6, angular: 0.0 });
+        while !sim.is_touching() {
+            assert!(sim.now() < Tick(6000), "no contact");
+            sim.advance_to(sim.now() + PHYSICS_PERIOD);
+        }
+        // The wall's face is 0.9 m away, the body's front 0.254 m ahead; a step is 7 mm at most.
+        let gap = 0.9 - 0.254 - sim.true_pose().x;
+        assert!(gap.abs() < 0.008, "{gap}");
+        assert_eq!(sim.contacts(), 1);
+    }
+}

@@ -11,31 +11,19 @@ use crate::math;
 use crate::robot::Twist;
 use std::f64::consts::TAU;
 
-/// A vertex this far ahead or nearer, and this little aside (m), is driven up to before a turn.
-const HUB_AHEAD: f64 = 1.0;
+/// A vertex this little aside (m) is driven up to.
 const HUB_ASIDE: f64 = 0.4;
-/// ... up to this distance (m).
-const HUB_REACHED: f64 = 0.03;
-/// Legs whose direction differs less from the heading (rad) need no turn at the vertex.
-const STRAIGHT_ON: f64 = 0.35;
-/// Slowest motions that are commanded (m/s, rad/s): slower ones take for ever.
-const CREEP: f64 = 0.08;
-const CREEP_TURN: f64 = 0.08;
 /// A tracked door seen within this distance (m) of where it should be is the same one.
 const SAME_DOOR: f64 = 0.25;
 /// After this many scans that show it elsewhere or not at all it is looked for anew.
 const LOST: u32 = 10;
-/// Thickest wall around a door (m).
-const WALL: f64 = 0.25;
-/// Largest angle to a door's axis on the way through it (rad).
-const DOOR_ANGLE: f64 = 0.12;
-/// Largest angle to a corridor's axis (rad).
-const LINE_ANGLE: f64 = 0.6;
 /// Widths of corridors (m) whose middle is between both walls.
 const CORRIDOR: std::ops::RangeInclusive<f64> = 1.0..=4.0;
 /// Shortest distance ahead at which a door's axis is steered for (m), on it and aside.
 const NEAREST_AIM: f64 = 0.3;
 const AT_STAGE: f64 = 0.05;
+/// Speed per distance (1/s) on the way up to a vertex or a door's stage.
+const APPROACH: f64 = 2.0;
 
 /// What the pilot is doing.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -107,9 +95,12 @@ impl Pilot {
     /// Begins a leg at the vertex that the last leg led to. Where that one is still ahead, the robot drives up to it before it
     /// turns.
     pub fn begin(&mut self, leg: Leg) {
-        let turns = math::wrap_angle(leg.direction - self.heading.get()).abs() > STRAIGHT_ON;
-        let ahead =
-            |hub: &Point| (HUB_REACHED..HUB_AHEAD).contains(&hub.x) && hub.y.abs() < HUB_ASIDE;
+        let rule = &self.rule;
+        let turns =
+            math::wrap_angle(leg.direction - self.heading.get()).abs() > rule.straight_on_rad;
+        let ahead = |hub: &Point| {
+            (rule.settled_m..rule.settle_within_m).contains(&hub.x) && hub.y.abs() < HUB_ASIDE
+        };
         self.phase = match self.target.take().filter(ahead) {
             Some(hub) if turns => Phase::Settling { hub },
             _ => Phase::Turning,
@@ -189,13 +180,14 @@ impl Pilot {
                 return Twist::STOP;
             }
             let angular = (self.rule.turn_gain_per_s * left).min(self.rule.slow.angular_rad_s);
-            return Twist { linear: 0.0, angular: angular.max(CREEP_TURN) };
+            return Twist { linear: 0.0, angular: angular.max(self.rule.creep_rad_s) };
         }
         let Some(leg) = self.leg else { return Twist::STOP };
         let off = math::wrap_angle(self.heading.get() - leg.direction);
         if let Phase::Settling { hub } = self.phase {
-            if hub.x > HUB_REACHED {
-                return Twist { linear: hub.x.clamp(CREEP, leg.limits.linear_m_s), angular: 0.0 };
+            if hub.x > self.rule.settled_m {
+                let linear = (APPROACH * hub.x).max(self.rule.creep_m_s);
+                return Twist { linear: linear.min(leg.limits.linear_m_s), angular: 0.0 };
             }
             self.phase = Phase::Turning;
         }
@@ -253,7 +245,8 @@ impl Pilot {
         if target.is_some_and(|target| target.x <= self.rule.stop_m) {
             return Twist::STOP;
         }
-        let wanted = math::atan2(aside, self.rule.lookahead_m).clamp(-LINE_ANGLE, LINE_ANGLE);
+        let bound = self.rule.line_angle_rad;
+        let wanted = math::atan2(aside, self.rule.lookahead_m).clamp(-bound, bound);
         self.steer(math::wrap_angle(wanted - off), limits)
     }
 
@@ -277,7 +270,7 @@ impl Pilot {
                 let wanted = math::atan2(gap.middle, aim);
                 let mut twist = self.steer(math::wrap_angle(wanted - off), limits);
                 if !aligned {
-                    twist.linear = twist.linear.min((2.0 * to_stage).max(CREEP));
+                    twist.linear = twist.linear.min((APPROACH * to_stage).max(rule.creep_m_s));
                 }
                 return twist;
             }
@@ -293,11 +286,12 @@ impl Pilot {
             }
             self.phase = Phase::Passing;
         }
-        if gap.distance < self.body.min.x - WALL {
+        if gap.distance < self.body.min.x - rule.door_depth_m {
             self.phase = Phase::Leaving;
         }
         let wanted = if gap.distance > rule.door_commit_m {
-            math::atan2(gap.middle, rule.door_lookahead_m).clamp(-DOOR_ANGLE, DOOR_ANGLE)
+            math::atan2(gap.middle, rule.door_lookahead_m)
+                .clamp(-rule.door_angle_rad, rule.door_angle_rad)
         } else {
             0.0
         };
@@ -344,7 +338,7 @@ impl Pilot {
 
     /// Turns in place by `error` rad.
     fn turn(&self, error: f64, limits: SpeedLimits) -> Twist {
-        let angular = (self.rule.turn_gain_per_s * error.abs()).max(CREEP_TURN);
+        let angular = (self.rule.turn_gain_per_s * error.abs()).max(self.rule.creep_rad_s);
         Twist { linear: 0.0, angular: angular.min(limits.angular_rad_s).copysign(error) }
     }
 

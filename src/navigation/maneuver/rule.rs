@@ -77,6 +77,25 @@ rule!(
         /// Above this error of heading (rad) the robot turns in place instead of driving a curve, above 0.
         #[schemars(extend("exclusiveMinimum" = 0))]
         pivot_rad: f64 = 0.5,
+        /// Slowest motion that is commanded on the way to a point (m/s), above 0: slower ones take for ever.
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        creep_m_s: f64 = 0.08,
+        /// Slowest turn in place that is commanded (rad/s), above 0.
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        creep_rad_s: f64 = 0.08,
+        /// Before a turn the robot drives up to the vertex that it is told to have reached, where that is no farther ahead than
+        /// this (m), 0 or more; 0 turns on the spot.
+        #[schemars(range(min = 0.0))]
+        settle_within_m: f64 = 1.0,
+        /// ... until it is no farther ahead than this (m), above 0.
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        settled_m: f64 = 0.03,
+        /// Legs whose direction differs less from the heading (rad) go straight on instead, above 0.
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        straight_on_rad: f64 = 0.35,
+        /// Largest angle to a line that is followed (rad), above 0.
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        line_angle_rad: f64 = 0.6,
         /// The line to follow is steered for at this distance ahead (m), above 0.
         #[schemars(extend("exclusiveMinimum" = 0))]
         lookahead_m: f64 = 0.8,
@@ -111,6 +130,12 @@ rule!(
         /// In a door the axis is steered for at this distance ahead (m), above 0.
         #[schemars(extend("exclusiveMinimum" = 0))]
         door_lookahead_m: f64 = 0.6,
+        /// Largest angle to the axis on the way through a door (rad), above 0.
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        door_angle_rad: f64 = 0.12,
+        /// A door is passed when the body is farther beyond its plane than this (m), above 0: the thickest wall.
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        door_depth_m: f64 = 0.25,
         /// Distance to the body (m) below which nothing that the laser sees may come by the robot's own motion, 0 or more.
         #[schemars(range(min = 0.0))]
         clearance_m: f64 = 0.03,
