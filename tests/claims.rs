@@ -74,7 +74,7 @@ fn sealed(folder: &Path, bundle: &str, path: &str) -> Option<String> {
 fn claims_about_the_machine_are_circumstances() {
     let desk = study(CLAIMS);
     let folder = desk.path();
-    let words = ["run", "demo/demo.yaml", "--set", "trials=1", "--no-cache"];
+    let words = ["run", "demo/demo.yaml", "--set", "trials=1"];
     let measured = reenact(folder, &words, false);
     let told = "\
 Claims
@@ -107,12 +107,24 @@ Claims about the machine (not among the results)
     let page = std::fs::read_to_string(folder.join("page.html")).unwrap();
     assert!(page.contains("id=\"claims\"") && page.contains("id=\"machine-claims\""));
 
-    // Pinned, nothing is measured, and the results are the same.
+    // From the store nothing is measured, and what was not measured is not passed over.
+    let stored = reenact(folder, &words, false);
+    let unmeasured = "  P21    cannot-be-tested  silent
+         2 of 2 runs of (all trials) never reached wall-time-s-per-selection; say with `censored` whether those that \
+         did are compared (reached-only) or the others rank last (worst)
+";
+    assert!(stored.contains(unmeasured), "{stored}");
+
+    // Pinned neither, and the results are the same; a lock, whatever it blesses, changes no score.
+    std::fs::write(folder.join("demo/demo.lock"), "verdicts: {P1: supported}\n").unwrap();
     let pinned = reenact(folder, &words, true);
     let unmeasured = "  P21    cannot-be-tested  silent
          wall times are not measured where SOURCE_DATE_EPOCH is set
 ";
     assert!(pinned.contains(unmeasured), "{pinned}");
+    let score =
+        |answer: &str| answer.lines().find(|l| l.starts_with("reproduction:")).map(str::to_owned);
+    assert_eq!(score(&pinned), score(&measured));
     let digest = |answer: &str| answer.lines().rev().nth(1).map(str::to_owned);
     assert_eq!(digest(&pinned), digest(&measured));
     let bundle = pinned.lines().last().unwrap();

@@ -189,12 +189,13 @@
 //!     baseline: [start, strategy]
 //! ```
 
-use super::cells::Where;
+use super::cells::{ForEach, Where};
 use super::comparing::{Comparison, Equivalence, Homogeneity, Ranking, Trend};
 use super::measuring::{Correlation, Every, Level, Rate, Rmse, Share, SignTest, Spread};
 use super::terms::{Censored, Correction, Sides, Test, five_percent};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// A checkable expectation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -354,6 +355,49 @@ impl Expect {
             }
             Self::RmseWithPublished(f) => {
                 Terms { censored: f.censored, minimum_runs: 1, ..Terms::new(f.alpha, f.minimum_n) }
+            }
+        }
+    }
+
+    /// The pools of trials that the form looks at, together: trials outside of them cannot matter.
+    pub(crate) fn pools(&self) -> Vec<Where> {
+        let each = |for_each: &ForEach, cells: &dyn Fn(&BTreeMap<String, String>) -> Vec<Where>| {
+            for_each.combinations().iter().flat_map(cells).collect()
+        };
+        match self {
+            Self::Less(f) | Self::Greater(f) => {
+                each(&f.for_each, &|pins| vec![f.r#where.pinned(pins), f.than.r#where.pinned(pins)])
+            }
+            Self::Equivalent(f) => {
+                each(&f.for_each, &|pins| vec![f.r#where.pinned(pins), f.to.r#where.pinned(pins)])
+            }
+            Self::Between(f) => each(&f.for_each, &|pins| {
+                f.relative_to.iter().chain([&f.r#where]).map(|cell| cell.pinned(pins)).collect()
+            }),
+            Self::Trend(f) => each(&f.for_each, &|pins| {
+                let base = f.r#where.pinned(pins);
+                f.along.iter().map(|step| base.replaced(&step.r#where)).collect()
+            }),
+            Self::Homogeneous(f) => {
+                each(&f.for_each, &|pins| vec![f.r#where.pinned(pins).replaced(&f.across)])
+            }
+            Self::Rank(f) => {
+                each(&f.for_each, &|pins| vec![f.r#where.pinned(pins).replaced(&f.across)])
+            }
+            Self::SignTest(f) => {
+                each(&f.for_each, &|pins| vec![f.r#where.pinned(pins), f.than.pinned(pins)])
+            }
+            Self::Spread(f) => each(&f.for_each, &|pins| {
+                let base = f.r#where.pinned(pins);
+                let other = f.than.iter().map(|than| base.replaced(than));
+                other.chain([base.clone()]).map(|cell| cell.replaced(&f.across)).collect()
+            }),
+            Self::Share(f) => each(&f.for_each, &|pins| vec![f.r#where.pinned(pins)]),
+            Self::Every(f) => each(&f.for_each, &|pins| vec![f.r#where.pinned(pins)]),
+            Self::Rate(f) => each(&f.for_each, &|pins| vec![f.r#where.pinned(pins)]),
+            // Which cells are compared is for the published table to say.
+            Self::CorrelationWithPublished(_) | Self::RmseWithPublished(_) => {
+                vec![Where::default()]
             }
         }
     }

@@ -167,9 +167,12 @@ fn truths(
         }
         Assume::Cells(_) => Vec::new(),
     };
-    let mut all = Vec::new();
+    let (mut all, pools) = (Vec::new(), claim.expect.pools());
     for (i, condition) in conditions.iter().enumerate() {
         let value_of = |f: &str| condition.iter().find(|(n, _)| n == f).map(|(_, v)| v.as_str());
+        if !pools.iter().any(|pool| pool.admits(value_of)) {
+            continue;
+        }
         let mut here = BTreeMap::new();
         for name in &metrics {
             let truth = match assume {

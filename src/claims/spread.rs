@@ -5,14 +5,15 @@ use super::gather::{Bench, Draft, Evidence, Group, varies};
 use super::measuring::Spread;
 use super::metric::Metric;
 use super::verdict::Effect;
-use crate::stats::bootstrap::bootstrap;
+use crate::stats::bootstrap::{bootstrap, bootstrap_shares};
+use crate::stats::proportion::Proportion;
 use crate::stats::real;
 use crate::stats::summary::mean;
 
 /// Largest less smallest mean.
-fn spread_of(samples: &[Vec<f64>]) -> f64 {
-    let means = || samples.iter().map(|sample| mean(sample));
-    means().fold(f64::NEG_INFINITY, f64::max) - means().fold(f64::INFINITY, f64::min)
+fn spread_of(means: &[f64]) -> f64 {
+    let most = means.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    most - means.iter().copied().fold(f64::INFINITY, f64::min)
 }
 
 /// By resampling trials within cells. A spread of noisy means is biased upwards, the more so the fewer trials;
@@ -68,18 +69,23 @@ fn resampled(
         return Err("one cell has no spread".to_owned());
     }
     varies(&groups.iter().collect::<Vec<_>>())?;
-    let samples: Vec<&[f64]> = groups.iter().map(|g| g.values.as_slice()).collect();
-    let compared = first < samples.len();
-    let found = bootstrap(
-        &samples,
-        |drawn| {
-            let other = if compared { spread_of(&drawn[first..]) } else { 0.0 };
-            spread_of(&drawn[..first]) - other
-        },
-        bench.context.resamples,
-        bench.confidence(),
-        &mut bench.stream(about),
-    );
+    let compared = first < groups.len();
+    let statistic = |means: &[f64]| {
+        let other = if compared { spread_of(&means[first..]) } else { 0.0 };
+        spread_of(&means[..first]) - other
+    };
+    let (resamples, confidence) = (bench.context.resamples, bench.confidence());
+    let mut stream = bench.stream(about);
+    let shares: Option<Vec<Proportion>> = groups.iter().map(|g| g.proportion).collect();
+    let found = if let Some(shares) = shares {
+        bootstrap_shares(&shares, statistic, resamples, confidence, &mut stream)
+    } else {
+        let samples: Vec<&[f64]> = groups.iter().map(|g| g.values.as_slice()).collect();
+        let of_samples = |drawn: &[Vec<f64>]| {
+            statistic(&drawn.iter().map(|sample| mean(sample)).collect::<Vec<_>>())
+        };
+        bootstrap(&samples, of_samples, resamples, confidence, &mut stream)
+    };
     let resamples = real(found.statistics.len() as u64);
     let above = found.statistics.iter().filter(|&&x| x >= limit).count() as u64;
     let below = found.statistics.iter().filter(|&&x| x <= limit).count() as u64;

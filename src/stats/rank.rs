@@ -108,7 +108,7 @@ pub fn sign_test(positive: u64, negative: u64) -> Tails {
     Tails { less, greater, two_sided: (2.0 * less.min(greater)).min(1.0) }
 }
 
-/// Pearson's product-moment correlation; NaN where either side does not vary.
+/// Pearson's product-moment correlation, in [-1, 1]; NaN where either side does not vary.
 pub fn pearson(x: &[f64], y: &[f64]) -> f64 {
     let (mx, my) = (mean(x), mean(y));
     let (mut xy, mut xx, mut yy) = (0.0, 0.0, 0.0);
@@ -117,7 +117,8 @@ pub fn pearson(x: &[f64], y: &[f64]) -> f64 {
         xx += (a - mx) * (a - mx);
         yy += (b - my) * (b - my);
     }
-    xy / (xx.sqrt() * yy.sqrt())
+    // Rounding may carry a perfect correlation beyond one, where Fisher's z ends.
+    (xy / (xx.sqrt() * yy.sqrt())).clamp(-1.0, 1.0)
 }
 
 /// Spearman's rank correlation: Pearson's of the midranks (Spearman 1904).

@@ -6,7 +6,11 @@ use super::means::*;
 use super::proportion::*;
 use super::rank::*;
 use super::summary::*;
-use super::{Tails, assert_close, bootstrap::bootstrap, multiple::holm};
+use super::{
+    Tails, assert_close,
+    bootstrap::{bootstrap, bootstrap_shares},
+    multiple::holm,
+};
 use crate::rng::Seeds;
 use proptest::prelude::*;
 
@@ -300,6 +304,24 @@ fn the_bootstrap_knows_the_spread_of_a_mean() {
     assert!((found.interval.high - (19.5 + 1.96 * expected)).abs() < 0.25);
     assert_eq!(found, draw(3));
     assert_ne!(found, draw(4));
+}
+
+/// A resample of shares is a binomial draw: mean and spread of many against np and np(1 - p), and the ends.
+#[test]
+fn shares_are_resampled_as_zeros_and_ones_would_be() {
+    let seen = [Proportion::new(60, 200), Proportion::new(0, 40), Proportion::new(40, 40)];
+    let mut stream = Seeds::new(3, Vec::new()).stream("test");
+    let first = bootstrap_shares(&seen, |s| s[0], 20_000, 0.95, &mut stream);
+    assert_eq!(first.estimate, 0.3);
+    // Five standard errors of a mean and of an sd over 20000 draws.
+    let sd = (0.3_f64 * 0.7 / 200.0).sqrt();
+    assert!((mean(&first.statistics) - 0.3).abs() < 5.0 * sd / 20_000.0_f64.sqrt());
+    assert!((first.standard_error / sd - 1.0).abs() < 5.0 / 40_000.0_f64.sqrt());
+    // scipy.stats.binom.ppf([.025, .975], 200, .3) / 200, to the step of one trial
+    assert!((first.interval.low - 0.24).abs() < 0.0051, "{:?}", first.interval);
+    assert!((first.interval.high - 0.365).abs() < 0.0051, "{:?}", first.interval);
+    let ends = bootstrap_shares(&seen, |s| s[2] - s[1], 50, 0.95, &mut stream);
+    assert_eq!((ends.interval.low, ends.interval.high), (1.0, 1.0));
 }
 
 /// The arithmetic of the bootstrap to the last digits: the same resamples, drawn by this stream, through numpy.
