@@ -7,7 +7,7 @@ mod quickstart;
 
 use reenact::rng::Seeds;
 use reenact::robot::Twist;
-use reenact::sim::{DriveNoise, OdometryNoise, Scene, Simulator};
+use reenact::sim::{DriveNoise, OdometryNoise, Scene, Simulator, Stepping};
 use reenact::units::{Seconds, Tick};
 
 const SIMULATED: u32 = 20;
@@ -34,6 +34,7 @@ fn circle(bencher: divan::Bencher<'_, '_>, reads_scans: bool) {
             camera: None,
             compass: None,
             start: setup.start(),
+            stepping: Stepping::Always,
             drive_noise: DriveNoise::NONE,
             odometry_noise: OdometryNoise { distance: 0.0, heading: 0.0 },
         };

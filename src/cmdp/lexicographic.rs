@@ -24,7 +24,7 @@ use thiserror::Error;
 
 /// Relative excess over a bound that is called rounding.
 pub const BOUND_TOLERANCE: f64 = 1e-9;
-/// The same for a bound of zero, relative to the largest cost.
+/// The same for a bound or an optimum of zero, relative to the largest cost.
 const ZERO_BOUND_TOLERANCE: f64 = 1e-12;
 
 /// What to do about a bound that no policy meets together with the bounds before it.
@@ -353,7 +353,9 @@ fn certify(
         let priced = multipliers.iter().zip(cmdp.secondary()).zip(&totals[1..]);
         totals[0] + priced.map(|((lambda, s), total)| lambda * (total - s.bound)).sum::<f64>()
     });
-    if primary - lower <= GAP * primary {
+    // Where the optimum is zero, rounding is relative to what a step may cost.
+    let dearest = cmdp.pairs().iter().fold(0.0_f64, |most, pair| most.max(pair.costs[0]));
+    if primary - lower <= GAP * primary + ZERO_BOUND_TOLERANCE * dearest {
         Ok(())
     } else {
         Err(SolveError::Uncertified { primary, lower })

@@ -15,6 +15,7 @@ mod odometry;
 pub use camera::{CameraScene, Occlusion};
 pub use compass::CompassNoise;
 pub use drive::DriveNoise;
+pub use engine::Stepping;
 pub use lidar::WallSweep;
 pub use noise::Distribution;
 pub use odometry::OdometryNoise;
@@ -49,6 +50,8 @@ pub struct Scene<'a> {
     pub compass: Option<(robot::Compass, CompassNoise)>,
     /// Where it begins, in the world's frame.
     pub start: Pose,
+    /// When the physics engine is asked.
+    pub stepping: Stepping,
     /// Errors of the drive.
     pub drive_noise: DriveNoise,
     /// Errors of odometry.
@@ -117,7 +120,7 @@ impl Simulator {
         let scan_period = Tick::period_of(scene.lidar.rate_hz).unwrap_or(PHYSICS_PERIOD);
         let odometer = Odometer::new(scene.odometry_noise, seeds);
         Self {
-            engine: Engine::new(scene.solid, scene.robot, scene.start),
+            engine: Engine::new(scene.solid, scene.robot, scene.start, scene.stepping),
             drive: Drive::new(scene.drive_noise, &scene.robot.drive, seeds),
             sweep: WallSweep::new(scene.visible, &scene.lidar),
             lidar_noise: seeds.stream("lidar-noise"),

@@ -15,6 +15,8 @@ mod heading;
 mod outlook;
 mod pilot;
 mod rule;
+#[cfg(test)]
+mod tests;
 
 pub use pilot::Pilot;
 pub use rule::{DoorGuidance, HeadingSource, PilotRule, SpeedLimits};

@@ -47,11 +47,14 @@ parameters!(
         /// How long one error of the drive lasts (s), above 0: 0.1 is white at the control rate, 12 about one a maneuver.
         #[schemars(extend("exclusiveMinimum" = 0))]
         drive_noise_correlation_s: f64 = 0.1,
-        /// How the errors of the compass are distributed; each reading has its own.
+        /// How the errors of the compass are distributed.
         compass_noise: ErrorShape = ErrorShape::Uniform,
         /// Size of the error of the compass (degrees), 0 or more: 5 % of half a turn.
         #[schemars(range(min = 0.0, max = 180.0))]
         compass_noise_deg: f64 = 9.0,
+        /// How long one error of the compass lasts (s), above 0: 0.1 is white at its rate.
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        compass_noise_correlation_s: f64 = 0.1,
         /// Whether walls hide tags from the logical camera; Gazebo's sees through them.
         occlusion: Hiding = Hiding::None,
     }

@@ -74,6 +74,7 @@ impl<'a> Body<'a> {
                 let noise = CompassNoise {
                     distribution: distribution(sensing.compass_noise),
                     heading: Radians::from_degrees(sensing.compass_noise_deg).get(),
+                    correlation: Seconds(sensing.compass_noise_correlation_s),
                 };
                 (compass, noise)
             }),

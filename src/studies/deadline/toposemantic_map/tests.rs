@@ -3,6 +3,7 @@
 use super::*;
 use crate::rng::{Seeds, Stream};
 use crate::studies::deadline::building::{Building, below, plain};
+use crate::studies::deadline::intersection::Exit;
 use Cardinal::{East, North, South, West};
 use proptest::prelude::*;
 

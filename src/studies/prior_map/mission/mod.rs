@@ -13,7 +13,7 @@ use super::explorer::{CONTROL_PERIOD, Ending, Explorer};
 use super::information_gain::AlignedPrior;
 use crate::geometry::{Outline, Pose};
 use crate::robot::{Lidar, Scan};
-use crate::sim::{Distribution, DriveNoise, OdometryNoise, Scene, Simulator};
+use crate::sim::{Distribution, DriveNoise, OdometryNoise, Scene, Simulator, Stepping};
 use crate::studies::recording::Recording;
 use crate::studies::{Outcome, Stopwatch, TrialRecord, TrialSpec};
 use crate::units::{Seconds, Tick};
@@ -75,6 +75,7 @@ pub fn run(
         camera: None,
         compass: None,
         start: setup.start,
+        stepping: Stepping::Always,
         drive_noise: DriveNoise {
             distribution: Distribution::Gaussian,
             linear: sensing.drive_noise_linear,
