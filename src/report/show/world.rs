@@ -210,7 +210,7 @@ fn free_spot(canvas: &Canvas, polygon: &[Point], marks: &[Point]) -> Point {
     let outline = Outline::Polygon(polygon.to_vec());
     let bounds = outline.bounds();
     let inside = |at: &Point| {
-        let margin = 14.0 / canvas.scale();
+        let margin = (15.0 / canvas.scale()).min(0.3 * bounds.width().min(bounds.height()));
         outline.contains(*at) && outline.sides().all(|side| side.distance(*at) >= margin)
     };
     let score = |at: &Point| {
@@ -218,11 +218,15 @@ fn free_spot(canvas: &Canvas, polygon: &[Point], marks: &[Point]) -> Point {
         let clear = (near.fold(f64::INFINITY, f64::min) * canvas.scale()).min(30.0);
         clear - 0.1 * canvas.scale() * at.distance(center)
     };
-    let steps = (0..=12).map(|i| f64::from(i) / 12.0);
-    steps
-        .clone()
-        .flat_map(|i| steps.clone().map(move |j| (i, j)))
-        .map(|(i, j)| bounds.min + Point::new(i * bounds.width(), j * bounds.height()))
+    // A raster of about 12 px.
+    let steps = |length: f64| {
+        #[expect(clippy::cast_possible_truncation, reason = "at most a hundred")]
+        let count = (length * canvas.scale() / 12.0).ceil().clamp(1.0, 100.0) as i32;
+        (0..=count).map(move |i| length * f64::from(i) / f64::from(count))
+    };
+    steps(bounds.width())
+        .flat_map(|x| steps(bounds.height()).map(move |y| (x, y)))
+        .map(|(x, y)| bounds.min + Point::new(x, y))
         .chain([center])
         .filter(|at| *at == center || inside(at))
         .max_by(|a, b| score(a).total_cmp(&score(b)))

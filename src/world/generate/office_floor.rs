@@ -229,8 +229,13 @@ impl Pen<'_> {
                 along = [along[0].min(other[0]), along[1].max(other[1])];
             }
         } else {
+            // Or a little of the bay beside it.
             let by = whole(self.stream, [0, 60]);
-            along[usize::from(self.below(2) == 1)] += if self.below(2) == 1 { by } else { 0 };
+            if self.below(2) == 0 {
+                along[0] -= by;
+            } else {
+                along[1] += by;
+            }
         }
         let depth = whole(self.stream, DEPTH);
         let (width, inside) = (even(self.stream, DOOR), whole(self.stream, INSIDE));

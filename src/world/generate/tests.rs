@@ -154,7 +154,7 @@ fn every_seed_to_a_thousand_is_a_building_and_a_sample_keeps_every_rule() {
 fn buildings_are_pinned() {
     let meanings: Vec<String> =
         (0..3).map(|seed| generate(Family::OfficeFloor, seed).unwrap().meaning().short()).collect();
-    assert_eq!(meanings, ["f3585b5c", "8ce6a034", "4865a4d8"]);
+    assert_eq!(meanings, ["305cd9fc", "68b7c138", "0e731342"]);
 }
 
 #[test]
