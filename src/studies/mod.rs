@@ -198,7 +198,7 @@ pub fn execute(spec: &TrialSpec) -> TrialRecord {
 pub fn execute_timed(spec: &TrialSpec, watch: &mut dyn Stopwatch) -> TrialRecord {
     match &spec.setup {
         Setup::PriorMap(setup) => prior_map::run(spec, setup, None, watch),
-        Setup::Deadline(setup) => deadline::run(spec, setup, None),
+        Setup::Deadline(setup) => deadline::run(spec, setup, None, watch),
     }
 }
 
@@ -207,7 +207,7 @@ pub fn reenact(spec: &TrialSpec) -> (TrialRecord, recording::Recording) {
     let mut recording = recording::Recording::default();
     let record = match &spec.setup {
         Setup::PriorMap(setup) => prior_map::run(spec, setup, Some(&mut recording), &mut ()),
-        Setup::Deadline(setup) => deadline::run(spec, setup, Some(&mut recording)),
+        Setup::Deadline(setup) => deadline::run(spec, setup, Some(&mut recording), &mut ()),
     };
     (record, recording)
 }

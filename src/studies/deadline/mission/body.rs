@@ -8,6 +8,7 @@ use crate::robot::{CompassReading, Detection, Scan, Twist};
 use crate::rng::Seeds;
 use crate::sim::{
     CameraScene, CompassNoise, Distribution, DriveNoise, Occlusion, OdometryNoise, Scene, Simulator,
+    Stepping,
 };
 use crate::studies::deadline::intersection::{Intersection, Opening};
 use crate::studies::deadline::{ErrorShape, Hiding, IntersectionDetectionSystem, Setup};
@@ -85,6 +86,7 @@ impl<'a> Body<'a> {
                 angular: sensing.drive_noise_angular,
                 correlation: Seconds(sensing.drive_noise_correlation_s),
             },
+            stepping: Stepping::Near,
             // Nothing reads odometry in this study: the paper's robot has compass, laser and camera only.
             odometry_noise: OdometryNoise { distance: 0.0, heading: 0.0 },
         };

@@ -7,7 +7,7 @@ use crate::cmdp::build::Maneuvers;
 use crate::studies::deadline::exploration::{Explorer, Next};
 use crate::studies::deadline::Setup;
 use crate::studies::recording::Recording;
-use crate::studies::{Outcome, TrialRecord, TrialSpec};
+use crate::studies::{Outcome, Stopwatch, TrialRecord, TrialSpec};
 use crate::units::{Seconds, Tick};
 use std::collections::BTreeMap;
 
@@ -17,12 +17,13 @@ pub(super) fn run(
     setup: &Setup,
     prepared: &Prepared,
     recording: Option<&mut Recording>,
+    watch: &mut dyn Stopwatch,
 ) -> TrialRecord {
     let Some(calibration) = &setup.calibration else {
         return TrialRecord::panicked(spec, "the planner has no calibration".to_owned());
     };
     let mut exploration = Exploration::new(spec, setup, prepared, calibration.maneuvers(), recording);
-    let ending = exploration.run();
+    let ending = exploration.run(watch);
     let mut measures = BTreeMap::new();
     measures.insert("distance-m".to_owned(), Some(exploration.body.travelled()));
     measures.insert("turning-rad".to_owned(), Some(exploration.body.turned()));
@@ -65,7 +66,7 @@ impl<'a> Exploration<'a> {
         }
     }
 
-    fn run(&mut self) -> Ending {
+    fn run(&mut self, watch: &mut dyn Stopwatch) -> Ending {
         self.body.look_around();
         loop {
             match self.body.step() {
@@ -82,7 +83,12 @@ impl<'a> Exploration<'a> {
                     let now = self.body.now();
                     self.tally.arrive(now);
                     let known = self.mind.map().len();
+                    let chosen = self.mind.decisions().len();
+                    watch.asked();
                     let next = self.mind.arrive(now.seconds().get(), &here);
+                    if self.mind.decisions().len() > chosen {
+                        watch.chose();
+                    }
                     if self.mind.map().len() > known {
                         self.discovered = now;
                     }

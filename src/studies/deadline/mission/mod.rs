@@ -13,7 +13,7 @@ use crate::geometry::Outline;
 use crate::robot::Lidar;
 use crate::studies::recording::Recording;
 use crate::studies::state_chain::StateChain;
-use crate::studies::{Outcome, TrialRecord, TrialSpec};
+use crate::studies::{Outcome, Stopwatch, TrialRecord, TrialSpec};
 use crate::units::{Seconds, Tick};
 use crate::world::topology::{TagScheme, Topology};
 use std::collections::BTreeMap;
@@ -105,14 +105,20 @@ pub fn tag_scheme(setup: &Setup) -> TagScheme {
     }
 }
 
-/// Runs the trial, writing everything down in `recording` where there is one. The record is the same either way.
-pub fn run(spec: &TrialSpec, setup: &Setup, recording: Option<&mut Recording>) -> TrialRecord {
+/// Runs the trial under the eyes of `watch`, writing everything down in `recording` where there is one. The record is the
+/// same either way.
+pub fn run(
+    spec: &TrialSpec,
+    setup: &Setup,
+    recording: Option<&mut Recording>,
+    watch: &mut dyn Stopwatch,
+) -> TrialRecord {
     let prepared = match setup.prepared() {
         Ok(prepared) => prepared,
         Err(cause) => return TrialRecord::panicked(spec, cause),
     };
     match setup.parameters.mission.task {
-        Task::Exploration => exploration::run(spec, setup, prepared, recording),
+        Task::Exploration => exploration::run(spec, setup, prepared, recording, watch),
         Task::Passage => passage::run(spec, setup, prepared, recording),
     }
 }
