@@ -32,11 +32,11 @@ pub use archive::{Archive, Form, Limits};
 pub use content::{
     Author, BundleContent, Circumstance, Citation, SealedCondition, SealedInput, seal_inputs,
 };
-pub use fault::Fault;
+pub use fault::{Fault, visible};
 pub use moment::Moment;
 pub use reader::{Bundle, OpenError};
 pub use resolved::{ConditionEntry, InputEntry, Resolved};
-pub use writer::{SealError, Sealed, seal};
+pub use writer::{SealError, Sealed, in_bag, seal};
 
 use crate::digest::{ResultsDigest, Sha256Digest};
 use std::collections::BTreeMap;

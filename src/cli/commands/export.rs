@@ -1,6 +1,6 @@
 //! `reenact export`: the same content in the forms that importers want.
 
-use crate::bundle::{Form, archive};
+use crate::bundle::{Form, archive, in_bag};
 use crate::cli::args::ExportArgs;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::load;
@@ -10,9 +10,10 @@ use crate::cli::terminal::Terminal;
 pub(in crate::cli) fn run(args: &ExportArgs, terminal: Terminal) -> Result<Exit, Failure> {
     let bundle = load::bundle(&args.bundle)?;
     let stem = format!("{}-{}", bundle.name(), bundle.results_digest().short());
+    let tree = in_bag(&bundle);
     if args.dir {
         let folder = args.out.join(&stem);
-        for (path, bytes) in bundle.tree() {
+        for (path, bytes) in &tree {
             load::write(&folder.join(path), bytes)?;
         }
         terminal.result(&folder.display().to_string());
@@ -24,7 +25,7 @@ pub(in crate::cli) fn run(args: &ExportArgs, terminal: Terminal) -> Result<Exit,
         _ => (Form::Bag, format!("{stem}.zip")),
     };
     let path = args.out.join(name);
-    load::write(&path, &archive::write(bundle.tree(), &stem, form))?;
+    load::write(&path, &archive::write(&tree, &stem, form))?;
     terminal.result(&path.display().to_string());
     Ok(Exit::Yes)
 }

@@ -10,7 +10,7 @@ use crate::cli::terminal::{Terminal, counted};
 use crate::plan::Plan;
 use crate::provenance::{Environment, RunClock, processors};
 use crate::runner::{Observer, RunError, RunEvent, Scheduler, TrialStore};
-use crate::store::{self, DirectoryStore};
+use crate::store::DirectoryStore;
 use crate::studies::{self, Outcome, TrialRecord};
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
@@ -50,8 +50,8 @@ fn run_one(
         .map_err(Failure::failed)?;
     let sealed = seal(&content, &clock.circumstance(environment, scheduler.jobs()))
         .map_err(Failure::failed)?;
-    let path = store::publish(&args.out, &sealed.file_name(), &sealed.zip(Form::Bag))
-        .map_err(|e| Failure::failed(format!("cannot write to `{}`: {e}", args.out.display())))?;
+    let path = args.out.join(sealed.file_name());
+    load::write(&path, &sealed.zip(Form::Bag))?;
     let done = Done { plan, records, cached, sealed, path, wall_seconds: clock.elapsed_seconds() };
     match args.format {
         Format::Human => done.tell(terminal),
