@@ -5,6 +5,7 @@
 //! because JSON delimits every part.
 
 use serde::Serialize;
+use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 /// The canonical text of `value`, without a final newline.
@@ -68,6 +69,50 @@ pub fn indented(canonical: &str) -> String {
     out
 }
 
+/// About how much memory (bytes) the tree of a JSON text takes, never much less: a text of small objects takes a hundred
+/// times its own length. To be asked before text of unknown origin is parsed to a [`Value`].
+pub fn weight(text: &[u8]) -> u64 {
+    // What `serde_json` allocates: a node of eleven entries for the smallest map, four elements for the smallest list,
+    // and an element (doubled while its list grows) with the start of its text.
+    const OBJECT: u64 = 680;
+    const ARRAY: u64 = 128;
+    const ELEMENT: u64 = 96;
+    let (mut quoted, mut escaped) = (false, false);
+    let mut weight = text.len() as u64;
+    for byte in text {
+        match (byte, quoted) {
+            (b'"', true) => quoted = escaped,
+            (b'"', false) => quoted = true,
+            (b'{', false) => weight += OBJECT,
+            (b'[', false) => weight += ARRAY,
+            (b',', false) => weight += ELEMENT,
+            _ => {}
+        }
+        escaped = *byte == b'\\' && quoted && !escaped;
+    }
+    weight
+}
+
+/// The most memory (bytes) that a JSON document of unknown origin may take.
+const HEAVIEST: u64 = 64 << 20;
+
+/// Reads JSON of unknown origin into a type that may hold a [`Value`].
+///
+/// # Errors
+/// Where it is not that, or would take more memory than any document that this program writes.
+pub fn read<T: DeserializeOwned>(text: &[u8]) -> Result<T, String> {
+    let weight = weight(text);
+    if weight > HEAVIEST {
+        return Err(format!(
+            "a document of {} bytes that would take about {} MiB of memory, more than the {} MiB allowed",
+            text.len(),
+            weight >> 20,
+            HEAVIEST >> 20
+        ));
+    }
+    serde_json::from_slice(text).map_err(|e| e.to_string())
+}
+
 fn write(value: &Value, out: &mut String) {
     match value {
         Value::Object(map) => {
@@ -124,6 +169,18 @@ mod tests {
             canonical(&json!({"b": 1.0, "a": [-0.0, 0.1, 1e300, 1e-7, null, "x\n"], "é": true})),
             r#"{"a":[0,0.1,1e300,1e-7,null,"x\n"],"b":1,"é":true}"#
         );
+    }
+
+    #[test]
+    fn documents_that_would_fill_the_memory_are_not_parsed() {
+        assert_eq!(weight(br#"{"a,{":[1,2,"\"{,"]}"#), 20 + 680 + 128 + 2 * 96);
+        let bomb = format!("[{}0]", r#"{"":0},"#.repeat(100_000));
+        assert_eq!(
+            read::<Value>(bomb.as_bytes()).unwrap_err(),
+            "a document of 700003 bytes that would take about 74 MiB of memory, more than the 64 MiB allowed"
+        );
+        assert_eq!(read::<Value>(b"[1]").unwrap(), json!([1]));
+        assert!(read::<Value>(b"[1").unwrap_err().starts_with("EOF while parsing a list"));
     }
 
     #[test]

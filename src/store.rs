@@ -28,6 +28,10 @@ impl DirectoryStore {
         &self.root
     }
 
+    fn refusal(&self, doing: &str, error: &io::Error) -> StoreError {
+        StoreError::Io(format!("cannot {doing} `{}`: {}", self.root.display(), reason(error)))
+    }
+
     fn path(&self, key: &TrialKey) -> PathBuf {
         let hex = key.hex();
         self.root.join(&hex[..2]).join(format!("{hex}.json"))
@@ -64,7 +68,7 @@ impl TrialStore for DirectoryStore {
         match fs::read(self.path(key)) {
             Ok(bytes) => Ok(decode(&bytes).filter(|record| record.key == *key)),
             Err(e) if e.kind() == io::ErrorKind::NotFound => Ok(None),
-            Err(e) => Err(StoreError::Io(e.to_string())),
+            Err(e) => Err(self.refusal("read", &e)),
         }
     }
 
@@ -73,7 +77,7 @@ impl TrialStore for DirectoryStore {
         if record.outcome == Outcome::Panicked {
             return Err(StoreError::Panicked { key, cause: record.cause.clone() });
         }
-        let refused = |e: io::Error| StoreError::Io(e.to_string());
+        let refused = |e: io::Error| self.refusal("write to", &e);
         let path = self.path(&key);
         let folder = path.parent().unwrap_or(&self.root);
         fs::create_dir_all(folder).map_err(refused)?;
@@ -95,6 +99,21 @@ impl TrialStore for DirectoryStore {
             },
             Err(e) => Err(refused(e.error)),
         }
+    }
+}
+
+/// What went wrong, without the numbers of one operating system.
+pub fn reason(error: &io::Error) -> String {
+    use io::ErrorKind as Kind;
+    match error.kind() {
+        Kind::NotFound => "no such file".to_owned(),
+        Kind::PermissionDenied => "no permission".to_owned(),
+        Kind::IsADirectory => "it is a folder".to_owned(),
+        Kind::NotADirectory => "a part of its path is a file".to_owned(),
+        Kind::ReadOnlyFilesystem => "the file system is for reading only".to_owned(),
+        Kind::StorageFull => "the disk is full".to_owned(),
+        Kind::QuotaExceeded => "the quota of this disk is used up".to_owned(),
+        _ => error.to_string(),
     }
 }
 
@@ -179,11 +198,17 @@ pub fn open_bundle(
         }
         return Ok(archive::read(&fs::read(path)?, limits));
     }
-    let (mut files, mut faults, mut total) = (Vec::new(), Vec::new(), 0);
+    let (mut files, mut faults, mut total, mut entries) = (Vec::new(), Vec::new(), 0, 0);
     let mut folders = vec![(path.to_owned(), String::new())];
     while let Some((folder, prefix)) = folders.pop() {
         for entry in fs::read_dir(&folder)? {
             let entry = entry?;
+            // Folders count as well: there may be no end of empty ones.
+            entries += 1;
+            if entries > limits.entries {
+                let expected = format!("at most {} files and folders", limits.entries);
+                return Ok(Err(vec![Fault::new("(archive)", expected, "more")]));
+            }
             let name = format!("{prefix}{}", entry.file_name().to_string_lossy());
             let kind = entry.file_type()?;
             if kind.is_dir() {
@@ -192,10 +217,6 @@ pub fn open_bundle(
                 total += entry.metadata()?.len();
                 if total > limits.bytes {
                     return too_big(total);
-                }
-                if files.len() >= limits.entries {
-                    let expected = format!("at most {} files", limits.entries);
-                    return Ok(Err(vec![Fault::new("(archive)", expected, "more")]));
                 }
                 files.push((name, fs::read(entry.path())?));
             } else {
@@ -231,9 +252,13 @@ mod tests {
         let path = store.path(&record.key);
         assert!(path.ends_with(format!("{}/{}.json", &record.key.hex()[..2], record.key)));
         let whole = fs::read(&path).unwrap();
-        for cut in [0, 1, whole.len() / 2, whole.len() - 1] {
+        for cut in 0..whole.len() {
             fs::write(&path, &whole[..cut]).unwrap();
-            assert_eq!(store.get(&record.key).unwrap(), None, "a torn file is no record");
+            assert_eq!(store.get(&record.key).unwrap(), None, "torn at {cut}, it is no record");
+            let mut zeroed = whole.clone();
+            zeroed[cut..].fill(0);
+            fs::write(&path, &zeroed).unwrap();
+            assert_eq!(store.get(&record.key).unwrap(), None, "with zeros from {cut} neither");
         }
         store.put(&record).unwrap();
         assert_eq!(fs::read(&path).unwrap(), whole);

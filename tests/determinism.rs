@@ -112,6 +112,44 @@ fn threads_directory_locale_and_time_zone_leave_no_mark() {
     assert_eq!(elsewhere.stored(), 0, "`--no-cache` wrote to the store");
 }
 
+/// Under `SOURCE_DATE_EPOCH` not only the results but the whole zip is the same, byte for byte.
+#[test]
+fn source_date_epoch_makes_whole_bundles_equal() {
+    let bundle = |command: &mut Command| {
+        let output = command.env("SOURCE_DATE_EPOCH", "1600000000").output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let told: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        let path = PathBuf::from(told["bundle"].as_str().unwrap());
+        (path.file_name().unwrap().to_owned(), fs::read(path).unwrap())
+    };
+    let (here, elsewhere) = (Place::new(), Place::new());
+    let first = bundle(&mut here.run(&["--jobs", "1"]));
+    let plain = elsewhere.run(&["--jobs", "2", "--no-cache", "--out", "deep/in/here"]);
+    let mut masked = if cfg!(unix) {
+        let mut masked = Command::new("sh");
+        masked.args(["-c", "umask 077 && exec \"$0\" \"$@\""]).arg(plain.get_program());
+        masked.args(plain.get_args()).current_dir(elsewhere.folder.path());
+        masked
+    } else {
+        plain
+    };
+    let second = bundle(
+        masked
+            .env("LC_ALL", "tr_TR.UTF-8")
+            .env("LANG", "tr_TR.UTF-8")
+            .env("TZ", "Asia/Kathmandu")
+            .env("USER", "somebody")
+            .env("HOSTNAME", "elsewhere"),
+    );
+    assert_eq!(first.0, second.0);
+    assert!(
+        first.1 == second.1,
+        "two zips of {} and {} bytes differ",
+        first.1.len(),
+        second.1.len()
+    );
+}
+
 #[test]
 fn another_seed_does_leave_a_mark() {
     let told = finished(&mut Place::new().run(&["--no-cache", "--set", "seed=8"]));

@@ -32,7 +32,8 @@ pub struct Limits {
 
 impl Default for Limits {
     fn default() -> Self {
-        Self { entries: 20_000, bytes: 128 << 20, ratio: 250 }
+        // Checking takes up to five times the bytes, and is to take no more than 300 MB.
+        Self { entries: 20_000, bytes: 48 << 20, ratio: 250 }
     }
 }
 
@@ -98,8 +99,21 @@ pub fn read(bytes: &[u8], limits: &Limits) -> Result<Archive, Vec<Fault>> {
     let broken = |e: &dyn std::fmt::Display| {
         vec![Fault::new("(archive)", "a whole zip archive", format!("another: {e}"))]
     };
-    let mut zip = ZipArchive::new(Cursor::new(bytes)).map_err(|e| broken(&e))?;
     let mut faults = Vec::new();
+    let too_many = |found: usize| {
+        Fault::new(
+            "(archive)",
+            format!("at most {} entries", limits.entries),
+            format!("{found} entries"),
+        )
+    };
+    // Counted before they are read, for reading an entry takes ten times its bytes. The mark may stand in a file's bytes,
+    // too, but not as often.
+    let marks = bytes.windows(4).filter(|w| *w == b"PK\x01\x02").count();
+    if marks > limits.entries.saturating_mul(2) {
+        return Err(vec![too_many(marks)]);
+    }
+    let mut zip = ZipArchive::new(Cursor::new(bytes)).map_err(|e| broken(&e))?;
     if zip.offset() > 0 {
         faults.push(Fault::new(
             "(archive)",
@@ -107,14 +121,17 @@ pub fn read(bytes: &[u8], limits: &Limits) -> Result<Archive, Vec<Fault>> {
             format!("{} bytes before it", zip.offset()),
         ));
     }
+    if let Some(behind) = bytes_behind(bytes) {
+        faults.push(Fault::new(
+            "(archive)",
+            "a zip that ends at the last byte",
+            format!("{behind} bytes behind it"),
+        ));
+    }
     let start = usize::try_from(zip.central_directory_start()).unwrap_or(usize::MAX);
     let listed = central_names(bytes.get(start..).unwrap_or_default());
     if listed.len() > limits.entries || zip.len() > limits.entries {
-        faults.push(Fault::new(
-            "(archive)",
-            format!("at most {} entries", limits.entries),
-            listed.len().max(zip.len()).to_string(),
-        ));
+        faults.push(too_many(listed.len().max(zip.len())));
         return Err(faults);
     }
     faults.extend(duplicates(&listed));
@@ -287,6 +304,14 @@ fn locate(files: Vec<(String, Vec<u8>)>) -> Result<Archive, Vec<Fault>> {
         .map(|(path, bytes)| (format!("{onto}{}", &path[prefix.len()..]), bytes))
         .collect();
     Ok(Archive { form, tree })
+}
+
+/// How many bytes stand behind the archive's end record and its comment; `None` where none do.
+fn bytes_behind(bytes: &[u8]) -> Option<usize> {
+    let at = bytes.windows(4).rposition(|w| w == b"PK\x05\x06")?;
+    let comment = bytes.get(at + 20..at + 22)?;
+    let end = at + 22 + usize::from(u16::from_le_bytes([comment[0], comment[1]]));
+    bytes.len().checked_sub(end).filter(|behind| *behind > 0)
 }
 
 /// The names in a central directory as they stand there: the zip crate keeps only the last of equal ones.

@@ -1,6 +1,6 @@
 //! The bag's tag files (RFC 8493): written in one form, read in every harmless one.
 
-use super::{Circumstance, Fault, Moment, Tree, format, names};
+use super::{Circumstance, Fault, Limits, Moment, Tree, format, names};
 use crate::digest::{ResultsDigest, Sha256Digest, StudyDigest};
 
 /// The declaration.
@@ -25,7 +25,11 @@ pub fn parse_manifest(file: &str, bytes: &[u8]) -> Result<Vec<(String, Sha256Dig
     })?;
     let (mut entries, mut faults) = (Vec::new(), Vec::new());
     let mut seen = names::Names::default();
+    let most = Limits::default().entries;
     for (number, line) in text.lines().enumerate().filter(|(_, line)| !line.is_empty()) {
+        if entries.len() + faults.len() >= most {
+            return Err(vec![Fault::new(file, format!("at most {most} lines"), "more")]);
+        }
         let place = format!("{file}:{}", number + 1);
         let entry = line.split_at_checked(64).and_then(|(digest, rest)| {
             let path = rest.strip_prefix("  ").or_else(|| rest.strip_prefix(" *"))?;
@@ -52,34 +56,41 @@ fn excerpt(line: &str) -> String {
     format!("`{}`", start.escape_default())
 }
 
+/// Lines of `bag-info.txt` that are read; it has a dozen.
+const MOST_LINES: usize = 10_000;
+
 /// The labels of `bag-info.txt` in the order written; a label may stand several times.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct BagInfo(pub Vec<(String, String)>);
 
 impl BagInfo {
-    /// What this program writes.
+    /// What this program writes; without circumstances where it bags a payload whose bag was lost.
     pub(super) fn of(
         payload: &Tree,
-        circumstance: &Circumstance,
+        circumstance: Option<&Circumstance>,
         results: ResultsDigest,
         study: StudyDigest,
         partial: bool,
         uuid: &str,
     ) -> Self {
         let octets: usize = payload.values().map(Vec::len).sum();
+        let version = circumstance.map_or(format::VERSION, |c| c.version.as_str());
         let mut labels = vec![
-            ("Bag-Software-Agent", format!("reenact {} <{}>", circumstance.version, format::HOME)),
-            ("Bagging-Date", circumstance.ended.date()),
+            ("Bag-Software-Agent", format!("reenact {version} <{}>", format::HOME)),
             ("Bundle-Format", format::FORMAT.to_string()),
             ("External-Identifier", format!("urn:uuid:{uuid}")),
             ("Partial", partial.to_string()),
             ("Payload-Oxum", format!("{octets}.{}", payload.len())),
             ("Results-Digest", format!("sha256:{results}")),
-            ("Run-Ended", circumstance.ended.iso()),
-            ("Run-Started", circumstance.started.iso()),
             ("Study-Digest", format!("sha256:{study}")),
         ];
-        for (name, value) in &circumstance.environment {
+        if let Some(circumstance) = circumstance {
+            labels.push(("Bagging-Date", circumstance.ended.date()));
+            labels.push(("Run-Ended", circumstance.ended.iso()));
+            labels.push(("Run-Started", circumstance.started.iso()));
+        }
+        labels.sort_unstable();
+        for (name, value) in circumstance.iter().flat_map(|c| &c.environment) {
             labels.push(("Run-Environment", one_line(&format!("{name}={value}"))));
         }
         Self(labels.into_iter().map(|(label, value)| (label.to_owned(), value)).collect())
@@ -96,7 +107,7 @@ impl BagInfo {
     /// Reads the file; lines that begin with white space continue the last value.
     pub fn parse(bytes: &[u8]) -> Self {
         let mut labels: Vec<(String, String)> = Vec::new();
-        for line in String::from_utf8_lossy(bytes).lines() {
+        for line in String::from_utf8_lossy(bytes).lines().take(MOST_LINES) {
             match (line.split_once(':'), labels.last_mut()) {
                 (_, Some((_, value))) if line.starts_with([' ', '\t']) => {
                     value.push(' ');
@@ -176,7 +187,7 @@ mod tests {
         let (results, study) = (Sha256Digest::of("r"), Sha256Digest::of("s"));
         let info = BagInfo::of(
             &Tree::new(),
-            &circumstance,
+            Some(&circumstance),
             ResultsDigest(results),
             StudyDigest(study),
             false,

@@ -1,5 +1,8 @@
 //! The format's version and the names of its files (`docs/bundle-format.md`).
 
+use super::Fault;
+use std::cmp::Ordering;
+
 /// Version of the layout that this program writes, and the newest it reads.
 pub const FORMAT: u64 = 1;
 
@@ -64,6 +67,27 @@ pub fn newer_format_hint(found: u64) -> String {
         "this is reenact {VERSION}, which reads formats 1 to {FORMAT}; install the version named after \
          `Bag-Software-Agent` in {BAG_INFO} (or any newer one) to read format {found}"
     )
+}
+
+/// What to do about a bundle that does not say its format.
+pub const NO_FORMAT_HINT: &str = "every release writes its format's number: ask the author for the bundle as `reenact run` \
+                                  sealed it";
+
+/// Whether this program reads format `found`, which the file `path` states.
+///
+/// # Errors
+/// Where it is newer, or older than the first.
+pub(super) fn check(path: &str, found: u64) -> Result<(), Fault> {
+    let wrong = |expected: String| Fault::new(path, expected, format!("bundle format {found}"));
+    match found.cmp(&FORMAT) {
+        Ordering::Greater => Err(wrong(format!("bundle format {FORMAT} or older"))
+            .hint(newer_format_hint(found))),
+        Ordering::Less => Err(wrong(format!("bundle format {FORMAT}")).hint(
+            "no release wrote that format: ask the author for the bundle as `reenact run` sealed it, or run its study.yaml \
+             again",
+        )),
+        Ordering::Equal => Ok(()),
+    }
 }
 
 /// The media type that archives expect for `path`, by its extension.

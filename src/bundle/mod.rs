@@ -35,11 +35,11 @@ pub use capsule::Capsule;
 pub use content::{
     Author, BundleContent, Circumstance, Citation, SealedCondition, SealedInput, seal_inputs,
 };
-pub use fault::Fault;
+pub use fault::{Fault, visible};
 pub use moment::Moment;
 pub use reader::{Bundle, OpenError};
 pub use resolved::{ConditionEntry, InputEntry, Resolved};
-pub use writer::{SealError, Sealed, seal, seal_with};
+pub use writer::{SealError, Sealed, in_bag, seal, seal_with};
 
 use crate::digest::{ResultsDigest, Sha256Digest};
 use std::collections::BTreeMap;

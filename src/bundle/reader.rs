@@ -26,6 +26,10 @@ fn list(faults: &[Fault]) -> String {
     faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
 }
 
+/// The most memory (bytes) that a bundle's records may take: honest ones take about as much as their text, of which
+/// [`Limits`] leaves less.
+const HEAVIEST_RECORDS: usize = 80 << 20;
+
 /// A readable bundle. That it is what it says is for `verify` to find out.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bundle {
@@ -148,13 +152,25 @@ impl Bundle {
     /// All records, in plan order.
     ///
     /// # Errors
-    /// Every line that is no record.
+    /// Every line that is no record; and where all of them together would take more memory than honest ones can.
     pub fn records(&self) -> Result<Vec<TrialRecord>, Vec<Fault>> {
         let (mut records, mut faults) = (Vec::new(), Vec::new());
+        let mut weight = 0;
         for condition in &self.resolved.conditions {
             for (i, line) in self.record_lines(&condition.slug).enumerate() {
                 match TrialRecord::from_line(line) {
-                    Ok(record) => records.push(record),
+                    Ok(record) => {
+                        weight += record.weight();
+                        records.push(record);
+                        if weight > HEAVIEST_RECORDS {
+                            let path = format!("{}{}", format::PAYLOAD, format::TRIALS);
+                            let expected = format!(
+                                "records that take at most {} MiB of memory",
+                                HEAVIEST_RECORDS >> 20
+                            );
+                            return Err(vec![Fault::new(path, expected, "more")]);
+                        }
+                    }
                     Err(problem) => {
                         let path = format::records_path(&condition.slug);
                         let place = format!("{}{path}:{}", format::PAYLOAD, i + 1);
@@ -242,12 +258,7 @@ pub(crate) fn check_version(tree: &Tree) -> Result<(), Fault> {
     ];
     for (path, version) in stated {
         if let Some(newer) = version.filter(|version| *version > format::FORMAT) {
-            return Err(Fault::new(
-                path,
-                format!("bundle format {} or older", format::FORMAT),
-                format!("bundle format {newer}"),
-            )
-            .hint(format::newer_format_hint(newer)));
+            return format::check(path, newer);
         }
     }
     Ok(())

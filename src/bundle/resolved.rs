@@ -1,6 +1,6 @@
 //! `study.resolved.json`: what the bundle is made of, and the study with nothing left to guess.
 
-use super::{BundleContent, Fault, format};
+use super::{BundleContent, Fault, format, names};
 use crate::digest::{FileDigest, Sha256Digest};
 use crate::json;
 use serde::{Deserialize, Serialize};
@@ -90,29 +90,64 @@ impl Resolved {
             bundle_format: u64,
         }
         let path = format!("{}{}", format::PAYLOAD, format::RESOLVED);
-        let fault = |e: serde_json::Error| {
-            Fault::new(
-                &path,
-                "the resolved study of format 1 (docs/bundle-format.md)",
-                e.to_string(),
-            )
+        let fault = |problem: String| {
+            Fault::new(&path, "the resolved study of format 1 (docs/bundle-format.md)", problem)
         };
-        let version: Version = serde_json::from_slice(bytes).map_err(fault)?;
-        if version.bundle_format > format::FORMAT {
-            return Err(Fault::new(
-                &path,
-                format!("bundle format {} or older", format::FORMAT),
-                format!("bundle format {}", version.bundle_format),
-            )
-            .hint(format::newer_format_hint(version.bundle_format)));
+        let version: Version = serde_json::from_slice(bytes)
+            .map_err(|e| fault(e.to_string()).hint(format::NO_FORMAT_HINT))?;
+        format::check(&path, version.bundle_format)?;
+        let resolved: Self = json::read(bytes).map_err(fault)?;
+        let wrong = match names::hazard(&resolved.name) {
+            Some(hazard) => Some(hazard),
+            None if resolved.name.contains('/') => Some("a path"),
+            None if !names::is_portable(&resolved.name) => Some("other characters"),
+            None => None,
+        };
+        match wrong {
+            // It begins the names of files that `export` and `report` write.
+            Some(wrong) => Err(Fault::new(&path, "a name of A-Z a-z 0-9 . _ - at /name", wrong)),
+            None => Ok(resolved),
         }
-        serde_json::from_slice(bytes).map_err(fault)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_name_cannot_lead_out_of_a_folder() {
+        let mut resolved = Resolved::of(&super::super::sample::content());
+        for (name, found) in [
+            ("../up", "a path that climbs out of its folder"),
+            ("/root", "an absolute path"),
+            ("a/b", "a path"),
+            ("a b", "other characters"),
+        ] {
+            name.clone_into(&mut resolved.name);
+            assert_eq!(
+                Resolved::read(&resolved.to_bytes()).unwrap_err().to_string(),
+                format!(
+                    "data/study.resolved.json: expected a name of A-Z a-z 0-9 . _ - at /name, found {found}"
+                )
+            );
+        }
+    }
+
+    #[test]
+    fn older_and_missing_formats_are_refused_with_help() {
+        assert_eq!(
+            Resolved::read(br#"{"bundle-format": 0}"#).unwrap_err().to_string(),
+            "data/study.resolved.json: expected bundle format 1, found bundle format 0 (no release wrote that format: ask the \
+             author for the bundle as `reenact run` sealed it, or run its study.yaml again)"
+        );
+        assert_eq!(
+            Resolved::read(b"{}").unwrap_err().to_string(),
+            "data/study.resolved.json: expected the resolved study of format 1 (docs/bundle-format.md), found missing field \
+             `bundle-format` at line 1 column 2 (every release writes its format's number: ask the author for the bundle as \
+             `reenact run` sealed it)"
+        );
+    }
 
     #[test]
     fn a_newer_format_is_refused_with_help() {

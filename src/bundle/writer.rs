@@ -1,8 +1,8 @@
 //! Sealing: content and circumstances become a tree of files whose every byte something vouches for.
 
 use super::{
-    BundleContent, Capsule, Circumstance, Form, Resolved, Tree, archive, bag, crate_metadata,
-    format, names, preview, readme, results_digest,
+    Bundle, BundleContent, Capsule, Circumstance, Form, Limits, Resolved, Tree, archive, bag,
+    crate_metadata, format, names, preview, readme, results_digest,
 };
 use crate::digest::{BundleId, ResultsDigest, Sha256Digest, StudyDigest};
 use thiserror::Error;
@@ -29,6 +29,19 @@ pub enum SealError {
         path: String,
         /// The earlier one.
         other: String,
+    },
+    /// More than readers take.
+    #[error(
+        "the bundle would hold {files} files of {bytes} bytes: expected at most {} files and {} bytes, so that anyone can \
+         check it; run the study in parts (--only), or make it smaller",
+        Limits::default().entries,
+        Limits::default().bytes
+    )]
+    Size {
+        /// How many files.
+        files: usize,
+        /// Their bytes together.
+        bytes: u64,
     },
     /// A record that spans lines.
     #[error("{path}: expected one line for each record, found a line feed in record {record}")]
@@ -70,7 +83,7 @@ impl Sealed {
 /// Seals `content`.
 ///
 /// # Errors
-/// Where a name is unsafe or taken, or a record is not one line.
+/// Where a name is unsafe or taken, a record is not one line, or the whole is more than readers take.
 pub fn seal(content: &BundleContent, circumstance: &Circumstance) -> Result<Sealed, SealError> {
     seal_with(content, circumstance, None)
 }
@@ -132,24 +145,9 @@ pub fn seal_with(
     let page = preview::page(content, circumstance, &payload.tree, results_digest);
     payload.add(format::PREVIEW, page.into())?;
 
-    let mut tree = payload.tree;
-    let manifest = bag::manifest(&tree);
-    let info = bag::BagInfo::of(
-        &tree,
-        circumstance,
-        results_digest,
-        study_digest,
-        content.partial,
-        &uuid(&Sha256Digest::of(&manifest)),
-    );
-    let mut tags = Tree::new();
-    tags.insert(format::BAGIT.to_owned(), bag::DECLARATION.into());
-    tags.insert(format::BAG_INFO.to_owned(), info.to_text().into_bytes());
-    tags.insert(format::MANIFEST.to_owned(), manifest.into_bytes());
-    let tag_manifest = bag::manifest(&tags).into_bytes();
-    let bundle_id = BundleId(Sha256Digest::of(&tag_manifest));
-    tags.insert(format::TAG_MANIFEST.to_owned(), tag_manifest);
-    tree.append(&mut tags);
+    let digests = (results_digest, study_digest);
+    let (tree, bundle_id) = bagged(payload.tree, Some(circumstance), digests, content.partial);
+    check_size(&tree, &Limits::default())?;
     Ok(Sealed { stem, tree, results_digest, study_digest, bundle_id })
 }
 
@@ -188,6 +186,46 @@ fn check_name(path: &str) -> Result<(), SealError> {
         None => return Ok(()),
     };
     Err(SealError::Name { path: path.to_owned(), found })
+}
+
+/// The files of `bundle` in a bag: as they are, or in a new one where only the crate is there.
+pub fn in_bag(bundle: &Bundle) -> Tree {
+    if bundle.form() != Form::Crate {
+        return bundle.tree().clone();
+    }
+    let payload = bundle.tree().iter().filter(|(path, _)| path.starts_with(format::PAYLOAD));
+    let payload = payload.map(|(path, bytes)| (path.clone(), bytes.clone())).collect();
+    let digests = (bundle.results_digest(), bundle.study_digest());
+    bagged(payload, None, digests, bundle.is_partial()).0
+}
+
+/// `payload` with the tag files of its bag.
+fn bagged(
+    payload: Tree,
+    circumstance: Option<&Circumstance>,
+    (results, study): (ResultsDigest, StudyDigest),
+    partial: bool,
+) -> (Tree, BundleId) {
+    let mut tree = payload;
+    let manifest = bag::manifest(&tree);
+    let uuid = uuid(&Sha256Digest::of(&manifest));
+    let info = bag::BagInfo::of(&tree, circumstance, results, study, partial, &uuid);
+    let mut tags = Tree::new();
+    tags.insert(format::BAGIT.to_owned(), bag::DECLARATION.into());
+    tags.insert(format::BAG_INFO.to_owned(), info.to_text().into_bytes());
+    tags.insert(format::MANIFEST.to_owned(), manifest.into_bytes());
+    let tag_manifest = bag::manifest(&tags).into_bytes();
+    let bundle_id = BundleId(Sha256Digest::of(&tag_manifest));
+    tags.insert(format::TAG_MANIFEST.to_owned(), tag_manifest);
+    tree.append(&mut tags);
+    (tree, bundle_id)
+}
+
+/// Whether readers that keep to `limits` take `tree`.
+fn check_size(tree: &Tree, limits: &Limits) -> Result<(), SealError> {
+    let bytes = tree.values().map(|bytes| bytes.len() as u64).sum();
+    let fits = bytes <= limits.bytes && tree.len() <= limits.entries;
+    if fits { Ok(()) } else { Err(SealError::Size { files: tree.len(), bytes }) }
 }
 
 /// A UUID of version 8 made of the first bits of `digest` (RFC 9562, section 5.8 and appendix B.2).
@@ -240,6 +278,22 @@ mod tests {
             "tagmanifest-sha256.txt",
         ];
         assert_eq!(changed, expected);
+    }
+
+    #[test]
+    fn what_readers_would_refuse_is_not_sealed() {
+        let mut content = sample::content();
+        content.results = vec![("big".into(), vec![b'x'; 48 << 20])];
+        let error = seal(&content, &sample::circumstance()).unwrap_err();
+        let SealError::Size { files, bytes } = error else { panic!("{error}") };
+        assert!(files == 15 && bytes > 48 << 20, "{files} files, {bytes} bytes");
+        assert_eq!(
+            error.to_string(),
+            format!(
+                "the bundle would hold 15 files of {bytes} bytes: expected at most 20000 files and 50331648 bytes, so that \
+                 anyone can check it; run the study in parts (--only), or make it smaller"
+            )
+        );
     }
 
     #[test]

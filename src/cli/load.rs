@@ -9,7 +9,7 @@ use crate::bundle::archive::{Archive, Limits};
 use crate::document::{Severity, Source};
 use crate::manifest::{self, Experiment, Inputs, WrittenIn};
 use crate::plan::{Plan, Selection};
-use crate::store;
+use crate::store::{self, reason};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
@@ -125,17 +125,6 @@ fn unreadable(path: &Path, error: &std::io::Error) -> Failure {
             Failure::not_understood(message)
         }
         _ => Failure::failed(message),
-    }
-}
-
-/// What went wrong, without the numbers of one operating system.
-fn reason(error: &std::io::Error) -> String {
-    match error.kind() {
-        ErrorKind::NotFound => "no such file".to_owned(),
-        ErrorKind::PermissionDenied => "no permission".to_owned(),
-        ErrorKind::IsADirectory => "it is a folder".to_owned(),
-        ErrorKind::StorageFull => "the disk is full".to_owned(),
-        _ => error.to_string(),
     }
 }
 

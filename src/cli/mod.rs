@@ -41,6 +41,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> Exit {
     let terminal = Terminal::new(&environment);
     silence_panicking_trials();
     match catch_unwind(|| dispatch(arguments.command, &environment, terminal)) {
+        Ok(Ok(_)) if Terminal::has_lost_results() => Exit::Failed,
         Ok(Ok(exit)) => exit,
         Ok(Err(Failure { exit, message })) => {
             terminal.failure(&message);

@@ -2,7 +2,12 @@
 
 use crate::document::{Diagnostic, Severity};
 use crate::provenance::Environment;
-use std::io::{IsTerminal as _, Write as _};
+use crate::store::reason;
+use std::io::{ErrorKind, IsTerminal as _, Write as _};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Whether a result could not be written.
+static LOST: AtomicBool = AtomicBool::new(false);
 
 /// The two streams of the process.
 #[derive(Debug, Clone, Copy)]
@@ -31,14 +36,25 @@ impl Terminal {
     }
 
     /// Writes a result. A reader who has gone away (a closed pipe) is no fault of ours.
-    #[expect(clippy::unused_self, reason = "all output goes through the terminal")]
     pub(super) fn result(self, text: &str) {
         let mut out = std::io::stdout().lock();
-        let _ = out.write_all(text.as_bytes());
-        if !text.ends_with('\n') {
-            let _ = out.write_all(b"\n");
+        let end = if text.ends_with('\n') { "" } else { "\n" };
+        let written = out
+            .write_all(text.as_bytes())
+            .and_then(|()| out.write_all(end.as_bytes()))
+            .and_then(|()| out.flush());
+        if let Err(error) = written.or_else(|e| match e.kind() {
+            ErrorKind::BrokenPipe => Ok(()),
+            _ => Err(e),
+        }) {
+            self.error(&format!("cannot write the result: {}", reason(&error)));
+            LOST.store(true, Ordering::Relaxed);
         }
-        let _ = out.flush();
+    }
+
+    /// Whether a result could not be written: then the command has failed, whatever it found.
+    pub(super) fn has_lost_results() -> bool {
+        LOST.load(Ordering::Relaxed)
     }
 
     /// Writes a note to stderr.

@@ -126,11 +126,14 @@ impl Diagnostic {
         let title = level.primary_title(self.message.as_str());
         let mut report = if let Some((source, span)) = &self.place {
             let end = span.end.clamp(span.start, source.text.len().max(span.start));
-            let mut annotation = AnnotationKind::Primary.span(span.start..end);
+            // Only the lines that are shown: the renderer takes many times the memory of its text.
+            let (first, number, lines) = lines_of(&source.text, span.start, end);
+            let mut annotation = AnnotationKind::Primary.span(span.start - first..end - first);
             if !self.label.is_empty() {
                 annotation = annotation.label(self.label.as_str());
             }
-            title.element(Snippet::source(&*source.text).path(&*source.name).annotation(annotation))
+            let snippet = Snippet::source(lines).line_start(number).path(&*source.name);
+            title.element(snippet.annotation(annotation))
         } else {
             annotate_snippets::Group::with_title(title)
         };
@@ -141,6 +144,18 @@ impl Diagnostic {
         let mut text = renderer.render(&[report]);
         text.push('\n');
         text
+    }
+}
+
+/// The lines of `text` that hold `start..end`, where they begin (byte), and the number of the first, from 1.
+fn lines_of(text: &str, start: usize, end: usize) -> (usize, usize, &str) {
+    match (text.get(..start), text.get(end..)) {
+        (Some(before), Some(after)) => {
+            let first = before.rfind('\n').map_or(0, |at| at + 1);
+            let last = after.find('\n').map_or(text.len(), |at| end + at);
+            (first, before.matches('\n').count() + 1, &text[first..last])
+        }
+        _ => (0, 1, text),
     }
 }
 

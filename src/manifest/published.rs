@@ -15,9 +15,18 @@ use std::collections::{BTreeMap, BTreeSet};
 const COLUMNS: [(&str, bool); 4] =
     [("coverage-percent", false), ("value", true), ("sd", false), ("n", false)];
 
+/// No paper prints more (bytes); a table takes many times its text.
+const MOST_BYTES: usize = 1 << 19;
+
 /// Reads a tidy CSV: columns named after factors, then `coverage-percent`, `value`, and where known `sd` and
 /// `n`; one row per published number.
 pub(super) fn read(source: &Source, factors: &[Factor], faults: &mut Faults<'_>) -> Option<Table> {
+    if source.text.len() > MOST_BYTES {
+        let message =
+            format!("a file of {} bytes: expected at most {MOST_BYTES}", source.text.len());
+        faults.push(Diagnostic::error(source, line(source, 1), message));
+        return None;
+    }
     let table = match Table::from_csv(&source.text) {
         Ok(table) => table,
         Err(error) => {

@@ -55,6 +55,21 @@ impl Plan {
         Ok(Self { experiment, trials, partial: selection.is_partial() })
     }
 
+    /// How many trials of `experiment` `selection` wants, without making them.
+    pub fn size(experiment: &Experiment, selection: &Selection) -> u64 {
+        let wanted = experiment
+            .conditions
+            .iter()
+            .filter(|(condition, _)| selection.wants(condition))
+            .count();
+        let all = wanted as u64 * u64::from(selection.trials.unwrap_or(experiment.trials));
+        match selection.shard {
+            // Of all N numbers from 0, those that leave I - 1 when divided.
+            Some((i, n)) => (all + u64::from(n) - u64::from(i)) / u64::from(n),
+            None => all,
+        }
+    }
+
     /// The trial that `wanted` names: at least 8 hex digits of its key, or `CONDITION/NUMBER` with the
     /// condition's slug.
     ///

@@ -59,6 +59,9 @@ pub struct SeriesPoint {
     pub coverage_percent: f64,
 }
 
+/// Bytes of the longest line that is read as a record: a day of simulated time takes half of that.
+const LONGEST_LINE: usize = 4 << 20;
+
 /// What came out of one trial.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
@@ -111,12 +114,34 @@ impl TrialRecord {
         json::canonical_of(self)
     }
 
-    /// Reads a line.
+    /// Reads a line of whatever origin.
     ///
     /// # Errors
-    /// Where it is not the JSON of a record, in words.
+    /// Where it is not the JSON of a record, or one that no trial can have, in words.
     pub fn from_line(line: &str) -> Result<Self, String> {
-        serde_json::from_str(line).map_err(|e| e.to_string())
+        if line.len() > LONGEST_LINE {
+            return Err(format!("a line of {} bytes (at most {LONGEST_LINE} allowed)", line.len()));
+        }
+        let record: Self = serde_json::from_str(line).map_err(|e| e.to_string())?;
+        let is_hash = |hash: &String| {
+            hash.len() == 16 && hash.bytes().all(|b| matches!(b, b'0'..=b'9' | b'a'..=b'f'))
+        };
+        match record.chain.iter().position(|hash| !is_hash(hash)) {
+            Some(i) => Err(format!("no state hash of 16 hex digits at /chain/{i}")),
+            None => Ok(record),
+        }
+    }
+
+    /// About how much memory it takes (bytes), never much less.
+    pub fn weight(&self) -> usize {
+        const ALLOCATION: usize = 32;
+        let text = |text: &String| size_of::<String>() + ALLOCATION + text.len();
+        size_of::<Self>()
+            + text(&self.cause)
+            + self.chain.iter().map(text).sum::<usize>()
+            + self.condition.iter().map(|(name, value)| text(name) + text(value)).sum::<usize>()
+            + self.measures.keys().map(|name| text(name) + ALLOCATION).sum::<usize>()
+            + self.series.len() * size_of::<SeriesPoint>()
     }
 
     /// The first instant (s of simulated time) after which this record and `other` differ, by their hash
@@ -136,4 +161,43 @@ pub fn first_divergence(a: &[String], b: &[String]) -> Option<f64> {
     let first = (0..common).find(|&i| a[i] != b[i]).or((a.len() != b.len()).then_some(common))?;
     #[expect(clippy::cast_precision_loss, reason = "chains are short")]
     Some(first as f64 * CHAIN_STEP_S)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_that_no_trial_wrote_are_refused() {
+        let line = |chain: &str, cause: &str| {
+            format!(
+                "{{\"key\":\"{}\",\"condition\":[],\"trial\":0,\"outcome\":\"stuck\",\"cause\":\"{cause}\",\"measures\":{{}},\
+                 \"series\":[],\"sim-seconds\":1,\"chain\":[{chain}]}}",
+                "0".repeat(64)
+            )
+        };
+        let refusal = |line: String| TrialRecord::from_line(&line).unwrap_err();
+        assert!(TrialRecord::from_line(&line("\"0123456789abcdef\"", "")).is_ok());
+        assert_eq!(
+            refusal(line("\"0123456789abcdef\",\"\"", "")),
+            "no state hash of 16 hex digits at /chain/1"
+        );
+        let long = line("", &"x".repeat(LONGEST_LINE));
+        assert_eq!(
+            refusal(long.clone()),
+            format!("a line of {} bytes (at most 4194304 allowed)", long.len())
+        );
+    }
+
+    #[test]
+    fn weight_counts_what_is_small_in_text_and_large_in_memory() {
+        let mut record = TrialRecord::from_line(
+            &format!("{{\"key\":\"{}\",\"condition\":[],\"trial\":0,\"outcome\":\"stuck\",\"measures\":{{}},\"series\":[],\
+                      \"sim-seconds\":1,\"chain\":[]}}", "0".repeat(64)),
+        )
+        .unwrap();
+        let empty = record.weight();
+        record.measures = (0..1000).map(|i| (format!("{i:03}"), None)).collect();
+        assert_eq!(record.weight() - empty, 1000 * (24 + 32 + 3 + 32));
+    }
 }

@@ -2,6 +2,7 @@
 
 use crate::bundle::{Bundle, Fault, Tree, bag, format, results_digest};
 use crate::digest::{FileDigest, Sha256Digest, TrialKey};
+use crate::json;
 use crate::studies::TrialRecord;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
@@ -14,20 +15,26 @@ pub(super) fn bag_facts(tree: &Tree) -> Vec<Fault> {
     let payload = tree.iter().filter(|(path, _)| path.starts_with(format::PAYLOAD));
     let (files, octets) = payload.fold((0, 0), |(n, sum), (_, bytes)| (n + 1, sum + bytes.len()));
     let mut stated = vec![
+        ("Bundle-Format", format::FORMAT.to_string()),
         ("Payload-Oxum", format!("{octets}.{files}")),
         ("Results-Digest", format!("sha256:{}", results_digest(tree))),
     ];
     if let Some(resolved) = tree.get(&payload_path(format::RESOLVED)) {
         stated.push(("Study-Digest", format!("sha256:{}", Sha256Digest::of(resolved))));
     }
-    stated
-        .into_iter()
-        .filter(|(label, value)| info.get(label) != Some(value))
-        .map(|(label, value)| {
-            let found = info.get(label).unwrap_or("nothing");
-            Fault::new(format::BAG_INFO, format!("{label}: {value}"), found)
-        })
-        .collect()
+    let mut faults = Vec::new();
+    for (label, value) in stated {
+        let found: Vec<&str> =
+            info.0.iter().filter(|(l, _)| l == label).map(|(_, value)| value.as_str()).collect();
+        // Said twice, readers differ in which they believe.
+        if found != [value.as_str()] {
+            let found = if found.is_empty() { "nothing".to_owned() } else { found.join(", then ") };
+            let fault = Fault::new(format::BAG_INFO, format!("{label}: {value}"), found);
+            let is_format = label == "Bundle-Format";
+            faults.push(if is_format { fault.hint(format::NO_FORMAT_HINT) } else { fault });
+        }
+    }
+    faults
 }
 
 /// Digests and sizes in the crate's metadata against the files, in both directions.
@@ -36,9 +43,9 @@ pub(super) fn crate_metadata(tree: &Tree) -> Vec<Fault> {
     let graph = tree
         .get(&metadata)
         .ok_or_else(|| "no file".to_owned())
-        .and_then(|bytes| serde_json::from_slice::<Value>(bytes).map_err(|e| e.to_string()))
-        .and_then(|document| match document.get("@graph") {
-            Some(Value::Array(entities)) => Ok(entities.clone()),
+        .and_then(|bytes| json::read::<Value>(bytes))
+        .and_then(|mut document| match document.get_mut("@graph").map(Value::take) {
+            Some(Value::Array(entities)) => Ok(entities),
             _ => Err("no graph".to_owned()),
         });
     let graph = match graph {
@@ -102,6 +109,12 @@ pub(super) fn crate_metadata(tree: &Tree) -> Vec<Fault> {
 /// The resolved study against inputs and records.
 pub(super) fn contents(bundle: &Bundle) -> Vec<Fault> {
     let mut faults = Vec::new();
+    let info = bundle.tree().get(format::BAG_INFO).map(|bytes| bag::BagInfo::parse(bytes));
+    let said = info.as_ref().map(|info| info.get("Partial").unwrap_or("nothing"));
+    let partial = bundle.is_partial().to_string();
+    if let Some(said) = said.filter(|said| *said != partial) {
+        faults.push(Fault::new(format::BAG_INFO, format!("Partial: {partial}"), said));
+    }
     let mut known = BTreeSet::new();
     for input in bundle.inputs() {
         known.insert(payload_path(&input.path));
@@ -125,7 +138,7 @@ pub(super) fn contents(bundle: &Bundle) -> Vec<Fault> {
             faults.push(Fault::new(
                 payload_path(format::RESOLVED),
                 "every condition once",
-                condition.slug.as_str(),
+                format!("`{}` again", condition.slug),
             ));
             continue;
         }
@@ -155,6 +168,9 @@ pub(super) fn contents(bundle: &Bundle) -> Vec<Fault> {
     faults
 }
 
+/// Faults of one file that are told; after so many it is clear that it is none of ours.
+const MOST_FAULTS: usize = 100;
+
 /// The records of one condition: each whole, in its place, and under a key of its own.
 fn records(
     bundle: &Bundle,
@@ -165,6 +181,10 @@ fn records(
     let mut faults = Vec::new();
     let mut next = 0;
     for (i, line) in bundle.record_lines(slug).enumerate() {
+        if faults.len() >= MOST_FAULTS {
+            faults.push(Fault::new(path, "records", "too many faults to tell them all"));
+            break;
+        }
         let place = format!("{path}:{}", i + 1);
         let record = match TrialRecord::from_line(line) {
             Ok(record) => record,

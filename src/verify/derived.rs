@@ -4,7 +4,7 @@ use super::{PlannedTrial, Replanned, difference};
 use crate::bundle::{
     Bundle, Circumstance, Fault, Form, Moment, Tree, capsule, format, in_result_half, seal_with,
 };
-use crate::digest::Sha256Digest;
+use crate::digest::{Sha256Digest, TrialKey};
 use crate::studies::TrialRecord;
 
 /// Everything that does not follow from the manifest, the inputs and the records; and what could not be judged.
@@ -94,43 +94,35 @@ fn trials(bundle: &Bundle, planned: &[PlannedTrial]) -> Vec<Fault> {
     }
     for slug in sealed {
         let planned: Vec<_> = planned.iter().filter(|trial| trial.slug == slug).collect();
-        let records: Vec<_> =
-            bundle.record_lines(slug).map(|line| TrialRecord::from_line(line).ok()).collect();
         let path = format!("{}{}", format::PAYLOAD, format::records_path(slug));
-        if planned.len() != records.len() {
+        let count = bundle.record_lines(slug).count();
+        if planned.len() != count {
             let expected = format!("{} trials, as the manifest plans", planned.len());
-            faults.push(Fault::new(&path, expected, records.len().to_string()));
+            faults.push(Fault::new(&path, expected, count.to_string()));
         }
-        let wrong: Vec<usize> = planned
-            .iter()
-            .zip(&records)
-            .enumerate()
-            .filter(|(_, (planned, record))| {
-                record.as_ref().map(|r| (r.key, r.trial)) != Some((planned.key, planned.trial))
-            })
-            .map(|(i, _)| i)
-            .collect();
-        if let Some(&first) = wrong.first() {
-            let found = records[first].as_ref().map_or("no record".to_owned(), |r| {
-                format!("trial {} with key {}", r.trial, r.key.short())
-            });
-            let more = if wrong.len() > 1 {
-                format!(", and {} more", wrong.len() - 1)
+        // One record at a time: those of a forger may be large.
+        let (mut first, mut more) = (None, 0);
+        for (i, (planned, line)) in planned.iter().zip(bundle.record_lines(slug)).enumerate() {
+            let found = TrialRecord::from_line(line).ok().map(|record| (record.key, record.trial));
+            if found == Some((planned.key, planned.trial)) {
+                continue;
+            }
+            if first.is_none() {
+                first = Some((i, planned, found));
             } else {
-                String::new()
-            };
-            faults.push(
-                Fault::new(
-                    format!("{path}:{}", first + 1),
-                    format!(
-                        "trial {} with key {}, as the manifest plans",
-                        planned[first].trial,
-                        planned[first].key.short()
-                    ),
-                    format!("{found}{more}"),
-                )
-                .hint("the manifest, an input, the seed or the record was changed after the run"),
-            );
+                more += 1;
+            }
+        }
+        if let Some((i, planned, found)) = first {
+            let named =
+                |(key, trial): (TrialKey, u32)| format!("trial {trial} with key {}", key.short());
+            let found = found.map_or("no record".to_owned(), named);
+            let more = if more > 0 { format!(", and {more} more") } else { String::new() };
+            let expected =
+                format!("{}, as the manifest plans", named((planned.key, planned.trial)));
+            let hint = "the manifest, an input, the seed or the record was changed after the run";
+            let place = format!("{path}:{}", i + 1);
+            faults.push(Fault::new(place, expected, format!("{found}{more}")).hint(hint));
         }
     }
     faults

@@ -1,5 +1,6 @@
 //! Where two files first differ, in the terms of their kind: cell, value or line.
 
+use crate::json;
 use crate::table::Table;
 use serde_json::Value;
 
@@ -14,29 +15,53 @@ pub(super) fn first(path: &str, expected: &[u8], found: &[u8]) -> (String, Strin
     by_kind.unwrap_or_else(|| line(expected, found))
 }
 
+/// The longest line (bytes) that is read as a row: one of commas alone takes fifty times its length.
+const LONGEST_ROW: usize = 1 << 16;
+
+/// Reads no more than the header and the first row that differs: a table of unknown origin may be all rows.
 fn cell(expected: &str, found: &str) -> Option<(String, String)> {
-    let (expected, found) = (Table::from_csv(expected).ok()?, Table::from_csv(found).ok()?);
-    if expected.columns != found.columns {
-        let list = |table: &Table| format!("the columns {}", table.columns.join(", "));
-        return Some((list(&expected), list(&found)));
+    let row_of = |header: &str, row: &str| {
+        let fits = header.len().max(row.len()) <= LONGEST_ROW;
+        fits.then(|| Table::from_csv(&format!("{header}\n{row}\n")).ok()).flatten()
+    };
+    let ((expected_header, expected_rows), (found_header, found_rows)) =
+        (expected.split_once('\n')?, found.split_once('\n')?);
+    if expected_header != found_header {
+        let list = |header: &str| {
+            let table = (header.len() <= LONGEST_ROW).then(|| Table::from_csv(header).ok());
+            Some(format!("the columns {}", table.flatten()?.columns.join(", ")))
+        };
+        let (expected, found) = (list(expected_header)?, list(found_header)?);
+        return (expected != found.trim_end()).then_some((expected, found));
     }
-    for (row, (a, b)) in expected.rows.iter().zip(&found.rows).enumerate() {
-        for (column, (a, b)) in expected.columns.iter().zip(a.iter().zip(b)) {
-            if a.to_string() != b.to_string() {
-                return Some((
-                    format!("`{a}` in row {}, column `{column}`", row + 1),
-                    format!("`{b}`"),
-                ));
+    let (mut a, mut b) = (expected_rows.lines(), found_rows.lines());
+    let mut row = 0;
+    loop {
+        row += 1;
+        match (a.next(), b.next()) {
+            (Some(a), Some(b)) if a == b => {}
+            (Some(a), Some(b)) => {
+                let (a, b) = (row_of(expected_header, a)?, row_of(found_header, b)?);
+                let cells = a.rows.first()?.iter().zip(b.rows.first()?);
+                let (column, (a, b)) = a
+                    .columns
+                    .iter()
+                    .zip(cells)
+                    .find(|(_, (a, b))| a.to_string() != b.to_string())?;
+                return Some((format!("`{a}` in row {row}, column `{column}`"), format!("`{b}`")));
+            }
+            (None, None) => return None,
+            _ => {
+                let rows = |rows: &str| format!("{} rows", rows.lines().count());
+                return Some((rows(expected_rows), rows(found_rows)));
             }
         }
     }
-    let rows = |table: &Table| format!("{} rows", table.rows.len());
-    (expected.rows.len() != found.rows.len()).then(|| (rows(&expected), rows(&found)))
 }
 
 fn value(expected: &str, found: &str) -> Option<(String, String)> {
     let (expected, found) =
-        (serde_json::from_str(expected).ok()?, serde_json::from_str(found).ok()?);
+        (json::read(expected.as_bytes()).ok()?, json::read(found.as_bytes()).ok()?);
     let (pointer, expected, found) = value_at(String::new(), Some(&expected), Some(&found))?;
     let shown =
         |value: Option<&Value>| value.map_or("nothing".to_owned(), |v| excerpt(&v.to_string()));
@@ -73,21 +98,38 @@ fn line(expected: &[u8], found: &[u8]) -> (String, String) {
             (Some(x), Some(y)) if x == y => number += 1,
             (None, None) => return ("the same bytes".into(), "others".into()),
             (x, y) => {
-                let shown = |line: Option<&str>| line.map_or("its end".to_owned(), excerpt);
+                let from = beginning(x.unwrap_or_default(), y.unwrap_or_default());
+                let shown = |line: Option<&str>| {
+                    line.map_or("its end".to_owned(), |line| excerpt_from(line, from))
+                };
                 return (format!("{} in line {number}", shown(x)), shown(y));
             }
         }
     }
 }
 
+/// From which character to show two lines so that what differs is seen: the first, where it is near.
+fn beginning(a: &str, b: &str) -> usize {
+    let common = a.chars().zip(b.chars()).take_while(|(x, y)| x == y).count();
+    if common < 40 { 0 } else { common - 20 }
+}
+
 fn excerpt(text: &str) -> String {
-    let start: String = text.chars().take(60).collect();
-    let more = if start.len() < text.len() { "..." } else { "" };
-    let visible: String = start
+    excerpt_from(text, 0)
+}
+
+/// Sixty characters of `text` from the one at `from`.
+fn excerpt_from(text: &str, from: usize) -> String {
+    let part: String = text.chars().skip(from).take(60).collect();
+    let (less, more) = (
+        if from > 0 { "..." } else { "" },
+        if text.chars().nth(from + 60).is_some() { "..." } else { "" },
+    );
+    let visible: String = part
         .chars()
         .map(|c| if c.is_control() { c.escape_debug().to_string() } else { c.to_string() })
         .collect();
-    format!("`{visible}{more}`")
+    format!("`{less}{visible}{more}`")
 }
 
 #[cfg(test)]
@@ -111,5 +153,16 @@ mod tests {
         assert_eq!(say("c.json", r#"{"x":1}"#, r#"{"y":1}"#), "`1` at /x / nothing");
         assert_eq!(say("f.svg", "a\nb", "a\n"), "`b` in line 2 / ``");
         assert_eq!(say("f.svg", "a", "a\nb"), "its end in line 2 / `b`");
+        let long = "x".repeat(100);
+        assert_eq!(
+            say("f.svg", &format!("{long}yes"), &format!("{long}no")),
+            "`...xxxxxxxxxxxxxxxxxxxxyes` in line 1 / `...xxxxxxxxxxxxxxxxxxxxno`",
+            "what differs is seen"
+        );
+        let many = "1,2\n".repeat(50_000);
+        assert_eq!(
+            say("t.csv", &format!("a,b\n{many}3,4\n"), &format!("a,b\n{many}3,5\n")),
+            "`4` in row 50001, column `b` / `5`"
+        );
     }
 }

@@ -21,9 +21,12 @@ pub(super) fn check(archive: &Archive) -> Vec<Fault> {
         )),
     }
     let mut listed = BTreeMap::new();
+    // Where there is no list to hold files against, that alone is told.
+    let mut unread = Vec::new();
     for file in [format::MANIFEST, format::TAG_MANIFEST] {
         let Some(bytes) = tree.get(file) else {
             faults.push(Fault::new(file, "a list of digests", "no file"));
+            unread.push(file);
             continue;
         };
         match bag::parse_manifest(file, bytes) {
@@ -39,7 +42,10 @@ pub(super) fn check(archive: &Archive) -> Vec<Fault> {
                     }
                 }
             }
-            Err(problems) => faults.extend(problems),
+            Err(problems) => {
+                faults.extend(problems);
+                unread.push(file);
+            }
         }
     }
     for (path, (digest, file)) in &listed {
@@ -55,17 +61,11 @@ pub(super) fn check(archive: &Archive) -> Vec<Fault> {
     }
     for path in tree.keys() {
         let exempt = path == format::TAG_MANIFEST || format::SIGNATURES.contains(&path.as_str());
-        if !exempt && !listed.contains_key(path) {
-            let list = if path.starts_with(format::PAYLOAD) {
-                format::MANIFEST
-            } else {
-                format::TAG_MANIFEST
-            };
-            faults.push(Fault::new(
-                path,
-                format!("only files that {list} lists"),
-                "an unlisted file",
-            ));
+        let list =
+            if path.starts_with(format::PAYLOAD) { format::MANIFEST } else { format::TAG_MANIFEST };
+        if !exempt && !unread.contains(&list) && !listed.contains_key(path) {
+            let expected = format!("only files that {list} lists");
+            faults.push(Fault::new(path, expected, "an unlisted file"));
         }
     }
     if tree.contains_key("fetch.txt") {

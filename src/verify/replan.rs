@@ -35,6 +35,9 @@ impl Pipeline for Reenactment {
     }
 }
 
+/// How many more trials a manifest may ask for than its bundle holds before it is not even planned.
+const MOST_MISSING: u64 = 10_000;
+
 /// Plans the study of `bundle` again, from its manifest, inputs, overrides and selection alone.
 ///
 /// # Errors
@@ -59,6 +62,13 @@ fn plan_with(bundle: &Bundle, seed: Option<u64>) -> Result<(Plan, Selection), St
     let source = Source::new("study.yaml", text);
     let (experiment, _) = manifest::resolve(&source, &overrides, &Sealed(bundle))
         .map_err(|faults| faults.iter().map(|f| f.render(false)).collect::<String>())?;
+    // Counted before they are made: a manifest of a few words can ask for millions.
+    let planned = Plan::size(&experiment, &selection);
+    let sealed: usize =
+        bundle.conditions().iter().map(|c| bundle.record_lines(&c.slug).count()).sum();
+    if planned > sealed as u64 + MOST_MISSING {
+        return Err(format!("one of {planned} trials, where the bundle holds {sealed} records"));
+    }
     let plan = if selection.is_partial() {
         Plan::select(experiment, &selection).map_err(|e| e.to_string())?
     } else {

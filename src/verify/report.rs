@@ -1,6 +1,7 @@
 //! The report's three forms: for people, for programs, for CI.
 
 use super::{Finding, Level, Report, Severity, Verdict};
+use crate::bundle::visible;
 use crate::figure::svg::escape;
 use crate::json;
 use serde_json::json;
@@ -14,8 +15,10 @@ impl Report {
                 text.push_str(&format!("{name:<9}{}\n", plain(&value)));
             }
         };
-        fact("study", self.name.clone());
-        fact("engine", self.engine.clone());
+        // One line each, whatever a stranger called them.
+        let one_line = |text: &String| visible(text).replace('\n', " ");
+        fact("study", self.name.as_ref().map(one_line));
+        fact("engine", self.engine.as_ref().map(one_line));
         fact("results", self.results_digest.map(|digest| format!("sha256:{digest}")));
         fact("bundle", self.bundle_id.map(|id| format!("sha256:{id}")));
         fact("signed", self.signed.as_ref().map(ToString::to_string));
@@ -30,7 +33,9 @@ impl Report {
             ));
         }
         for finding in &self.findings {
-            text.push_str(&format!("{}\n", plain(&finding.to_string())));
+            // Further lines are set in, so that none can pass for one of ours.
+            let finding = plain(finding.to_string().trim_end());
+            text.push_str(&format!("{}\n", finding.replace('\n', "\n    ")));
         }
         for line in self.in_words() {
             text.push_str(&format!("{line}\n"));

@@ -157,7 +157,7 @@ fn bombs_and_forged_sizes_are_refused() {
     let many: Vec<(&str, &[u8])> = many.iter().map(|name| (name.as_str(), &b""[..])).collect();
     let limits = Limits { entries: 20, ..Limits::default() };
     let found = read(&sample::zip_of(&many), &limits).unwrap_err();
-    assert_eq!(found[0].to_string(), "(archive): expected at most 20 entries, found 30");
+    assert_eq!(found[0].to_string(), "(archive): expected at most 20 entries, found 30 entries");
 
     // A size forged in both headers: the entry still unpacks to more than it declares.
     let honest = sample::zip_of(&[("b/bagit.txt", b""), ("b/text", &[b'x'; 5000])]);

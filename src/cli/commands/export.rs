@@ -1,6 +1,6 @@
 //! `reenact export`: the same content in the forms that importers want.
 
-use crate::bundle::{Form, archive};
+use crate::bundle::{Form, archive, in_bag};
 use crate::cli::args::ExportArgs;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::load;
@@ -11,7 +11,7 @@ use crate::verify::path_in_bag;
 pub(in crate::cli) fn run(args: &ExportArgs, terminal: Terminal) -> Result<Exit, Failure> {
     let bundle = load::bundle(&args.bundle)?;
     let stem = format!("{}-{}", bundle.name(), bundle.results_digest().short());
-    let mut tree = bundle.tree().clone();
+    let mut tree = in_bag(&bundle);
     if let Some(signature) = &args.signature {
         let bytes = load::bytes(signature)?;
         let path = path_in_bag(&bytes).ok_or_else(|| {

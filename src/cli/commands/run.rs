@@ -13,7 +13,6 @@ use crate::cli::terminal::{Terminal, counted};
 use crate::compare::Lock;
 use crate::plan::Plan;
 use crate::provenance::{Environment, RunClock};
-use crate::store;
 use crate::studies::{Outcome, TrialRecord};
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
@@ -69,8 +68,8 @@ fn run_one(
     circumstance.files = measured.files;
     let capsule = args.capsule.then(capsule::own);
     let sealed = seal_with(&content, &circumstance, capsule.as_ref()).map_err(Failure::failed)?;
-    let path = store::publish(&args.out, &sealed.file_name(), &sealed.zip(Form::Bag))
-        .map_err(|e| Failure::failed(format!("cannot write to `{}`: {e}", args.out.display())))?;
+    let path = args.out.join(sealed.file_name());
+    load::write(&path, &sealed.zip(Form::Bag))?;
     let held = lock
         .map(|lock| Held::against(lock, manifest, &sealed, locked::extent(args)))
         .transpose()?;

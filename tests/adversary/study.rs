@@ -1,0 +1,75 @@
+//! The honest bundle that every attack begins with: a tiny study, run once by the program under test.
+
+use reenact::bundle::{Limits, Tree, archive};
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+use std::sync::LazyLock;
+
+/// Two cells of three trials of 20 simulated seconds, with a table, a figure and a claim.
+const STUDY: &str = "
+reenact: 1
+name: tiny
+title: A tiny study
+authors: [{name: A. Researcher}]
+license: CC-BY-4.0
+study: prior-map
+seed: 7
+trials: 3
+robot: robots/kobuki.urdf
+world: {file: worlds/basic.yaml, layers: [walls]}
+start: {x-m: 3, y-m: 2, heading-deg: 0}
+factors:
+  prior: [none, floor-plan]
+prior-maps:
+  floor-plan: {floor-plan-of: world}
+parameters:
+  mission: {time-limit-s: 20}
+tables:
+  - id: table-1
+    title: Distance travelled (m) at levels of coverage
+    coverage-table: {metric: distance-m, at: [50], by: prior, baseline: none}
+figures:
+  - id: figure-1
+    title: Coverage over time
+    coverage-curve: {against: time-s, by: prior}
+claims:
+  - id: T1
+    says: within 20 s the robot drives at least 5 m
+    paper-table: silent
+    expect: {between: {metric: distance-m, where: {prior: none}, low: 5, minimum-n: 3}}
+";
+
+/// A bundle that is what it says.
+pub(crate) struct Honest {
+    /// As `run` wrote it.
+    pub(crate) zip: Vec<u8>,
+    /// Its files, by their path in the bag.
+    pub(crate) tree: Tree,
+    /// Its one folder.
+    pub(crate) root: String,
+}
+
+/// The honest bundle.
+pub(crate) static HONEST: LazyLock<Honest> = LazyLock::new(|| {
+    let folder = tempfile::tempdir().unwrap();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for file in ["robots/kobuki.urdf", "worlds/basic.yaml"] {
+        let copy = folder.path().join(file);
+        fs::create_dir_all(copy.parent().unwrap()).unwrap();
+        fs::copy(root.join(file), copy).unwrap();
+    }
+    fs::write(folder.path().join("tiny.yaml"), STUDY).unwrap();
+    let output = Command::new(assert_cmd::cargo::cargo_bin!("reenact"))
+        .current_dir(folder.path())
+        .env("SOURCE_DATE_EPOCH", "1600000000")
+        .args(["run", "tiny.yaml", "--no-cache"])
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let stdout = String::from_utf8(output.stdout).unwrap();
+    let path = Path::new(stdout.lines().last().unwrap());
+    let zip = fs::read(folder.path().join(path)).unwrap();
+    let tree = archive::read(&zip, &Limits::default()).unwrap().tree;
+    Honest { zip, tree, root: path.file_stem().unwrap().to_str().unwrap().to_owned() }
+});

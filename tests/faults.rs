@@ -1,0 +1,340 @@
+//! Disks, permissions and clocks that fail: a clear error or a recovery, and no finished trial is lost.
+//!
+//! `.ci/kill-and-resume.sh` adds a hundred random kills.
+
+use assert_cmd::cargo::cargo_bin;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::LazyLock;
+use tempfile::TempDir;
+
+/// Two cells of three trials of 20 simulated seconds.
+const STUDY: &str = "
+reenact: 1
+name: tiny
+title: A tiny study
+license: CC-BY-4.0
+study: prior-map
+seed: 7
+trials: 3
+robot: robots/kobuki.urdf
+world: {file: worlds/basic.yaml, layers: [walls]}
+start: {x-m: 3, y-m: 2, heading-deg: 0}
+factors:
+  prior: [none, floor-plan]
+prior-maps:
+  floor-plan: {floor-plan-of: world}
+parameters:
+  mission: {time-limit-s: 20}
+";
+
+/// A folder of its own with the study.
+struct Place {
+    folder: TempDir,
+}
+
+/// What a command answered, the folder's name replaced.
+#[derive(Debug, PartialEq)]
+struct Answer {
+    stdout: String,
+    stderr: String,
+    code: Option<i32>,
+}
+
+impl Place {
+    fn new() -> Self {
+        let place = Self { folder: tempfile::tempdir().unwrap() };
+        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+        for file in ["robots/kobuki.urdf", "worlds/basic.yaml"] {
+            let copy = place.path(file);
+            fs::create_dir_all(copy.parent().unwrap()).unwrap();
+            fs::copy(root.join(file), copy).unwrap();
+        }
+        fs::write(place.path("tiny.yaml"), STUDY).unwrap();
+        place
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn command(&self, store: &str, out: &str) -> Command {
+        let mut command = Command::new(cargo_bin!("reenact"));
+        command.current_dir(self.folder.path()).env("REENACT_STORE", self.path(store)).args([
+            "run",
+            "tiny.yaml",
+            "--format",
+            "json",
+            "--out",
+            out,
+        ]);
+        command
+    }
+
+    fn run(&self, store: &str, out: &str) -> Answer {
+        let output = self.command(store, out).output().unwrap();
+        let text = |bytes: Vec<u8>| {
+            let folder = self.folder.path().display().to_string();
+            String::from_utf8(bytes).unwrap().replace(&folder, "HERE")
+        };
+        Answer {
+            stdout: text(output.stdout),
+            stderr: text(output.stderr),
+            code: output.status.code(),
+        }
+    }
+
+    /// Every file below a folder.
+    fn files(&self, below: &str) -> Vec<PathBuf> {
+        let (mut found, mut folders) = (Vec::new(), vec![self.path(below)]);
+        while let Some(folder) = folders.pop() {
+            for entry in fs::read_dir(folder).into_iter().flatten() {
+                let path = entry.unwrap().path();
+                if path.is_dir() {
+                    folders.push(path);
+                } else {
+                    found.push(path);
+                }
+            }
+        }
+        found.sort();
+        found
+    }
+}
+
+fn failed(message: &str) -> Answer {
+    Answer { stdout: String::new(), stderr: format!("error: {message}\n"), code: Some(3) }
+}
+
+/// What a run that came to its end says: its results, and how many trials it found in the store.
+#[track_caller]
+fn finished(answer: &Answer) -> (String, u64) {
+    assert_eq!((answer.stderr.as_str(), answer.code), ("", Some(0)), "{answer:?}");
+    let told: serde_json::Value = serde_json::from_str(&answer.stdout).unwrap();
+    let results = told["results_digest"].as_str().unwrap().to_owned();
+    (results, told["cached"].as_u64().unwrap())
+}
+
+/// The results of a run that nothing disturbed.
+static UNDISTURBED: LazyLock<String> =
+    LazyLock::new(|| finished(&Place::new().run("store", "out")).0);
+
+#[expect(clippy::print_stderr, reason = "whoever runs the tests must know what they did not test")]
+fn skipped(why: &str) {
+    eprintln!("SKIPPED: {why}");
+}
+
+/// A file system of its own on a folder, of so many KiB or for reading only; taken away at the end.
+struct Mounted(PathBuf);
+
+impl Mounted {
+    /// `None`, and a word about it, where this user may not mount.
+    fn tmpfs(on: PathBuf, options: &str) -> Option<Self> {
+        fs::create_dir_all(&on).unwrap();
+        let mut mount = Command::new("mount");
+        mount.args(["-t", "tmpfs", "-o", options, "tmpfs"]).arg(&on).stderr(Stdio::null());
+        if mount.status().is_ok_and(|status| status.success()) {
+            return Some(Self(on));
+        }
+        skipped(&format!("a file system `{options}` takes a user who may mount one"));
+        None
+    }
+
+    fn remount(&self, options: &str) {
+        let options = format!("remount,{options}");
+        let status = Command::new("mount").args(["-o", &options]).arg(&self.0).status().unwrap();
+        assert!(status.success());
+    }
+}
+
+impl Drop for Mounted {
+    fn drop(&mut self) {
+        let _ = Command::new("umount").arg(&self.0).status();
+    }
+}
+
+#[test]
+fn a_store_that_is_no_folder_is_told_and_nothing_is_run() {
+    let place = Place::new();
+    fs::write(place.path("file"), "").unwrap();
+    let says = "trial store: cannot read `HERE/file/store`: a part of its path is a file; free some space, allow writing, or \
+                choose another place with REENACT_STORE";
+    assert_eq!(place.run("file/store", "out"), failed(says));
+    assert_eq!(place.files("out"), [] as [PathBuf; 0]);
+}
+
+#[test]
+fn a_store_for_reading_only_is_told_and_serves_what_it_has() {
+    let place = Place::new();
+    let Some(store) = Mounted::tmpfs(place.path("store"), "size=1m") else { return };
+    store.remount("ro");
+    let says = "trial store: cannot write to `HERE/store`: the file system is for reading only; free some space, allow \
+                writing, or choose another place with REENACT_STORE";
+    assert_eq!(place.run("store", "out"), failed(says));
+    assert_eq!(place.files("out"), [] as [PathBuf; 0]);
+    store.remount("rw");
+    assert_eq!(finished(&place.run("store", "out")), (UNDISTURBED.clone(), 0));
+    store.remount("ro");
+    assert_eq!(finished(&place.run("store", "again")), (UNDISTURBED.clone(), 6));
+}
+
+#[test]
+fn a_full_disk_ends_the_run_and_loses_no_finished_trial() {
+    let place = Place::new();
+    let Some(store) = Mounted::tmpfs(place.path("store"), "size=12k") else { return };
+    let says = "trial store: cannot write to `HERE/store`: the disk is full; free some space, allow writing, or choose \
+                another place with REENACT_STORE";
+    assert_eq!(place.run("store", "out"), failed(says));
+    let stored = place.files("store");
+    assert!((1..6).contains(&stored.len()), "{stored:?}");
+    assert!(
+        stored.iter().all(|file| file.extension().is_some_and(|e| e == "json")),
+        "a part stays behind: {stored:?}"
+    );
+    assert_eq!(place.files("out"), [] as [PathBuf; 0]);
+    store.remount("size=1m");
+    let resumed = finished(&place.run("store", "out"));
+    assert_eq!(resumed, (UNDISTURBED.clone(), stored.len() as u64));
+}
+
+#[test]
+fn a_full_disk_leaves_no_half_bundle_and_the_trials_stay() {
+    let place = Place::new();
+    let Some(out) = Mounted::tmpfs(place.path("out"), "size=8k") else { return };
+    let results = UNDISTURBED.strip_prefix("sha256:").unwrap();
+    let says = format!("cannot write `out/tiny-{}.zip`: the disk is full", &results[..8]);
+    assert_eq!(place.run("store", "out"), failed(&says));
+    assert_eq!(place.files("out"), [] as [PathBuf; 0]);
+    out.remount("size=1m");
+    assert_eq!(finished(&place.run("store", "out")), (UNDISTURBED.clone(), 6));
+}
+
+#[test]
+fn a_place_for_bundles_that_cannot_be_written_is_told_and_the_trials_stay() {
+    let place = Place::new();
+    let results = UNDISTURBED.strip_prefix("sha256:").unwrap();
+    let name = format!("tiny-{}.zip", &results[..8]);
+    fs::write(place.path("file"), "").unwrap();
+    let says = format!("cannot write `file/out/{name}`: a part of its path is a file");
+    assert_eq!(place.run("store", "file/out"), failed(&says));
+    // A folder stands where the bundle should.
+    fs::create_dir_all(place.path("out").join(&name).join("x")).unwrap();
+    let says = format!("cannot write `out/{name}`: it is a folder");
+    assert_eq!(place.run("store", "out"), failed(&says));
+    assert_eq!(fs::read_dir(place.path("out")).unwrap().count(), 1, "a part stays behind");
+    if let Some(_locked) = Mounted::tmpfs(place.path("locked"), "ro") {
+        let says = format!("cannot write `locked/{name}`: the file system is for reading only");
+        assert_eq!(place.run("store", "locked"), failed(&says));
+    }
+    assert_eq!(finished(&place.run("store", "elsewhere")), (UNDISTURBED.clone(), 6));
+}
+
+/// Permissions do not bind root, so the program is run as nobody where the tests run as root.
+#[cfg(target_os = "linux")]
+#[test]
+fn missing_permissions_are_told() {
+    use std::os::unix::fs::PermissionsExt as _;
+    let place = Place::new();
+    let mode = |name: &str, mode| {
+        fs::create_dir_all(place.path(name)).unwrap();
+        fs::set_permissions(place.path(name), fs::Permissions::from_mode(mode)).unwrap();
+    };
+    mode("store", 0o555);
+    mode("out", 0o777);
+    mode(".", 0o755);
+    let is_root = Command::new("id").arg("-u").output().is_ok_and(|o| o.stdout == b"0\n");
+    let plain = place.command("store", "out");
+    let mut command = if is_root {
+        // The program may lie in a folder that is root's alone.
+        let copy = place.path("reenact");
+        fs::copy(cargo_bin!("reenact"), &copy).unwrap();
+        let mut command = Command::new("setpriv");
+        command
+            .args(["--reuid", "65534", "--regid", "65534", "--clear-groups"])
+            .arg(copy)
+            .args(plain.get_args())
+            .current_dir(place.folder.path())
+            .env("REENACT_STORE", place.path("store"));
+        command
+    } else {
+        plain
+    };
+    let Ok(output) = command.output() else {
+        skipped("missing permissions take `setpriv` where the tests run as root");
+        return;
+    };
+    let says = "error: trial store: cannot write to `HERE/store`: no permission; free some space, allow writing, or choose \
+                another place with REENACT_STORE\n";
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    let stderr = stderr.replace(&place.folder.path().display().to_string(), "HERE");
+    assert_eq!((stderr.as_str(), output.status.code()), (says, Some(3)));
+    assert_eq!(place.files("out"), [] as [PathBuf; 0]);
+}
+
+#[test]
+fn records_that_a_crash_left_damaged_are_run_again() {
+    let place = Place::new();
+    finished(&place.run("store", "out"));
+    let records = place.files("store");
+    assert_eq!(records.len(), 6);
+    let whole: Vec<Vec<u8>> = records.iter().map(|file| fs::read(file).unwrap()).collect();
+    // As crashes and failing disks leave them: empty, cut, zeros for what was not written, a flipped bit.
+    let half = whole[1].len() / 2;
+    fs::write(&records[0], "").unwrap();
+    fs::write(&records[1], &whole[1][..half]).unwrap();
+    fs::write(&records[2], [&whole[2][..half], &vec![0; whole[2].len() - half]].concat()).unwrap();
+    let mut flipped = whole[3].clone();
+    flipped[half] ^= 1;
+    fs::write(&records[3], flipped).unwrap();
+    // And what a killed process had not finished.
+    fs::write(records[0].with_file_name(".partial-abc"), &whole[0][..half]).unwrap();
+    assert_eq!(finished(&place.run("store", "again")), (UNDISTURBED.clone(), 2));
+    for (file, whole) in records.iter().zip(&whole) {
+        assert_eq!(fs::read(file).unwrap(), *whole, "{}", file.display());
+    }
+}
+
+#[test]
+fn another_record_under_a_trial_s_key_is_not_believed() {
+    let place = Place::new();
+    finished(&place.run("store", "out"));
+    let records = place.files("store");
+    fs::copy(&records[0], &records[1]).unwrap();
+    assert_eq!(finished(&place.run("store", "again")), (UNDISTURBED.clone(), 5));
+}
+
+#[test]
+fn two_processes_share_one_store() {
+    let place = Place::new();
+    let run = |out: &str| {
+        let mut command = place.command("store", out);
+        command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+    };
+    let both = [run("one"), run("two"), run("three")];
+    for child in both {
+        let output = child.wait_with_output().unwrap();
+        let answer = Answer {
+            stdout: String::from_utf8(output.stdout).unwrap(),
+            stderr: String::from_utf8(output.stderr).unwrap(),
+            code: output.status.code(),
+        };
+        assert_eq!(finished(&answer).0, *UNDISTURBED);
+    }
+    assert_eq!(place.files("store").len(), 6, "{:?}", place.files("store"));
+}
+
+/// Results that cannot be written are not a success.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_behind_stdout_is_told() {
+    let place = Place::new();
+    let full = fs::File::options().write(true).open("/dev/full").unwrap();
+    let output = place.command("store", "out").stdout(full).output().unwrap();
+    let says = "error: cannot write the result: the disk is full\n";
+    assert_eq!(
+        (String::from_utf8(output.stderr).unwrap().as_str(), output.status.code()),
+        (says, Some(3))
+    );
+    assert_eq!(place.files("out").len(), 1, "the bundle itself is written");
+}
