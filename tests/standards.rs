@@ -156,6 +156,7 @@ fn a_study_with_a_failed_trial_is_a_bundle_too() {
         started: Moment(1_768_478_400),
         ended: Moment(1_768_478_460),
         environment: vec![("jobs".to_owned(), "2".to_owned())],
+        files: Vec::new(),
     };
     let zip = seal(&content, &circumstance).unwrap().zip(Form::Bag);
     let claims = Bundle::read(&zip, &Limits::default()).unwrap();

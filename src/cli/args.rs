@@ -260,6 +260,9 @@ pub(super) struct ReplayArgs {
     /// Write a still picture
     #[arg(long, value_name = "FILE")]
     pub(super) svg: Option<PathBuf>,
+    /// Deadline study: write the constrained MDP of every plan of the first trial into this folder, for `solve-cmdp`
+    #[arg(long, value_name = "DIR")]
+    pub(super) plans: Option<PathBuf>,
     /// The instant of the still picture (s) [default: the end]
     #[arg(long, value_name = "SECONDS", requires = "svg")]
     pub(super) at: Option<f64>,

@@ -30,7 +30,7 @@ pub(super) fn manifest(
     let source = text(manifest)?;
     let folder = manifest.parent().unwrap_or(Path::new("")).to_owned();
     let (found, mut faults) =
-        match manifest::resolve(&source, set, &Folder { folder, calibrator, terminal }) {
+        match manifest::resolve(&source, set, &Folder { path: folder, calibrator, terminal }) {
             Ok((experiment, warnings)) => {
                 let mut faults = warnings;
                 faults.extend(manifest::check_claims(&experiment));
@@ -130,14 +130,14 @@ fn unreadable(path: &Path, error: &std::io::Error) -> Failure {
 
 /// Inputs of a manifest in this folder.
 struct Folder<'a> {
-    folder: PathBuf,
+    path: PathBuf,
     calibrator: Calibrator<'a>,
     terminal: Terminal,
 }
 
 impl Inputs for Folder<'_> {
     fn read(&self, as_written: &str, written_in: WrittenIn) -> Result<Vec<u8>, String> {
-        let beside = self.folder.join(as_written);
+        let beside = self.path.join(as_written);
         let read = |path: &Path| store::read(path);
         match written_in {
             WrittenIn::Manifest | WrittenIn::Calibration => read(&beside).map_err(|e| reason(&e)),
@@ -159,7 +159,7 @@ impl Inputs for Folder<'_> {
         let manifest = if written_in == WrittenIn::CommandLine && here.exists() {
             here.to_owned()
         } else {
-            self.folder.join(as_written)
+            self.path.join(as_written)
         };
         self.calibrator.csv(&manifest, self.terminal)
     }

@@ -3,7 +3,7 @@
 use super::experiment::Meanings;
 use super::inputs::normalised;
 use super::lint;
-use super::resolve::{Parts, Resolved, Resolver};
+use super::resolve::{Calibrated, Parts, Resolved, Resolver};
 use crate::studies::deadline::{self, Calibration, Parameters, Task};
 use crate::studies::{Condition, Setup, StudyKind};
 use serde_json::json;
@@ -53,12 +53,14 @@ impl Resolver<'_> {
 
     /// The planner's expectations, measured by the calibration manifest or read from the bundle that holds them.
     fn calibration(&mut self) -> Option<Arc<Calibration>> {
-        if let Some(known) = &self.calibration {
-            return known.clone();
+        if self.calibration.is_none() {
+            let read = self.read_calibration();
+            self.calibration = Some(read.map_or(Calibrated::Told, Calibrated::Known));
         }
-        let known = self.read_calibration();
-        self.calibration = Some(known.clone());
-        known
+        match &self.calibration {
+            Some(Calibrated::Known(known)) => Some(Arc::clone(known)),
+            _ => None,
+        }
     }
 
     fn read_calibration(&mut self) -> Option<Arc<Calibration>> {

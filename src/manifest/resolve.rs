@@ -74,6 +74,15 @@ pub(super) struct Parts {
     pub(super) start: Pose,
 }
 
+/// What the planner's expectations were read to be.
+#[derive(Clone)]
+pub(super) enum Calibrated {
+    /// These.
+    Known(Arc<Calibration>),
+    /// Nothing, which has been told.
+    Told,
+}
+
 /// A thing that was read and what it means; `None` where it could not be, which has been told.
 pub(super) type Known<T> = Option<(Arc<T>, MeaningDigest)>;
 
@@ -90,7 +99,7 @@ pub(super) struct Resolver<'a> {
     /// Pairs of world and prior that have been held against each other.
     aligned: BTreeSet<(MeaningDigest, MeaningDigest, String)>,
     /// What the calibration gave, once it was asked for.
-    pub(super) calibration: Option<Option<Arc<Calibration>>>,
+    pub(super) calibration: Option<Calibrated>,
 }
 
 impl Resolver<'_> {

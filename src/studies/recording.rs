@@ -21,6 +21,18 @@ pub struct Recording {
     pub map_pose: Pose,
     /// What happened, in order of time.
     pub frames: Vec<Frame>,
+    /// Deadline study: the constrained MDPs that were solved, as JSON that `solve-cmdp` reads, in order of time.
+    #[serde(skip)]
+    pub plans: Vec<SolvedPlan>,
+}
+
+/// A plan of the deadline study.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SolvedPlan {
+    /// Simulated time at which it was made (s).
+    pub time_s: f64,
+    /// The model.
+    pub document: String,
 }
 
 impl Default for Recording {
@@ -33,6 +45,7 @@ impl Default for Recording {
             map_frame,
             map_pose: Pose::default(),
             frames: Vec::new(),
+            plans: Vec::new(),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::*;
 
-const CLAIMS: &str = include_str!("../../../manifests/reference/deadline-claims.yaml");
+const MANIFEST: &str = include_str!("../../../manifests/deadline.yaml");
 
 fn printed(name: &str) -> Table {
     let text = match name {
@@ -67,7 +67,8 @@ fn as_printed_in_full() -> Table {
 }
 
 fn claims() -> Vec<Claim> {
-    serde_yaml::from_str(CLAIMS).unwrap()
+    let manifest: serde_json::Value = serde_yaml::from_str(MANIFEST).unwrap();
+    serde_json::from_value(manifest["claims"].clone()).unwrap()
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use crate::cli::args::ReplayArgs;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::load;
-use crate::cli::terminal::Terminal;
+use crate::cli::terminal::{Terminal, counted};
 use crate::report::{replay_page, still_svg};
 use crate::studies::recording::Recording;
 use crate::studies::{self, TrialRecord};
@@ -11,9 +11,10 @@ use crate::verify::plan_of;
 
 /// Re-enacts one trial or two.
 pub(in crate::cli) fn run(args: &ReplayArgs, terminal: Terminal) -> Result<Exit, Failure> {
-    if args.html.is_none() && args.svg.is_none() {
+    if args.html.is_none() && args.svg.is_none() && args.plans.is_none() {
         return Err(Failure::not_understood(
-            "say what to write: `--html FILE` for a page in which the trial plays, `--svg FILE` for a still",
+            "say what to write: `--html FILE` for a page in which the trial plays, `--svg FILE` for a still, `--plans DIR` \
+             for the plans of a deadline study",
         ));
     }
     let bundle = load::bundle(&args.bundle)?;
@@ -51,6 +52,14 @@ pub(in crate::cli) fn run(args: &ReplayArgs, terminal: Terminal) -> Result<Exit,
     if let (Some(path), Some((_, recording))) = (&args.svg, played.first()) {
         load::write(path, still_svg(recording, args.at).as_bytes())?;
         terminal.note(&format!("wrote {}", path.display()));
+    }
+    if let (Some(folder), Some((_, recording))) = (&args.plans, played.first()) {
+        for (i, plan) in recording.plans.iter().enumerate() {
+            let name = format!("plan-{:03}-at-{:.1}-s.json", i + 1, plan.time_s);
+            load::write(&folder.join(name), plan.document.as_bytes())?;
+        }
+        let count = counted(recording.plans.len(), "plan");
+        terminal.note(&format!("wrote {count} to {}", folder.display()));
     }
     terminal.result(&notes.join("\n"));
     Ok(exit)

@@ -52,8 +52,7 @@ fn run_one(
 ) -> Result<Exit, Failure> {
     let clock = RunClock::start();
     let execution = Execution::new(args.jobs, args.no_cache, environment)?;
-    let loaded =
-        load::manifest(manifest, &args.select.set, execution.calibrator(), terminal)?;
+    let loaded = load::manifest(manifest, &args.select.set, execution.calibrator(), terminal)?;
     let (plan, selection) = load::plan(loaded.experiment, &args.select)?;
     let how = if args.twice { Times::Twice } else { Times::Once };
     let Executed { records, cached, times } = execution.execute(&plan, how, terminal)?;

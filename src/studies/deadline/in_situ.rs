@@ -1,6 +1,6 @@
 //! The six maneuvers as the calibration measured them, beside what became of them in the study's own trials.
 
-use super::calibration::{MOTIONS, Pair, SPEEDS, maneuver_name};
+use super::calibration::{Calibration, MOTIONS, Pair, SPEEDS, maneuver_name};
 use super::requests::ManeuverTable;
 use crate::stats::proportion::{Proportion, wilson};
 use crate::studies::TrialRecord;
@@ -41,7 +41,7 @@ impl Findings<'_> {
             .iter()
             .flat_map(|motion| SPEEDS.map(|speed| (*motion, speed)))
             .map(|(motion, speed)| {
-                let pairs = self.calibration.into_iter().flat_map(|known| known.pairs());
+                let pairs = self.calibration.into_iter().flat_map(Calibration::pairs);
                 let pair = pairs.copied().find(|p| p.motion == motion && p.speed == speed);
                 row(maneuver_name(motion, speed), pair, &trials)
             })
@@ -87,7 +87,8 @@ fn row(name: String, pair: Option<Pair>, trials: &[&TrialRecord]) -> ManeuverRow
         reason = "sums of counts are whole and not negative"
     )]
     let count = |kind: &str| sum(kind) as u64;
-    let (passages, arrived, collisions) = (count("passages"), count("arrived"), count("collisions"));
+    let (passages, arrived, collisions) =
+        (count("passages"), count("arrived"), count("collisions"));
     let ended = arrived + collisions;
     let failed = (ended > 0).then(|| Proportion::new(collisions, ended));
     ManeuverRow {

@@ -2,17 +2,17 @@
 //! them.
 
 use super::Prepared;
+use crate::cmdp::build::Speed;
 use crate::geometry::{Cardinal, Pose};
 use crate::navigation::maneuver::{self, CONTROL_PERIOD, Leg, Pilot, Sense, SpeedLimits};
-use crate::robot::{CompassReading, Detection, Scan, Twist};
 use crate::rng::Seeds;
+use crate::robot::{CompassReading, Detection, Scan, Twist};
 use crate::sim::{
-    CameraScene, CompassNoise, Distribution, DriveNoise, Occlusion, OdometryNoise, Scene, Simulator,
-    Stepping,
+    CameraScene, CompassNoise, Distribution, DriveNoise, Occlusion, OdometryNoise, Scene,
+    Simulator, Stepping,
 };
 use crate::studies::deadline::intersection::{Intersection, Opening};
 use crate::studies::deadline::{ErrorShape, Hiding, IntersectionDetectionSystem, Setup};
-use crate::cmdp::build::Speed;
 use crate::studies::recording::{Frame, Recording};
 use crate::studies::state_chain::StateChain;
 use crate::units::{Radians, Seconds, Tick};
@@ -95,7 +95,7 @@ impl<'a> Body<'a> {
             recording.world.clone_from(&prepared.visible);
             recording.footprint = robot.footprint.clone();
         }
-        let rule = setup.parameters.pilot.clone();
+        let rule = setup.parameters.pilot;
         Self {
             scan: sim.blank_scan(),
             sim,
@@ -152,6 +152,11 @@ impl<'a> Body<'a> {
                 Speed::Fast => self.limits[1],
             },
         });
+    }
+
+    /// Hands over the recording, where the trial is written down.
+    pub(super) fn recording(&mut self) -> Option<&mut Recording> {
+        self.recording.as_deref_mut()
     }
 
     /// Writes a line of text into the recording.

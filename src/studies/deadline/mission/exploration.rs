@@ -4,9 +4,10 @@ use super::body::{Body, Happening};
 use super::tally::{self, Tally};
 use super::{Ending, Prepared, record};
 use crate::cmdp::build::Maneuvers;
-use crate::studies::deadline::exploration::{Explorer, Next};
 use crate::studies::deadline::Setup;
-use crate::studies::recording::Recording;
+use crate::studies::deadline::exploration::{Explorer, Next};
+use crate::studies::deadline::planner::Plan;
+use crate::studies::recording::{Recording, SolvedPlan};
 use crate::studies::{Outcome, Stopwatch, TrialRecord, TrialSpec};
 use crate::units::{Seconds, Tick};
 use std::collections::BTreeMap;
@@ -22,8 +23,10 @@ pub(super) fn run(
     let Some(calibration) = &setup.calibration else {
         return TrialRecord::panicked(spec, "the planner has no calibration".to_owned());
     };
-    let mut exploration = Exploration::new(spec, setup, prepared, calibration.maneuvers(), recording);
+    let mut exploration =
+        Exploration::new(spec, setup, prepared, calibration.maneuvers(), recording);
     let ending = exploration.run(watch);
+    exploration.write_plans_down();
     let mut measures = BTreeMap::new();
     measures.insert("distance-m".to_owned(), Some(exploration.body.travelled()));
     measures.insert("turning-rad".to_owned(), Some(exploration.body.turned()));
@@ -113,6 +116,19 @@ impl<'a> Exploration<'a> {
                 let stalled = idle >= self.patience.0;
                 let outcome = if stalled { Outcome::Stalled } else { Outcome::Late };
                 return Ending::plain(outcome, self.body.now());
+            }
+        }
+    }
+}
+
+impl Exploration<'_> {
+    /// Where the trial is written down, the constrained MDPs that were solved are too.
+    fn write_plans_down(&mut self) {
+        let Some(recording) = self.body.recording() else { return };
+        for decision in self.mind.decisions() {
+            // A plan without a programme (an ablation's, or one that is already there) has no model to show.
+            if let Some(Ok(Some(document))) = decision.plan().map(Plan::document) {
+                recording.plans.push(SolvedPlan { time_s: decision.at_s, document });
             }
         }
     }

@@ -78,10 +78,9 @@ impl Prepared {
         let sensing = &setup.parameters.sensing;
         let noise_sd = sensing.range_noise_sd_m.unwrap_or(own.noise_sd);
         let lidar = Lidar { noise_sd, ..own.clone() };
-        let topology =
-            Topology::read(&setup.world.tags, &tag_scheme(setup)).map_err(|faults| {
-                faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
-            })?;
+        let topology = Topology::read(&setup.world.tags, &tag_scheme(setup)).map_err(|faults| {
+            faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
+        })?;
         Ok(Self {
             visible: setup.world.slice(lidar.height),
             solid: setup.world.contact(robot.body_z[0], robot.body_z[1]),

@@ -2,7 +2,6 @@
 //! expectations are measured by.
 
 use super::body::{Body, Happening};
-use super::tally::Tally;
 use super::{Ending, Prepared, record};
 use crate::cmdp::build::Motion;
 use crate::geometry::{Cardinal, Pose};
@@ -45,25 +44,19 @@ pub(super) fn run(
     let way = ways[pick(&mut stream, ways.len())];
     let start = start(topology, way, setup, &mut stream);
     let mut body = Body::new(setup, prepared, start, &spec.seeds, recording);
-    let mut tally = Tally::default();
     // The pilot keeps its heading from leg to leg: standing still it finds it, as it would have on the leg before.
     for _ in 0..SETTLING {
         body.step();
     }
     let began = body.now();
     body.leave(way.direction, way.opening, passage.speed);
-    tally.begin(passage.motion, passage.speed, body.now());
     let limit = began + Tick::at_or_after(Seconds(passage.time_limit_s));
     let ending = loop {
         match body.step() {
-            Happening::Contact => {
-                tally.collide();
-                break Ending::plain(Outcome::Collided, body.now());
-            }
+            Happening::Contact => break Ending::plain(Outcome::Collided, body.now()),
             Happening::Arrived(here) => {
                 let there = &topology.vertices[way.to].tag;
                 if here.tags.contains(there) {
-                    tally.arrive(body.now());
                     break Ending::plain(Outcome::Reached, body.now());
                 }
                 let cause = "arrived at another vertex".to_owned();
@@ -78,7 +71,6 @@ pub(super) fn run(
     let mut measures = BTreeMap::new();
     measures.insert("distance-m".to_owned(), Some(body.travelled()));
     measures.insert("turning-rad".to_owned(), Some(body.turned()));
-    tally.measures(&mut measures);
     record(spec, ending, began, measures, body.chain())
 }
 

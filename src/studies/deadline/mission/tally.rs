@@ -3,7 +3,7 @@
 use crate::cmdp::build::{Motion, Speed};
 use crate::studies::deadline::calibration::{MOTIONS, SPEEDS, maneuver_name};
 use crate::studies::deadline::exploration::Explorer;
-use crate::studies::deadline::planner::Status;
+use crate::studies::deadline::planner::{Plan, Status};
 use crate::units::{Seconds, Tick};
 use std::collections::BTreeMap;
 
@@ -90,7 +90,7 @@ pub(super) fn decided(mind: &Explorer, measures: &mut BTreeMap<String, Option<f6
     put("vertices", mind.map().len());
     put("decisions", mind.decisions().len());
     let plans: Vec<Status> =
-        mind.decisions().iter().filter_map(|d| d.plan().map(|plan| plan.status())).collect();
+        mind.decisions().iter().filter_map(|d| d.plan().map(Plan::status)).collect();
     put("plans", plans.len());
     for (name, status) in [
         ("plans-slack", Status::Slack),

