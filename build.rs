@@ -9,13 +9,14 @@ use std::path::{Path, PathBuf};
 const FOLDERS: [&str; 2] = ["src", "benches"];
 
 /// What else a build needs: `reenact init` holds the last two. A test keeps this list complete.
-const FILES: [&str; 7] = [
+const FILES: [&str; 8] = [
     "Cargo.lock",
     "LICENSE-APACHE",
     "LICENSE-MIT",
     "README.md",
     "build.rs",
     "robots/kobuki.urdf",
+    "robots/pioneer3at.urdf",
     "worlds/basic.yaml",
 ];
 

@@ -11,6 +11,7 @@ use crate::studies::deadline;
 use crate::studies::prior_map::Setup;
 use crate::units::Tick;
 use crate::world::World;
+use crate::world::topology::Topology;
 use serde_json::Value;
 use std::f64::consts::TAU;
 
@@ -35,6 +36,33 @@ pub(super) fn check_deadline(setup: &deadline::Setup, faults: &mut Faults<'_>) {
     scanner(&setup.robot, faults);
     start(&setup.world, &setup.robot, setup.start, faults);
     units(&serde_json::json!(setup.parameters), faults);
+    let robot = &setup.robot;
+    for (there, what) in
+        [(robot.camera.is_some(), "logical camera"), (robot.compass.is_some(), "compass")]
+    {
+        if !there {
+            let message = format!("the robot `{}` has no {what}", robot.name);
+            let fault = faults.fault("/robot", message).label("this study explores with one");
+            let help = "add a `<gazebo>` sensor to the URDF, or name another robot";
+            faults.push(fault.help(help));
+        }
+    }
+    match Topology::read(&setup.world.tags, &deadline::tag_scheme(setup)) {
+        Err(problems) => {
+            for problem in problems {
+                let fault = faults.fault("/world", problem.to_string());
+                let help = "docs/world.md tells how tags make a graph";
+                faults.push(fault.label("the tags make no graph").help(help));
+            }
+        }
+        Ok(graph) if graph.goals().next().is_none() => {
+            let fault = faults.fault("/world", "the world has no goal to reach");
+            let label = "no vertex carries a tag of the goal's colour";
+            let help = "`perception.goal-color` names it; docs/world.md tells where it stands";
+            faults.push(fault.label(label).help(help));
+        }
+        Ok(_) => {}
+    }
 }
 
 fn scanner(robot: &Robot, faults: &mut Faults<'_>) {

@@ -11,16 +11,25 @@ use crate::studies::{FactorValue, FigureLayout, StudyKind, TableLayout};
 use crate::table::{Table, Value};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Columns of a tidy CSV of published numbers besides the factors', and whether each must be there.
-const COLUMNS: [(&str, bool); 4] =
-    [("coverage-percent", false), ("value", true), ("sd", false), ("n", false)];
+/// Columns of a tidy CSV of published numbers besides the factors', and whether each must be there: tables of the prior-map
+/// study are by coverage.
+fn columns(kind: StudyKind) -> [(&'static str, bool); 4] {
+    let by_coverage = kind == StudyKind::PriorMap;
+    [("coverage-percent", by_coverage), ("value", true), ("sd", false), ("n", false)]
+}
 
 /// No paper prints more (bytes); a table takes many times its text.
 const MOST_BYTES: usize = 1 << 19;
 
 /// Reads a tidy CSV: columns named after factors, then `coverage-percent`, `value`, and where known `sd` and
 /// `n`; one row per published number.
-pub(super) fn read(source: &Source, factors: &[Factor], faults: &mut Faults<'_>) -> Option<Table> {
+pub(super) fn read(
+    source: &Source,
+    kind: StudyKind,
+    factors: &[Factor],
+    faults: &mut Faults<'_>,
+) -> Option<Table> {
+    let numbers = columns(kind);
     if source.text.len() > MOST_BYTES {
         let message =
             format!("a file of {} bytes: expected at most {MOST_BYTES}", source.text.len());
@@ -38,7 +47,7 @@ pub(super) fn read(source: &Source, factors: &[Factor], faults: &mut Faults<'_>)
     let known: Vec<&str> = factors
         .iter()
         .map(|f| f.name.as_str())
-        .chain(COLUMNS.iter().map(|(name, _)| *name))
+        .chain(numbers.iter().map(|(name, _)| *name))
         .collect();
     for column in table.columns.iter().filter(|c| !known.contains(&c.as_str())) {
         let fault =
@@ -47,7 +56,7 @@ pub(super) fn read(source: &Source, factors: &[Factor], faults: &mut Faults<'_>)
         faults.push(fault.help(known_or_near(column, &known)));
         fine = false;
     }
-    for (name, _) in COLUMNS.iter().filter(|(name, needed)| *needed && table.column(name).is_none())
+    for (name, _) in numbers.iter().filter(|(name, needed)| *needed && table.column(name).is_none())
     {
         let fault = Diagnostic::error(source, line(source, 1), format!("missing column `{name}`"));
         faults.push(fault.label(format!("expected a column `{name}`")));
@@ -72,7 +81,7 @@ pub(super) fn read(source: &Source, factors: &[Factor], faults: &mut Faults<'_>)
                         .help(known_or_near(&level, &names));
                     faults.push(fault.warning());
                 }
-            } else if COLUMNS.iter().any(|(name, needed)| name == column && *needed)
+            } else if numbers.iter().any(|(name, needed)| name == column && *needed)
                 && value.as_f64().is_none()
             {
                 let found = match value {
@@ -183,7 +192,9 @@ fn check_outcomes(
     published: &BTreeMap<String, Table>,
     faults: &mut Faults<'_>,
 ) {
-    let known = measures(doc.study);
+    // Success and outcomes are no columns: `share` shows them.
+    let mut known = measures(doc.study);
+    known.retain(|name| name != "success" && !name.starts_with("outcome:"));
     for measure in table.show.measures() {
         if !known.iter().any(|name| name == measure) {
             let known: Vec<&str> = known.iter().map(String::as_str).collect();
@@ -239,13 +250,6 @@ fn check_table(
         published,
         faults,
     );
-    let coverage = "coverage-percent".to_owned();
-    if let Some(numbers) = table.published.as_ref().and_then(|name| published.get(name))
-        && numbers.column(&coverage).is_none()
-    {
-        let message = format!("the published numbers have no column `{coverage}`");
-        faults.at(&format!("{pointer}/published"), message, "asked for by this table");
-    }
 }
 
 /// The factors that stand side by side and in rows.

@@ -216,7 +216,8 @@ impl Resolver<'_> {
         for (name, file) in &self.doc.published {
             let pointer = step("/published", name);
             if let Some(source) = self.text(file.path(), &pointer)
-                && let Some(table) = published::read(&source, &self.factors, &mut self.faults)
+                && let Some(table) =
+                    published::read(&source, self.doc.study, &self.factors, &mut self.faults)
             {
                 tables.insert(name.clone(), table);
             }

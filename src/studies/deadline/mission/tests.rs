@@ -87,7 +87,7 @@ fn a_strict_deadline_ends_a_trial_late_and_without_a_time() {
 #[test]
 fn a_trial_without_a_new_vertex_for_long_has_stalled() {
     let mut parameters = exploration(Strategy::Random, 40.0);
-    parameters.mission.stalled_after_s = 5.0;
+    parameters.mission.stalled_after_s = 1.0;
     let record = studies::execute(&trial(building(), "C", parameters, 1));
     assert_eq!(record.outcome, Outcome::Stalled);
 }
@@ -98,7 +98,7 @@ fn permuting_the_ids_of_tags_changes_no_trial() {
     let mut renamed = building();
     let count = renamed.tags.len();
     for (i, tag) in renamed.tags.iter_mut().enumerate() {
-        tag.id = format!("{:03}", (i * 37 + 11) % count);
+        tag.id = format!("{:03}", count - i);
     }
     let parameters = || exploration(Strategy::CompleteCorridor, 200.0);
     let record = studies::execute(&trial(building(), "B", parameters(), 2));
@@ -174,4 +174,4 @@ fn the_golden_trial_has_not_changed() {
     );
 }
 
-const GOLDEN: (usize, &str) = (0, "");
+const GOLDEN: (usize, &str) = (1252, "5026d7ee");
