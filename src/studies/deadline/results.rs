@@ -173,7 +173,7 @@ impl Findings<'_> {
             title: title.to_owned(),
             x_title: request.rows.join(", "),
             y_title: request.show.describe(),
-            meaning: "bars: ours, with 95 % interval".to_owned(),
+            meaning: "95 % interval".to_owned(),
             series,
             groups,
             at_least: percent
