@@ -88,6 +88,26 @@ pub struct ComparisonVerdict {
     pub trials_to_decide: Option<u64>,
 }
 
+/// The statistics of a comparison with published numbers that a reader needs beside its effect, in words: the skill over
+/// trivial predictors above all. Empty for other comparisons.
+pub fn agreement_in_words<'a>(statistics: impl IntoIterator<Item = (&'a str, f64)>) -> String {
+    const SHOWN: [(&str, &str); 6] = [
+        ("pearson", "Pearson"),
+        ("within-baseline-correlation", "correlation of contrasts"),
+        ("skill-over-constant", "skill over a constant"),
+        ("skill-over-baseline-means", "skill over the paper's own means"),
+        ("inside-prediction-interval", "share of cells inside the paper's interval"),
+        ("replicate-rmse", "an exact replicate's rmse"),
+    ];
+    let found: Vec<(&str, f64)> = statistics.into_iter().collect();
+    let value = |name: &str| found.iter().find(|(known, _)| *known == name).map(|(_, x)| *x);
+    let words: Vec<String> = SHOWN
+        .iter()
+        .filter_map(|(name, words)| value(name).map(|x| format!("{words} {x:.2}")))
+        .collect();
+    words.join(", ")
+}
+
 /// The verdict on a claim. What the paper says, what its own table shows and what we find stay three facts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Verdict {
@@ -258,5 +278,21 @@ impl fmt::Display for Score {
             "{} of {all} claims supported, {} contradicted, {} inconclusive, {} cannot be tested",
             self.supported, self.contradicted, self.inconclusive, self.cannot_be_tested
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn agreement_is_told_with_its_skill_and_nothing_else_is() {
+        let told = agreement_in_words([
+            ("skill-over-constant", -0.314_9),
+            ("cells", 60.0),
+            ("pearson", 0.604_7),
+        ]);
+        assert_eq!(told, "Pearson 0.60, skill over a constant -0.31");
+        assert_eq!(agreement_in_words([("z", 2.0)]), "");
     }
 }

@@ -6,6 +6,7 @@ use super::content::{
 };
 use super::tables;
 use crate::bundle::{Bundle, assemble, format};
+use crate::claims::verdict::agreement_in_words;
 use crate::plan::Plan;
 use crate::studies::{FigureLayout, Outcome, StudyKind, TrialRecord};
 use serde_json::Value;
@@ -176,7 +177,11 @@ fn numbers(verdict: &Value) -> String {
     let name = effect["name"].as_str().map(|name| name.replace('-', " "));
     match (name, number("value"), number("low"), number("high")) {
         (Some(name), Some(value), Some(low), Some(high)) => {
-            format!("{name} {value} ({low} to {high}), {reason}")
+            let statistics = only["statistics"].as_object().into_iter().flatten();
+            let known = statistics.filter_map(|(name, x)| Some((name.as_str(), x.as_f64()?)));
+            let agreement = agreement_in_words(known);
+            let more = if agreement.is_empty() { reason } else { format!("{agreement}; {reason}") };
+            format!("{name} {value} ({low} to {high}), {more}")
         }
         _ => reason,
     }

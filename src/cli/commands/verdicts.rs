@@ -1,5 +1,6 @@
 //! Verdicts in print: what the paper's table shows beside what we find, and the reproduction score.
 
+use crate::claims::verdict::agreement_in_words;
 use crate::claims::{Judgement, Score, Verdict};
 
 /// The verdicts on a study's claims with their score, and those on the machine, which count for nothing; empty
@@ -32,6 +33,17 @@ fn list(title: &str, verdicts: &[Verdict]) -> String {
         ));
         if verdict.judgement == Judgement::CannotBeTested {
             text.push_str(&format!("  {:id$}  {}\n", "", verdict.reason));
+        }
+        for comparison in &verdict.comparisons {
+            let words = agreement_in_words(comparison.statistics.iter().copied());
+            if let (false, Some(effect)) = (words.is_empty(), &comparison.effect) {
+                let (value, interval) = (effect.value, &effect.interval);
+                let range = format!("[{:.2}, {:.2}]", interval.low, interval.high);
+                text.push_str(&format!("  {:id$}  {} {value:.2} {range}\n", "", effect.name));
+                for part in words.split(", ") {
+                    text.push_str(&format!("  {:id$}  {part}\n", ""));
+                }
+            }
         }
         if let Some(trials) = verdict.trials_to_decide {
             text.push_str(&format!(
