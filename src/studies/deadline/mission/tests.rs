@@ -86,8 +86,9 @@ fn a_strict_deadline_ends_a_trial_late_and_without_a_time() {
 
 #[test]
 fn a_trial_without_a_new_vertex_for_long_has_stalled() {
-    let mut parameters = exploration(Strategy::Random, 40.0);
-    parameters.mission.stalled_after_s = 1.0;
+    // The start is seen after the first turn around, about 14 s; the next vertex is 10 s away.
+    let mut parameters = exploration(Strategy::Random, 20.0);
+    parameters.mission.stalled_after_s = 2.0;
     let record = studies::execute(&trial(building(), "C", parameters, 1));
     assert_eq!(record.outcome, Outcome::Stalled);
 }
