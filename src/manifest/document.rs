@@ -68,7 +68,11 @@ pub struct ManifestDoc {
     /// trials are not in the store, and what they showed is sealed as an input.
     #[serde(default)]
     pub calibration: Option<String>,
-    /// Everything else a trial needs; every value may be plain, `{value, why}`, `{factor, why}` or `{by, values, why}`.
+    /// A file with parameters that several manifests share; those written here go before them.
+    #[serde(default)]
+    pub settings: Option<String>,
+    /// Everything else a trial needs; every value may be plain, `{value, why}`, `{factor, why}` or
+    /// `{by, values, otherwise, why}`.
     #[serde(default)]
     pub parameters: ParametersDoc,
     /// The paper's own numbers by name: tidy CSV files.

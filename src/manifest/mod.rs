@@ -19,6 +19,7 @@ mod priors;
 mod published;
 mod readers;
 mod resolve;
+mod settings;
 mod worlds;
 
 pub use choice::{By, Choice, DependentFactor, FactorDoc, Levels, Ordered};

@@ -8,7 +8,7 @@ use super::faults::{Faults, step};
 use super::inputs::{InputFiles, Inputs, WrittenIn, joined, normalised};
 use super::parameters::WrappedValue;
 use super::worlds::UsedWorld;
-use super::{lint, overrides, published, schema};
+use super::{lint, overrides, published, schema, settings};
 use crate::digest::MeaningDigest;
 use crate::document::{Diagnostic, Node, Parsed, Source, parse_tree_by, read};
 use crate::geometry::Pose;
@@ -34,6 +34,8 @@ pub fn resolve(
     inputs: &dyn Inputs,
 ) -> Result<(Experiment, Vec<Diagnostic>), Vec<Diagnostic>> {
     let mut tree = read(source)?;
+    let mut files = InputFiles::new(inputs);
+    settings::underlay(&mut tree, overrides, &mut files)?;
     overrides::apply(&mut tree, overrides)?;
     // The study says which parameters there are; one that is not known is told by the schema.
     let kind = tree.root.get("study").and_then(Node::scalar_text);
@@ -43,7 +45,7 @@ pub fn resolve(
         doc: &doc,
         folder: &source.name,
         faults: Faults::new(&tree),
-        files: InputFiles::new(inputs),
+        files,
         factors: Vec::new(),
         robots: BTreeMap::new(),
         worlds: BTreeMap::new(),
@@ -187,14 +189,19 @@ impl Resolver<'_> {
         for wrapped in self.doc.parameters.wrapped(self.doc.study) {
             let value = match wrapped.value {
                 WrappedValue::Plain(value) => value.clone(),
-                WrappedValue::By { factor, values } => {
+                WrappedValue::By { factor, values, otherwise } => {
                     let by = format!("{}/by", wrapped.pointer);
                     let found = self.faults.check_factor(&self.factors, factor, &by, false);
                     if let Some(found) = found {
                         let place = format!("{}/values", wrapped.pointer);
-                        self.faults.check_levels(values.keys(), found, &place);
+                        let complete = otherwise.is_none();
+                        self.faults.check_levels(values.keys(), found, &place, complete);
                     }
-                    json!({ "by": factor, "values": values })
+                    let mut value = json!({ "by": factor, "values": values });
+                    if let Some(otherwise) = otherwise {
+                        value["otherwise"] = otherwise.clone();
+                    }
+                    value
                 }
                 WrappedValue::Factor(factor) => {
                     let place = format!("{}/factor", wrapped.pointer);
@@ -304,7 +311,8 @@ impl Resolver<'_> {
             Choice::By(By { by, values }) => {
                 let place = format!("{pointer}/by");
                 let factor = self.faults.check_factor(&self.factors, by, &place, false)?;
-                self.faults.check_levels(values.keys(), factor, &format!("{pointer}/values"));
+                let place = format!("{pointer}/values");
+                self.faults.check_levels(values.keys(), factor, &place, true);
                 let level = condition.value(by)?;
                 let pointer = step(&format!("{pointer}/values"), level);
                 self.choose(values.get(level)?, &pointer, condition)
@@ -329,13 +337,7 @@ impl Resolver<'_> {
             Ok(bytes) => Some(bytes),
             Err(reason) => {
                 let fault = self.faults.fault(pointer, format!("cannot read `{path}`"));
-                let help = match written_in {
-                    WrittenIn::Manifest => "paths are relative to the file they are written in",
-                    WrittenIn::CommandLine | WrittenIn::Calibration => {
-                        "paths in `--set` are relative to the current directory"
-                    }
-                };
-                self.faults.push(fault.label(reason).help(help));
+                self.faults.push(fault.label(reason).help(relative_to(written_in)));
                 None
             }
         }
@@ -403,5 +405,15 @@ impl Resolver<'_> {
             .label("not a start of the world");
         self.faults.push(fault.help(known_or_near(name, &known)));
         None
+    }
+}
+
+/// What paths are relative to, in words.
+pub(super) fn relative_to(written_in: WrittenIn) -> &'static str {
+    match written_in {
+        WrittenIn::Manifest => "paths are relative to the file they are written in",
+        WrittenIn::CommandLine | WrittenIn::Calibration => {
+            "paths in `--set` are relative to the current directory"
+        }
     }
 }
