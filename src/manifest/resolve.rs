@@ -7,6 +7,7 @@ use super::experiment::{Assumption, Experiment, Meanings};
 use super::faults::{Faults, step};
 use super::inputs::{InputFiles, Inputs, WrittenIn, joined, normalised};
 use super::parameters::WrappedValue;
+use super::pinned::Pins;
 use super::worlds::UsedWorld;
 use super::{lint, overrides, published, schema};
 use crate::digest::MeaningDigest;
@@ -39,10 +40,12 @@ pub fn resolve(
     let kind = tree.root.get("study").and_then(Node::scalar_text);
     let kind = StudyKind::ALL.into_iter().find(|k| kind.as_deref() == Some(k.name()));
     let Parsed { value: doc, tree } = parse_tree_by::<ManifestDoc>(tree, &schema(kind))?;
+    let mut faults = Faults::new(&tree);
     let mut resolver = Resolver {
         doc: &doc,
         folder: &source.name,
-        faults: Faults::new(&tree),
+        pins: Pins::read(&doc.pinned, &mut faults),
+        faults,
         files: InputFiles::new(inputs),
         factors: Vec::new(),
         robots: BTreeMap::new(),
@@ -91,6 +94,7 @@ pub(super) struct Resolver<'a> {
     /// Name of the manifest, which relative paths are shown beside.
     folder: &'a str,
     pub(super) faults: Faults<'a>,
+    pub(super) pins: Pins,
     pub(super) files: InputFiles<'a>,
     pub(super) factors: Vec<Factor>,
     robots: BTreeMap<(String, WrittenIn), Known<Robot>>,
@@ -125,6 +129,7 @@ impl Resolver<'_> {
             resolved.extend(self.condition(condition));
         }
         self.check_licenses();
+        self.check_pins();
         let (mut cells, mut meanings, mut described) = (Vec::new(), Vec::new(), Vec::new());
         for (condition, setup, meaning, description) in resolved {
             cells.push((condition, setup));
@@ -316,29 +321,6 @@ impl Resolver<'_> {
     pub(super) fn bytes(&mut self, path: &str, pointer: &str) -> Option<Arc<[u8]>> {
         let written_in = self.faults.written_in(pointer);
         self.bytes_of(&normalised(path), written_in, path, pointer)
-    }
-
-    pub(super) fn bytes_of(
-        &mut self,
-        normalised: &str,
-        written_in: WrittenIn,
-        path: &str,
-        pointer: &str,
-    ) -> Option<Arc<[u8]>> {
-        match self.files.read(normalised, written_in) {
-            Ok(bytes) => Some(bytes),
-            Err(reason) => {
-                let fault = self.faults.fault(pointer, format!("cannot read `{path}`"));
-                let help = match written_in {
-                    WrittenIn::Manifest => "paths are relative to the file they are written in",
-                    WrittenIn::CommandLine | WrittenIn::Calibration => {
-                        "paths in `--set` are relative to the current directory"
-                    }
-                };
-                self.faults.push(fault.label(reason).help(help));
-                None
-            }
-        }
     }
 
     /// The text of the file `path`, written at `pointer`.
