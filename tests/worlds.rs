@@ -177,6 +177,16 @@ fn same_passages<Name: Ord + Clone + std::fmt::Debug>(
     assert!(theirs.is_empty(), "{name}: ours lacks {theirs:#?}");
 }
 
+/// The furniture of two of them is all meshes.
+#[test]
+fn the_furnished_originals_say_how_much_they_lack() {
+    let Some(folder) = originals("the_furnished_originals_say_how_much_they_lack") else { return };
+    for (name, missing) in [("basic", 4), ("office", 44)] {
+        let world = sdf::read(&text(&folder.join(format!("worlds/{name}.world")))).unwrap();
+        assert_eq!(world.missing(), missing, "{name}: {:?}", world.warnings);
+    }
+}
+
 #[test]
 fn the_released_priors_are_read_as_map_server_reads_them() {
     let Some(folder) = originals("the_released_priors_are_read_as_map_server_reads_them") else {
