@@ -125,7 +125,7 @@ impl Resolver<'_> {
                 (
                     format!("`{path}` is not the file that is pinned"),
                     format!("expected SHA-256 {}, found {found}", pin.digest),
-                    format!("pinned is {}", pin.published()),
+                    format!("pinned is {}: put that file there, or pin this one", pin.published()),
                 )
             }
             Err(reason) => {
@@ -151,10 +151,6 @@ impl Resolver<'_> {
 
     /// Faults of pins that no input has.
     pub(super) fn check_pins(&mut self) {
-        if self.faults.any_error() {
-            // What names a pinned file, a map its image, may itself be what is missing.
-            return;
-        }
         let read: Vec<String> = self.files.paths();
         let known: Vec<&str> = read.iter().map(String::as_str).collect();
         for (path, pointer) in self.pins.unused(&known) {

@@ -222,7 +222,7 @@ fn priors_are_derived_from_the_layers_asked_for() {
     let faults = read_world("w.world", WORLD.as_bytes(), Some(&["doors".to_owned()])).unwrap_err();
     assert_eq!(
         faults[0].render(false),
-        "error: `w.world` has no layer `doors`\n  = help: all of a Gazebo world is its layer `walls`\n"
+        "error: `w.world` has no layer `doors`\n |\n = help: all of a Gazebo world is its layer `walls`\n"
     );
 }
 
