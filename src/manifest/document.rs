@@ -2,6 +2,7 @@
 
 use super::choice::{Choice, FactorDoc, Ordered};
 use super::parameters::ParametersDoc;
+use super::pinned::PinnedDoc;
 use crate::studies::StudyKind;
 use crate::studies::{FactorValue, FigureRequest, TableRequest};
 use crate::world::generate::Family;
@@ -33,6 +34,9 @@ pub struct ManifestDoc {
     /// Licences of input files that others made, by the path as written.
     #[serde(default)]
     pub license_of: BTreeMap<String, String>,
+    /// Inputs that others published: where they are to be had, and what they must hold.
+    #[serde(default)]
+    pub pinned: Vec<PinnedDoc>,
     /// Which study this is.
     pub study: StudyKind,
     /// Seed of all randomness.

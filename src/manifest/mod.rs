@@ -15,6 +15,7 @@ mod inputs;
 mod lint;
 mod overrides;
 mod parameters;
+mod pinned;
 mod priors;
 mod published;
 mod readers;
@@ -33,6 +34,7 @@ pub use document::{
 pub use experiment::{Assumption, Experiment, Meanings};
 pub use inputs::{Input, Inputs, WrittenIn};
 pub use parameters::ParametersDoc;
+pub use pinned::{PinnedDoc, PinnedFileDoc};
 pub use resolve::resolve;
 
 use crate::studies::StudyKind;

@@ -7,6 +7,7 @@ use super::experiment::{Assumption, Experiment, Meanings};
 use super::faults::{Faults, step};
 use super::inputs::{InputFiles, Inputs, WrittenIn, joined, normalised};
 use super::parameters::WrappedValue;
+use super::pinned::Pins;
 use super::worlds::UsedWorld;
 use super::{lint, overrides, published, schema, settings};
 use crate::digest::MeaningDigest;
@@ -41,10 +42,12 @@ pub fn resolve(
     let kind = tree.root.get("study").and_then(Node::scalar_text);
     let kind = StudyKind::ALL.into_iter().find(|k| kind.as_deref() == Some(k.name()));
     let Parsed { value: doc, tree } = parse_tree_by::<ManifestDoc>(tree, &schema(kind))?;
+    let mut faults = Faults::new(&tree);
     let mut resolver = Resolver {
         doc: &doc,
         folder: &source.name,
-        faults: Faults::new(&tree),
+        pins: Pins::read(&doc.pinned, &mut faults),
+        faults,
         files,
         factors: Vec::new(),
         robots: BTreeMap::new(),
@@ -93,6 +96,7 @@ pub(super) struct Resolver<'a> {
     /// Name of the manifest, which relative paths are shown beside.
     folder: &'a str,
     pub(super) faults: Faults<'a>,
+    pub(super) pins: Pins,
     pub(super) files: InputFiles<'a>,
     pub(super) factors: Vec<Factor>,
     robots: BTreeMap<(String, WrittenIn), Known<Robot>>,
@@ -126,7 +130,11 @@ impl Resolver<'_> {
         for condition in conditions {
             resolved.extend(self.condition(condition));
         }
-        self.check_licenses();
+        if !self.faults.any_error() {
+            // What names a file, a map its image, may itself be what is missing.
+            self.check_licenses();
+            self.check_pins();
+        }
         let (mut cells, mut meanings, mut described) = (Vec::new(), Vec::new(), Vec::new());
         for (condition, setup, meaning, description) in resolved {
             cells.push((condition, setup));
@@ -324,23 +332,6 @@ impl Resolver<'_> {
     pub(super) fn bytes(&mut self, path: &str, pointer: &str) -> Option<Arc<[u8]>> {
         let written_in = self.faults.written_in(pointer);
         self.bytes_of(&normalised(path), written_in, path, pointer)
-    }
-
-    pub(super) fn bytes_of(
-        &mut self,
-        normalised: &str,
-        written_in: WrittenIn,
-        path: &str,
-        pointer: &str,
-    ) -> Option<Arc<[u8]>> {
-        match self.files.read(normalised, written_in) {
-            Ok(bytes) => Some(bytes),
-            Err(reason) => {
-                let fault = self.faults.fault(pointer, format!("cannot read `{path}`"));
-                self.faults.push(fault.label(reason).help(relative_to(written_in)));
-                None
-            }
-        }
     }
 
     /// The text of the file `path`, written at `pointer`.
