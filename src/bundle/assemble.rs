@@ -4,9 +4,8 @@
 use super::content::{Author, BundleContent, Citation, SealedCondition, SealedInput};
 use crate::claims::{self, Claim, Verdict};
 use crate::plan::{ENGINE_VERSION, Plan, Selection};
-use crate::studies::prior_map::CoverageTable;
 use crate::studies::{
-    FigureLayout, Findings, Outcome, StudyKind, TableLayout, TableRequest, TrialRecord,
+    FigureLayout, Findings, Outcome, StudyKind, TableLayout, TrialRecord, coverage_tables,
 };
 use serde_json::{Value, json};
 
@@ -132,17 +131,6 @@ fn sealed_conditions(plan: &Plan, records: &[TrialRecord]) -> Vec<SealedConditio
     conditions
 }
 
-/// The tables whose published numbers a coverage curve can show.
-fn coverage_tables(tables: &[TableRequest]) -> Vec<&CoverageTable> {
-    tables
-        .iter()
-        .filter_map(|request| match &request.layout {
-            TableLayout::CoverageTable(table) => Some(table),
-            TableLayout::OutcomeTable(_) | TableLayout::ManeuverTable(_) => None,
-        })
-        .collect()
-}
-
 fn results(plan: &Plan, records: &[TrialRecord]) -> Result<Vec<(String, Vec<u8>)>, String> {
     let factors = factors(plan);
     let findings = findings(plan, records, &factors);
@@ -160,6 +148,11 @@ fn results(plan: &Plan, records: &[TrialRecord]) -> Result<Vec<(String, Vec<u8>)
             TableLayout::CoverageTable(wanted) => {
                 (findings.coverage_table(wanted), findings.coverage_table_in_print(wanted))
             }
+            TableLayout::AgreementTable(wanted) => {
+                let tables = coverage_tables(&experiment.tables);
+                let print = findings.agreement_table_in_print(wanted, &tables);
+                (findings.agreement_table(wanted, &tables), print)
+            }
             TableLayout::OutcomeTable(wanted) => {
                 (findings.outcome_table(wanted), findings.outcome_table_in_print(wanted))
             }
@@ -175,7 +168,10 @@ fn results(plan: &Plan, records: &[TrialRecord]) -> Result<Vec<(String, Vec<u8>)
     for request in &experiment.figures {
         let svg = match &request.layout {
             FigureLayout::CoverageCurve(curve) => {
-                let tables = coverage_tables(&experiment.tables);
+                let tables: Vec<_> = coverage_tables(&experiment.tables)
+                    .into_iter()
+                    .map(|(_, table)| table)
+                    .collect();
                 findings.coverage_figure(&request.title, curve, &tables).to_svg()
             }
             FigureLayout::OutcomeBars(bars) => {

@@ -24,10 +24,25 @@ pub struct TableRequest {
 pub enum TableLayout {
     /// Prior map: mean and standard deviation of a metric at levels of coverage, as in Tables 1 to 10.
     CoverageTable(prior_map::CoverageTable),
+    /// Prior map: slope, correlation and distance of log ratios to the baseline, ours against the paper's.
+    AgreementTable(prior_map::AgreementTable),
     /// Deadline: shares of outcomes, means and ratios by condition, as in Tables 1 and 2.
     OutcomeTable(deadline::OutcomeTable),
     /// Deadline: the six maneuvers as calibrated and as they went in the study's own trials.
     ManeuverTable(deadline::ManeuverTable),
+}
+
+/// The coverage tables among `tables`, each with its id.
+pub fn coverage_tables(tables: &[TableRequest]) -> Vec<(&str, &prior_map::CoverageTable)> {
+    tables
+        .iter()
+        .filter_map(|request| match &request.layout {
+            TableLayout::CoverageTable(table) => Some((request.id.as_str(), table)),
+            TableLayout::AgreementTable(_)
+            | TableLayout::OutcomeTable(_)
+            | TableLayout::ManeuverTable(_) => None,
+        })
+        .collect()
 }
 
 /// One figure to produce.

@@ -4,6 +4,8 @@
 //! A lidar robot maps an indoor environment; the next frontier maximises u(p) (equations 1 to 4), whose
 //! information gain I(p) may use a prior map (section 3.2).
 
+pub mod agreement;
+mod cell_tests;
 pub mod explorer;
 pub mod frontier;
 pub mod information_gain;
@@ -13,11 +15,12 @@ mod requests;
 pub mod results;
 pub mod utility;
 
+pub use cell_tests::{CellTests, Difference};
 pub use parameters::{
     Coverage, Exploration, Gain, Mapping, Measurement, Mission, Navigation, Parameters, Reselect,
     Sensing, Strategy,
 };
-pub use requests::{CoverageCurve, CoverageTable, Metric};
+pub use requests::{AgreementTable, CoverageCurve, CoverageTable, Metric};
 
 use crate::geometry::Pose;
 use crate::grid::OccupancyGrid;

@@ -25,6 +25,18 @@ pub struct CoverageTable {
     /// A key of `published`: the paper's own numbers, to stand beside.
     #[serde(default)]
     pub published: Option<String>,
+    /// Whether each cell tells how it differs from its baseline: effect, and p at all runs and at the paper's number.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub tests: bool,
+}
+
+/// How coverage tables agree with the paper's.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct AgreementTable {
+    /// Ids of the coverage tables, each with a `baseline` and `published` numbers.
+    #[schemars(length(min = 1))]
+    pub tables: Vec<String>,
 }
 
 /// What a trial's progress is measured in.
