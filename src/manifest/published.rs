@@ -168,6 +168,23 @@ pub(super) fn check_requests(
                 faults.check_factor(factors, &curve.by, &format!("{pointer}/by"), false);
                 check_only(&curve.only, &pointer, factors, faults);
             }
+            FigureLayout::WorldPlan(plan) => {
+                let pointer = format!("/figures/{i}/world-plan");
+                foreign(StudyKind::PriorMap, &pointer, faults);
+                check_only(&plan.only, &pointer, factors, faults);
+            }
+            FigureLayout::PriorOverWorld(plan) => {
+                let pointer = format!("/figures/{i}/prior-over-world");
+                foreign(StudyKind::PriorMap, &pointer, faults);
+                check_only(&plan.only, &pointer, factors, faults);
+                let chosen = plan.only.get("prior").map(|value| value.0.as_str());
+                if chosen.or(doc.prior.as_deref()).is_none_or(|name| name == "none") {
+                    let message = "the figure has no prior to lay over the world";
+                    let fault = faults.key_fault(&pointer, message.to_owned());
+                    let help = "say which, as in `where: {prior: bounding-box}`";
+                    faults.push(fault.label("expected a prior other than `none`").help(help));
+                }
+            }
             FigureLayout::OutcomeBars(bars) => {
                 let pointer = format!("/figures/{i}/outcome-bars");
                 foreign(StudyKind::Deadline, &pointer, faults);

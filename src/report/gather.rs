@@ -137,6 +137,14 @@ fn figures(bundle: &Bundle, plan: &Plan) -> Vec<Figure> {
                      paper's means with one standard deviation.",
                     "Line chart",
                 ),
+                FigureLayout::WorldPlan(_) => (
+                    "The world at the height of the laser scanner, with the robot's start.",
+                    "Floor plan",
+                ),
+                FigureLayout::PriorOverWorld(_) => (
+                    "The world at the height of the laser scanner; orange, the obstacles of the prior map.",
+                    "Floor plan with a prior map over it",
+                ),
                 FigureLayout::OutcomeBars(_) => (
                     "Bars are ours with 95 % intervals; hollow markers are the paper's numbers.",
                     "Bar chart",

@@ -65,6 +65,10 @@ pub struct FigureRequest {
 pub enum FigureLayout {
     /// Prior map: coverage over time or distance, one curve per value of a factor, as in Figure 4.
     CoverageCurve(prior_map::CoverageCurve),
+    /// Prior map: an environment's floor plan with its dimensions, as in Figure 3.
+    WorldPlan(prior_map::PlanFigure),
+    /// Prior map: the obstacles of a prior map over the floor plan, as in Figure 5.
+    PriorOverWorld(prior_map::PlanFigure),
     /// Deadline: one bar per value of a factor in groups of conditions, as in Figures 4 and 5.
     OutcomeBars(deadline::OutcomeTable),
 }

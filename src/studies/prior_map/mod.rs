@@ -20,7 +20,7 @@ pub use parameters::{
     Coverage, Exploration, Gain, Mapping, Measurement, Mission, Navigation, Parameters, Reselect,
     Sensing, Strategy,
 };
-pub use requests::{AgreementTable, CoverageCurve, CoverageTable, Metric};
+pub use requests::{AgreementTable, CoverageCurve, CoverageTable, Metric, PlanFigure};
 
 use crate::geometry::Pose;
 use crate::grid::OccupancyGrid;
@@ -28,7 +28,7 @@ use crate::robot::Robot;
 use crate::world::World;
 use std::sync::{Arc, OnceLock};
 
-pub use mission::{MILESTONES, Prepared, run};
+pub use mission::{MILESTONES, Prepared, plan_figure, run};
 
 /// Everything a trial of this study needs.
 #[derive(Debug)]

@@ -78,3 +78,12 @@ pub struct CoverageCurve {
     #[serde(default, rename = "where")]
     pub only: BTreeMap<String, FactorValue>,
 }
+
+/// The building of a condition from above, with its dimensions.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct PlanFigure {
+    /// The first condition with these factor values.
+    #[serde(default, rename = "where")]
+    pub only: BTreeMap<String, FactorValue>,
+}
