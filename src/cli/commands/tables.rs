@@ -16,7 +16,7 @@ pub(super) fn table(
         TableLayout::CoverageTable(wanted) => coverage_table(findings, wanted),
         TableLayout::AgreementTable(wanted) => {
             aligned(&findings.agreement_table_in_print(wanted, &coverage_tables(all)))
-                + "  (log ratios to the baseline, ours on the paper's; rmse is the score, skill over the paper's\n  mean ratio; in: inside the paper's 95 % prediction interval; docs/studies/prior-map.md)\n"
+                + "  (log ratios to the baseline, ours on the paper's; rmse is the score, skill is over the\n  paper's mean ratio; in: inside the paper's 95 % prediction interval)\n"
         }
         TableLayout::OutcomeTable(wanted) => outcome_table(findings, wanted),
         TableLayout::ManeuverTable(wanted) => aligned(&findings.maneuver_table(wanted)),
@@ -80,7 +80,9 @@ fn coverage_table(findings: &Findings<'_>, wanted: &CoverageTable) -> String {
         text.push_str(line.trim_end());
         text.push('\n');
     };
-    line(format!("  coverage  {:width$}  {:>16} {:>6}   {papers:>16}", wanted.by, "ours", ""));
+    let header = wanted.rows.iter().chain([&wanted.by]).cloned().collect::<Vec<_>>().join(", ");
+    let width = width.max(header.chars().count());
+    line(format!("  coverage  {header:width$}  {:>16} {:>6}   {papers:>16}", "ours", ""));
     let mut last = None;
     // A design may leave combinations out.
     for cell in cells.iter().filter(|cell| cell.trials > 0) {

@@ -166,14 +166,13 @@ impl Findings<'_> {
         table
     }
 
-    /// The same as people read it, in 80 columns where ids are short.
+    /// The same as people read it, in 80 columns where names are short: each table, then its parts.
     pub fn agreement_table_in_print(
         &self,
         wanted: &AgreementTable,
         tables: &[(&str, &CoverageTable)],
     ) -> Table {
-        let columns =
-            ["of", "scope", "ratios", "slope", "Pearson", "rmse", "skill", "ratios in", "cells in"];
+        let columns = ["part", "ratios", "slope", "Pearson", "rmse", "skill", "in", "cells in"];
         let mut table = Table::new(columns);
         for part in self.agreement(wanted, tables) {
             let number = |x: f64| {
@@ -186,14 +185,15 @@ impl Findings<'_> {
                 None if part.line.slope.is_finite() => format!("{:.2}", part.line.slope),
                 None => "-".to_owned(),
             };
-            let of = |(inside, known): (u64, u64)| Value::from(format!("{inside} of {known}"));
+            let of = |(inside, known): (u64, u64)| Value::from(format!("{inside}/{known}"));
+            let whole = part.scope == "all";
+            let name = if whole { part.table.clone() } else { part.scope.clone() };
             let ratios = match part.missing {
                 0 => part.ratios.to_string(),
                 missing => format!("{} (-{missing})", part.ratios),
             };
             table.push(vec![
-                part.table.into(),
-                part.scope.into(),
+                name.into(),
                 ratios.into(),
                 slope.into(),
                 number(part.pearson),
