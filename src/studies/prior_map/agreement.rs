@@ -283,3 +283,6 @@ fn on_both_sides(cell: &CoverageCell) -> Option<Both<'_>> {
     let printed = Summary { n, mean, sd: sd.unwrap_or(f64::NAN) };
     Some(Both { cell, ours, printed, spread: sd.is_some() && n >= 2 })
 }
+
+#[cfg(test)]
+mod tests;

@@ -58,6 +58,17 @@ impl Setup {
         Self { world, robot, prior, start, parameters, prepared: OnceLock::new() }
     }
 
+    /// How far the scanner reaches when a gain is computed, in cells of the robot's map; 0 without a scanner.
+    pub fn gain_range_cells(&self) -> i32 {
+        let (sensing, mapping) = (&self.parameters.sensing, &self.parameters.mapping);
+        let own = self.robot.lidar.as_ref().map_or(0.0, |lidar| lidar.max_range);
+        let range = sensing.range_m.unwrap_or(own);
+        let range = mapping.clip_range_m.map_or(range, |clip| clip.min(range));
+        #[expect(clippy::cast_possible_truncation, reason = "ranges are checked to be below 200 m")]
+        let cells = (range / mapping.resolution_m).round() as i32;
+        cells
+    }
+
     /// What all trials of this setup share, computed by the first that asks.
     ///
     /// # Errors
