@@ -3,10 +3,12 @@
 
 use super::content::{Author, BundleContent, Citation, SealedCondition, SealedInput};
 use crate::claims::{self, Claim, Verdict};
+use crate::figure::svg;
 use crate::plan::{ENGINE_VERSION, Plan, Selection};
-use crate::studies::prior_map::CoverageTable;
+use crate::studies::prior_map::{self, PlanFigure};
 use crate::studies::{
-    FigureLayout, Findings, Outcome, StudyKind, TableLayout, TableRequest, TrialRecord,
+    Condition, FigureLayout, Findings, Outcome, Setup, StudyKind, TableLayout, TrialRecord,
+    coverage_tables,
 };
 use serde_json::{Value, json};
 
@@ -132,17 +134,6 @@ fn sealed_conditions(plan: &Plan, records: &[TrialRecord]) -> Vec<SealedConditio
     conditions
 }
 
-/// The tables whose published numbers a coverage curve can show.
-fn coverage_tables(tables: &[TableRequest]) -> Vec<&CoverageTable> {
-    tables
-        .iter()
-        .filter_map(|request| match &request.layout {
-            TableLayout::CoverageTable(table) => Some(table),
-            TableLayout::OutcomeTable(_) | TableLayout::ManeuverTable(_) => None,
-        })
-        .collect()
-}
-
 fn results(plan: &Plan, records: &[TrialRecord]) -> Result<Vec<(String, Vec<u8>)>, String> {
     let factors = factors(plan);
     let findings = findings(plan, records, &factors);
@@ -160,6 +151,11 @@ fn results(plan: &Plan, records: &[TrialRecord]) -> Result<Vec<(String, Vec<u8>)
             TableLayout::CoverageTable(wanted) => {
                 (findings.coverage_table(wanted), findings.coverage_table_in_print(wanted))
             }
+            TableLayout::AgreementTable(wanted) => {
+                let tables = coverage_tables(&experiment.tables);
+                let print = findings.agreement_table_in_print(wanted, &tables);
+                (findings.agreement_table(wanted, &tables), print)
+            }
             TableLayout::OutcomeTable(wanted) => {
                 (findings.outcome_table(wanted), findings.outcome_table_in_print(wanted))
             }
@@ -175,9 +171,14 @@ fn results(plan: &Plan, records: &[TrialRecord]) -> Result<Vec<(String, Vec<u8>)
     for request in &experiment.figures {
         let svg = match &request.layout {
             FigureLayout::CoverageCurve(curve) => {
-                let tables = coverage_tables(&experiment.tables);
+                let tables: Vec<_> = coverage_tables(&experiment.tables)
+                    .into_iter()
+                    .map(|(_, table)| table)
+                    .collect();
                 findings.coverage_figure(&request.title, curve, &tables).to_svg()
             }
+            FigureLayout::WorldPlan(wanted) => plan_figure(plan, &request.title, wanted, false),
+            FigureLayout::PriorOverWorld(wanted) => plan_figure(plan, &request.title, wanted, true),
             FigureLayout::OutcomeBars(bars) => {
                 findings.outcome_figure(&request.title, bars).to_svg()
             }
@@ -186,6 +187,21 @@ fn results(plan: &Plan, records: &[TrialRecord]) -> Result<Vec<(String, Vec<u8>)
     }
     files.push(("claims.json".to_owned(), verdicts_json(&verdicts(plan, records)?)));
     Ok(files)
+}
+
+/// The floor plan of the first condition that a figure speaks of; words where the design leaves that combination out.
+fn plan_figure(plan: &Plan, title: &str, wanted: &PlanFigure, with_prior: bool) -> String {
+    let admits = |condition: &Condition| {
+        wanted.only.iter().all(|(factor, value)| condition.value(factor) == Some(&value.0))
+    };
+    let found = plan.experiment.conditions.iter().find(|(condition, _)| admits(condition));
+    let Some((condition, Setup::PriorMap(setup))) = found else {
+        let words = "no condition of the design has these values";
+        let text = svg::Element::new("text").at("x", 10.0).at("y", 24.0).text(words);
+        return svg::document(320.0, 36.0, title, [text]);
+    };
+    let prior = condition.value("prior").unwrap_or("prior map");
+    prior_map::plan_figure(title, setup, with_prior.then_some(prior))
 }
 
 /// A list of verdicts as bundles hold it.

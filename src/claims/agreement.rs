@@ -1,132 +1,19 @@
 //! Our cells beside the paper's: `correlation-with-published`, `rmse-with-published`.
 
-use super::cells::{Values, Where};
-use super::gather::{Bench, Draft, Evidence, Group};
+use super::cells::Where;
+use super::gather::{Bench, Draft, Evidence};
 use super::measuring::{Correlation, Rmse};
-use super::metric::Metric;
-use super::published::{PublishedCell, read, selection};
-use super::verdict::{CellNumbers, Effect};
+use super::pairing::{Pair, Point, clusters, log_ratios, pair_up, printed};
+use super::verdict::Effect;
 use crate::math::ln;
-use crate::stats::bootstrap::bootstrap;
+use crate::stats::agreement;
+use crate::stats::bootstrap::{Bootstrapped, bootstrap};
 use crate::stats::distribution::{normal_sf, student_t_quantile};
 use crate::stats::proportion::{Proportion, newcombe};
 use crate::stats::rank::{midranks, pearson, spearman, spearman_interval, spearman_permutation};
 use crate::stats::summary::mean;
 use crate::stats::{length, real};
 use std::collections::BTreeMap;
-
-/// A printed number with our runs of the same cell. Published numbers are in the metric's unit.
-struct Pair {
-    pins: BTreeMap<String, String>,
-    metric: Metric,
-    published: f64,
-    sd: Option<f64>,
-    n: Option<u64>,
-    ours: Group,
-}
-
-/// Pairs in the order of the table, the numbers used, and notes on what has no counterpart.
-struct Paired {
-    pairs: Result<Vec<Pair>, String>,
-    cells: Vec<CellNumbers>,
-    notes: Vec<String>,
-}
-
-fn pair_up(
-    bench: &Bench<'_>,
-    metrics: &Values,
-    published: &str,
-    scale: f64,
-    only: &Where,
-) -> Paired {
-    let (mut pairs, mut cells, mut reason) = (Vec::new(), Vec::new(), None);
-    let (mut lacking, mut conditions) = (Vec::new(), Vec::new());
-    let rows = bench
-        .context
-        .published
-        .get(published)
-        .ok_or_else(|| format!("there is no published table `{published}`"))
-        .and_then(|table| {
-            read(table, &bench.observations.factors)
-                .map_err(|fault| format!("published table `{published}`: {fault}"))
-        });
-    let rows = match rows {
-        Ok(rows) => rows,
-        Err(fault) => return Paired { pairs: Err(fault), cells, notes: Vec::new() },
-    };
-    reason = reason.or_else(|| unclear(metrics, published, &rows));
-    for name in &metrics.0 {
-        let metric = Metric::named(name);
-        reason = reason.or_else(|| bench.observations.lacks(&metric));
-        for row in &rows {
-            let wanted = row.speaks_of(name)
-                && only.admits(|factor| row.pins.get(factor).map(String::as_str));
-            let (true, Some(value)) = (wanted, row.value) else { continue };
-            let cell = selection(&row.pins);
-            let (ours, mut numbers, fault) = bench.group(&cell, &metric);
-            if numbers.reached == 0 && bench.observations.lacks(&metric).is_none() {
-                lacking.push(cell.to_string());
-            } else {
-                reason = reason.or(fault);
-                for &i in &ours.conditions {
-                    if conditions.contains(&(i, name)) {
-                        let name = bench.observations.name(i);
-                        reason = reason
-                            .or(Some(format!("two published cells pool the condition {name}")));
-                    }
-                    conditions.push((i, name));
-                }
-                let published = value * scale;
-                numbers.cell = format!("{metric}: {}", numbers.cell);
-                numbers.published = Some(published);
-                cells.push(numbers);
-                let sd = row.sd.map(|sd| sd * scale);
-                let (metric, pins) = (metric.clone(), row.pins.clone());
-                pairs.push(Pair { pins, metric, published, sd, n: row.n, ours });
-            }
-        }
-    }
-    let mut distinct: Vec<usize> = conditions.iter().map(|(i, _)| *i).collect();
-    distinct.sort_unstable();
-    distinct.dedup();
-    reason = reason.or_else(|| bench.shared_noise(&distinct));
-    let notes = if lacking.is_empty() {
-        Vec::new()
-    } else {
-        vec![format!(
-            "{} published cells have no runs to compare: {}",
-            lacking.len(),
-            lacking.join("; ")
-        )]
-    };
-    Paired { pairs: reason.map_or(Ok(pairs), Err), cells, notes }
-}
-
-/// What keeps the metrics of a claim from being found in a table, if anything does.
-fn unclear(metrics: &Values, published: &str, rows: &[PublishedCell]) -> Option<String> {
-    if rows.iter().all(|row| row.coverage.is_none()) {
-        return None;
-    }
-    let mut quantities: Vec<&str> = Vec::new();
-    for name in &metrics.0 {
-        let Some((quantity, _)) = name.rsplit_once("-at-") else {
-            return Some(format!(
-                "the published table `{published}` tells coverages, and `{name}` is at none; name metrics as \
-                 `{name}-at-80`"
-            ));
-        };
-        if !quantities.contains(&quantity) {
-            quantities.push(quantity);
-        }
-    }
-    let told = rows.iter().all(|row| row.metric.is_some());
-    (quantities.len() > 1 && !told).then(|| {
-        format!(
-            "the published table `{published}` holds one quantity, and the claim compares it with {}",
-            quantities.join(" and ")
-        )
-    })
-}
 
 fn too_few(cells: usize, minimum: u64) -> Option<String> {
     ((cells as u64) < minimum.max(4))
@@ -148,7 +35,7 @@ pub(super) fn correlation(bench: &Bench<'_>, form: &Correlation) -> Draft {
         let points = match &form.ratio_to {
             None => pairs
                 .iter()
-                .map(|p| Point { runs: &p.pins, x: p.published, y: p.ours.summary.mean })
+                .map(|p| Point { runs: &p.pins, x: p.published, y: p.ours.summary.mean, of: None })
                 .collect(),
             Some(base) => {
                 let (points, lost) = log_ratios(&pairs, base);
@@ -167,55 +54,6 @@ pub(super) fn correlation(bench: &Bench<'_>, form: &Correlation) -> Draft {
 
 /// More cells than any paper prints; a bound on what a verdict lists.
 const MOST_CELLS: usize = 1000;
-
-/// A published number beside ours, and whose runs ours is of: several coverages are of the same runs.
-struct Point<'a> {
-    runs: &'a BTreeMap<String, String>,
-    x: f64,
-    y: f64,
-}
-
-/// The places of equal `runs`, in the order of their first: what is measured on the same runs is not independent.
-fn clusters<'a>(runs: impl Iterator<Item = &'a BTreeMap<String, String>>) -> Vec<Vec<usize>> {
-    let mut found: Vec<(&BTreeMap<String, String>, Vec<usize>)> = Vec::new();
-    for (i, runs) in runs.enumerate() {
-        match found.iter_mut().find(|(known, _)| *known == runs) {
-            Some((_, places)) => places.push(i),
-            None => found.push((runs, vec![i])),
-        }
-    }
-    found.into_iter().map(|(_, places)| places).collect()
-}
-
-/// Log ratios to the base cell, published and ours, and how many cells have none.
-fn log_ratios<'a>(pairs: &'a [Pair], base: &Where) -> (Vec<Point<'a>>, usize) {
-    let pins = base.combinations().into_iter().next().unwrap_or_default();
-    let (mut points, mut lost) = (Vec::new(), 0);
-    for pair in pairs {
-        let mut wanted = pair.pins.clone();
-        wanted.extend(pins.clone());
-        if wanted == pair.pins {
-            continue;
-        }
-        let base = pairs.iter().find(|p| p.pins == wanted && p.metric == pair.metric);
-        match base {
-            Some(base)
-                if base.published > 0.0
-                    && pair.published > 0.0
-                    && base.ours.summary.mean > 0.0
-                    && pair.ours.summary.mean > 0.0 =>
-            {
-                points.push(Point {
-                    runs: &pair.pins,
-                    x: ln(pair.published / base.published),
-                    y: ln(pair.ours.summary.mean / base.ours.summary.mean),
-                });
-            }
-            _ => lost += 1,
-        }
-    }
-    (points, lost)
-}
 
 /// Evidence that the rank correlation reaches a level: its interval (Bonett and Wright 2000) above the level,
 /// and a permutation p-value against none at all. Cells that are measured on the same runs count as one in both:
@@ -278,32 +116,47 @@ fn correlated(
 }
 
 pub(super) fn rmse(bench: &Bench<'_>, form: &Rmse) -> Draft {
+    let ratio =
+        form.ratio_to.as_ref().map(|base| format!(" as log ratio to ({base})")).unwrap_or_default();
     let about = format!(
-        "{} against published `{}`: root mean square difference at most {}",
+        "{}{ratio} against published `{}`: root mean square difference at most {}",
         form.metric.0.join(" and "),
         form.published,
         form.at_most
     );
     let mut paired = pair_up(bench, &form.metric, &form.published, form.scale, &form.r#where);
-    let evidence = paired.pairs.and_then(|pairs| {
-        too_few(pairs.len(), form.minimum_n).map_or(Ok(()), Err)?;
-        Ok(distance(bench, &about, &pairs, form))
+    let mut notes = paired.notes;
+    let evidence = paired.pairs.and_then(|pairs| match &form.ratio_to {
+        None => {
+            too_few(pairs.len(), form.minimum_n).map_or(Ok(()), Err)?;
+            Ok(distance(bench, &about, &pairs, form))
+        }
+        Some(base) => {
+            let (points, lost) = log_ratios(&pairs, base);
+            if lost > 0 {
+                notes.push(format!("{lost} cells have no positive base to take a ratio to"));
+            }
+            too_few(points.len(), form.minimum_n).map_or(Ok(()), Err)?;
+            Ok(distance_of_ratios(bench, &about, &points, base, form.at_most))
+        }
     });
     paired.cells.truncate(MOST_CELLS);
-    let (cells, notes) = (paired.cells, paired.notes);
+    let cells = paired.cells;
     Draft { about, test: "bootstrap-over-cells", cells, conditions: Vec::new(), evidence, notes }
 }
 
-fn distance(bench: &Bench<'_>, about: &str, pairs: &[Pair], form: &Rmse) -> Evidence {
-    let differences: Vec<f64> = pairs.iter().map(|p| p.ours.summary.mean - p.published).collect();
-    let squares: Vec<f64> = differences.iter().map(|d| d * d).collect();
-    // Cells that are measured on the same runs are drawn together.
-    let clusters = clusters(pairs.iter().map(|p| &p.pins));
+/// The root of the mean of `squares` with its interval, `clusters` of them drawn together.
+fn resampled(
+    bench: &Bench<'_>,
+    about: &str,
+    squares: &[f64],
+    clusters: &[Vec<usize>],
+) -> Bootstrapped {
     let sums: Vec<f64> =
         clusters.iter().map(|places| places.iter().map(|&i| squares[i]).sum()).collect();
     let sizes: Vec<f64> = clusters.iter().map(|places| length(places)).collect();
     let places: Vec<f64> = (0..clusters.len()).map(|i| real(i as u64)).collect();
-    let found = bootstrap(
+    bootstrap(
         &[&places],
         |drawn| {
             #[expect(
@@ -317,10 +170,83 @@ fn distance(bench: &Bench<'_>, about: &str, pairs: &[Pair], form: &Rmse) -> Evid
         bench.context.resamples,
         bench.confidence(),
         &mut bench.stream(about),
-    );
+    )
+}
+
+/// Evidence that a root mean square difference is at most a bound, from its resamples.
+fn bounded(found: &Bootstrapped, at_most: f64, statistics: Vec<(&'static str, f64)>) -> Evidence {
     let count =
         |holds: &dyn Fn(f64) -> bool| found.statistics.iter().filter(|&&x| holds(x)).count() as u64;
     let share = |n: u64| (real(n) + 1.0) / (length(&found.statistics) + 1.0);
+    Evidence {
+        p_for: share(count(&|x| x >= at_most)),
+        p_against: share(count(&|x| x <= at_most)),
+        statistics,
+        effect: Some(Effect {
+            name: "rmse",
+            value: found.estimate,
+            interval: found.interval,
+            standardised: None,
+        }),
+    }
+}
+
+/// Log ratios: those with a base in common are one block, as whatever befell the base befell all of them.
+fn distance_of_ratios(
+    bench: &Bench<'_>,
+    about: &str,
+    points: &[Point<'_>],
+    base: &Where,
+    at_most: f64,
+) -> Evidence {
+    let (x, y): (Vec<f64>, Vec<f64>) = points.iter().map(|p| (p.x, p.y)).unzip();
+    let squares: Vec<f64> = x.iter().zip(&y).map(|(x, y)| (x - y) * (x - y)).collect();
+    let bases: Vec<BTreeMap<String, String>> = points
+        .iter()
+        .map(|point| {
+            let mut pins = point.runs.clone();
+            pins.retain(|factor, _| !base.0.contains_key(factor));
+            pins
+        })
+        .collect();
+    let blocks = clusters(bases.iter());
+    let found = resampled(bench, about, &squares, &blocks);
+    let line = agreement::line(
+        &x.iter().copied().zip(y.iter().copied()).collect::<Vec<_>>(),
+        &blocks,
+        bench.confidence(),
+    );
+    let mut statistics = vec![
+        ("cells", length(points)),
+        ("independent-cells", length(&blocks)),
+        ("bias", mean(&y) - mean(&x)),
+        ("slope", line.slope),
+        ("pearson", pearson(&x, &y)),
+        ("spearman", spearman(&x, &y)),
+        ("skill-over-constant", agreement::skill_over_constant(&y, &x)),
+    ];
+    let inside: Vec<f64> = points
+        .iter()
+        .filter_map(|point| {
+            let (above, below) = point.of?;
+            let (above, below) = (printed(above)?, printed(below)?);
+            let half = agreement::log_ratio_half_width(above, below, 0.95);
+            Some(f64::from(u8::from((point.y - point.x).abs() <= half)))
+        })
+        .collect();
+    if !inside.is_empty() {
+        statistics.push(("inside-prediction-interval", mean(&inside)));
+        statistics.push(("cells-with-interval", length(&inside)));
+    }
+    bounded(&found, at_most, statistics)
+}
+
+fn distance(bench: &Bench<'_>, about: &str, pairs: &[Pair], form: &Rmse) -> Evidence {
+    let differences: Vec<f64> = pairs.iter().map(|p| p.ours.summary.mean - p.published).collect();
+    let squares: Vec<f64> = differences.iter().map(|d| d * d).collect();
+    // Cells that are measured on the same runs are drawn together.
+    let clusters = clusters(pairs.iter().map(|p| &p.pins));
+    let found = resampled(bench, about, &squares, &clusters);
     let mut statistics = vec![
         ("cells", length(pairs)),
         ("independent-cells", length(&clusters)),
@@ -354,17 +280,7 @@ fn distance(bench: &Bench<'_>, about: &str, pairs: &[Pair], form: &Rmse) -> Evid
     if let Some(inside) = inside {
         statistics.push(("inside-prediction-interval", mean(&inside)));
     }
-    Evidence {
-        p_for: share(count(&|x| x >= form.at_most)),
-        p_against: share(count(&|x| x <= form.at_most)),
-        statistics,
-        effect: Some(Effect {
-            name: "rmse",
-            value: found.estimate,
-            interval: found.interval,
-            standardised: None,
-        }),
-    }
+    bounded(&found, form.at_most, statistics)
 }
 
 /// For each pair the mean of `values` over the pairs that agree with it in `factors`.

@@ -2,11 +2,12 @@
 
 use super::Claim;
 use super::cells::{Values, Where};
+use super::comparing::Comparison;
 use super::expect::Expect;
 use super::measuring::{Bound, That};
 use super::metric::{Metric, WALL_TIME};
 use super::power::Assume;
-use super::terms::{Censored, Order, Pairs, Sides, Statistic, Test};
+use super::terms::{Censored, Order, Pairs, PerRun, Sides, Statistic, Test};
 use crate::document::suggestion;
 
 /// All faults of a manifest's claims: those of each ([`Claim::check`]) and ids used twice.
@@ -176,7 +177,9 @@ impl Faults<'_> {
                     (false, true)
                 }
                 (_, Test::FisherExact | Test::ChiSquare) => (true, true),
-                (_, Test::Welch | Test::Anova | Test::MannWhitney) => (true, false),
+                (_, Test::Welch | Test::Anova | Test::MannWhitney | Test::BrownForsythe) => {
+                    (true, false)
+                }
             };
             self.unless(allowed, "test", || format!("{} is no test of this form", test.name()));
             let kind = if for_shares { "shares (success, outcome:...)" } else { "measures" };
@@ -234,6 +237,7 @@ impl Faults<'_> {
         match expect {
             Expect::Less(f) | Expect::Greater(f) => {
                 self.each("than.each", &f.than.each, &f.than.r#where);
+                self.per_run(f);
             }
             Expect::Equivalent(f) => {
                 self.each("to.each", &f.to.each, &f.to.r#where);
@@ -307,18 +311,45 @@ impl Faults<'_> {
                 self.unless(f.at_least > -1.0 && f.at_least < 1.0, "at-least", || {
                     format!("a correlation lies between -1 and 1, found {}", f.at_least)
                 });
-                let single =
-                    |w: &Where| !w.0.is_empty() && w.0.values().all(|Values(v)| v.len() == 1);
-                self.unless(f.ratio_to.as_ref().is_none_or(single), "ratio-to", || {
-                    "expected one value per factor: the base of a ratio is one cell".to_owned()
-                });
+                self.base(f.ratio_to.as_ref());
             }
             Expect::RmseWithPublished(f) => {
                 self.margin("scale", f.scale);
                 self.margin("at-most", f.at_most);
+                self.base(f.ratio_to.as_ref());
+                self.unless(f.ratio_to.is_none() || f.baseline.is_empty(), "baseline", || {
+                    "skill over log ratios is counted over their mean; leave `baseline` out"
+                        .to_owned()
+                });
                 f.baseline.iter().for_each(|factor| self.factor("baseline", factor));
             }
         }
+    }
+
+    fn base(&mut self, ratio_to: Option<&Where>) {
+        let single = |w: &Where| !w.0.is_empty() && w.0.values().all(|Values(v)| v.len() == 1);
+        self.unless(ratio_to.is_none_or(single), "ratio-to", || {
+            "expected one value per factor: the base of a ratio is one cell".to_owned()
+        });
+    }
+
+    fn per_run(&mut self, form: &Comparison) {
+        if let Some(per_run) = form.per_run {
+            let share = form.metric.0.iter().find(|name| Metric::named(name).is_share());
+            self.unless(share.is_none(), "per-run", || {
+                let share = share.map_or("", String::as_str);
+                format!("`{share}` is a share of runs; only measures have logarithms")
+            });
+            let found = form.metric.0.len();
+            let (fits, expected) = match per_run {
+                PerRun::MeanLog => (found >= 2, "two metrics or more"),
+                PerRun::LogRatio => (found == 2, "two metrics"),
+            };
+            self.unless(fits, "per-run", || format!("expected {expected}, found {found}"));
+        }
+        self.unless(form.also_at_n.is_none_or(|n| n >= 2), "also-at-n", || {
+            "expected at least 2: fewer trials have no spread".to_owned()
+        });
     }
 
     fn that(&mut self, that: &That) {

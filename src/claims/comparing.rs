@@ -1,7 +1,9 @@
 //! Forms that hold cells against one another: `less`, `greater`, `equivalent`, `homogeneous`, `rank`, `trend`.
 
 use super::cells::{ForEach, Than, Values, Where};
-use super::terms::{Censored, Correction, Direction, Order, Sides, Test, five_percent, ten};
+use super::terms::{
+    Censored, Correction, Direction, Order, PerRun, Sides, Test, five_percent, ten,
+};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -9,8 +11,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Comparison {
-    /// What is measured; several metrics are several comparisons.
+    /// What is measured; several metrics are several comparisons, unless `per-run` makes one number of them.
     pub metric: Values,
+    /// How the metrics of one run become one number: coverages of one run are no independent measurements.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub per_run: Option<PerRun>,
     /// The first cell or pool.
     #[serde(default)]
     pub r#where: Where,
@@ -35,6 +40,9 @@ pub struct Comparison {
     /// Runs per cell (that reached the measure) without which nothing is judged.
     #[serde(default = "ten")]
     pub minimum_n: u64,
+    /// Effect and p of the first so many trials of each condition, to stand beside those of all: the paper's n.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub also_at_n: Option<u64>,
     /// What becomes of runs that did not reach the measure.
     #[serde(default)]
     pub censored: Censored,

@@ -2,10 +2,11 @@
 
 use super::cells::Where;
 use super::comparing::{Comparison, Ranking, Trend};
+use super::expect::Terms;
 use super::gather::{Bench, Draft, Evidence, Group, varies};
 use super::metric::Metric;
 use super::terms::{Direction, Order, Side, Sides, Test};
-use super::verdict::Effect;
+use super::verdict::{Effect, FIRST_N, FIRST_N_HEDGES_G, FIRST_N_P};
 use crate::stats::bootstrap::bootstrap;
 use crate::stats::effect::{cliff_delta, hedges_g, risk_difference};
 use crate::stats::means::{anova, student, welch};
@@ -13,7 +14,8 @@ use crate::stats::proportion::{
     Proportion, chi_square_homogeneity, cochran_armitage, fisher_exact, newcombe,
 };
 use crate::stats::rank::{mann_whitney, spearman, spearman_interval, spearman_permutation};
-use crate::stats::{Interval, Tails};
+use crate::stats::summary::{Summary, median};
+use crate::stats::{Interval, Tails, real};
 
 pub(super) fn less(bench: &Bench<'_>, form: &Comparison) -> Vec<Draft> {
     sided(bench, form, Side::Less)
@@ -25,11 +27,11 @@ pub(super) fn greater(bench: &Bench<'_>, form: &Comparison) -> Vec<Draft> {
 
 fn sided(bench: &Bench<'_>, form: &Comparison, side: Side) -> Vec<Draft> {
     let mut drafts = Vec::new();
-    for metric in &form.metric.0 {
+    for metric in Metric::of_run(&form.metric.0, form.per_run) {
         for pins in form.for_each.combinations() {
             for other in form.than.cells() {
                 let cells = [form.r#where.pinned(&pins), other.pinned(&pins)];
-                drafts.push(compare(bench, &Metric::named(metric), &cells, side));
+                drafts.push(compare(bench, &metric, &cells, side));
             }
         }
     }
@@ -71,11 +73,19 @@ fn compare(bench: &Bench<'_>, metric: &Metric, cells: &[Where; 2], side: Side) -
     let test =
         bench.terms.test.unwrap_or(if metric.is_share() { Test::FisherExact } else { Test::Welch });
     let gathered = bench.gather(cells, metric);
+    let mut notes = gathered.notes;
     let evidence = gathered.groups.and_then(|groups| {
         let found = evidence(bench, &about, test, &groups[0], &groups[1])?;
         let (p_for, p_against) = directed(found.tails, found.difference, side, found.sides);
         let effect = Some(found.effect);
-        Ok(Evidence { p_for, p_against, statistics: found.statistics, effect })
+        let mut statistics = found.statistics;
+        if let Some(n) = bench.terms.also_at_n {
+            match of_the_first(bench, metric, cells, test, side, n) {
+                Ok(beside) => statistics.extend(beside),
+                Err(reason) => notes.push(format!("of the first {n} trials alone: {reason}")),
+            }
+        }
+        Ok(Evidence { p_for, p_against, statistics, effect })
     });
     Draft {
         about,
@@ -83,8 +93,28 @@ fn compare(bench: &Bench<'_>, metric: &Metric, cells: &[Where; 2], side: Side) -
         cells: gathered.numbers,
         conditions: gathered.conditions,
         evidence,
-        notes: gathered.notes,
+        notes,
     }
+}
+
+/// What the first `n` trials of each condition would have said: as many as the paper ran. Decides nothing.
+fn of_the_first(
+    bench: &Bench<'_>,
+    metric: &Metric,
+    cells: &[Where; 2],
+    test: Test,
+    side: Side,
+    n: u64,
+) -> Result<Vec<(&'static str, f64)>, String> {
+    let first = bench.observations.first(n);
+    let terms = Terms { minimum_runs: 2, also_at_n: None, ..bench.terms };
+    let bench = Bench { observations: &first, terms, ..*bench };
+    let groups = bench.gather(cells, metric).groups?;
+    let found = evidence(&bench, "first trials", test, &groups[0], &groups[1])?;
+    let (p, _) = directed(found.tails, found.difference, side, found.sides);
+    let mut told = vec![(FIRST_N, real(n)), (FIRST_N_P, p)];
+    told.extend(found.effect.standardised.map(|(_, g)| (FIRST_N_HEDGES_G, g)));
+    Ok(told)
 }
 
 /// p-values for a difference on the side claimed and on the other.
@@ -192,8 +222,31 @@ fn evidence(
                 },
             }
         }
+        Test::BrownForsythe => {
+            measures()?;
+            varies(&[a, b])?;
+            let (a, b) = (from_median(a), from_median(b));
+            let found = student(a.summary, b.summary);
+            Found {
+                tails: found.tails,
+                difference: found.difference,
+                sides: bench.terms.sides,
+                statistics: vec![("t", found.t), ("df", found.df)],
+                effect: Effect {
+                    name: "difference-of-distances-from-the-median",
+                    ..mean_effect(&a, &b, found.interval(bench.confidence()))
+                },
+            }
+        }
         Test::CochranArmitage | Test::Spearman => return Err(wrong()),
     })
+}
+
+/// The runs of a cell as distances from its median.
+fn from_median(group: &Group) -> Group {
+    let centre = median(&group.values);
+    let values: Vec<f64> = group.values.iter().map(|x| (x - centre).abs()).collect();
+    Group { summary: Summary::of(&values), values, ..group.clone() }
 }
 
 pub(super) fn share_effect(a: Proportion, b: Proportion, confidence: f64) -> Effect {

@@ -1,7 +1,8 @@
 //! What a claim expects, as data. One example of each form:
 //!
 //! `less`, `greater`: one cell or pool against another, or against several one by one (`each`), repeated
-//! over `for-each`. Tests: `fisher-exact`, `chi-square` (shares); `welch`, `anova`, `mann-whitney` (measures).
+//! over `for-each`. Tests: `fisher-exact`, `chi-square` (shares); `welch`, `anova`, `mann-whitney`,
+//! `brown-forsythe` (measures).
 //! ```yaml
 //! id: D1
 //! says: random is most effective from A except at the shortest deadline
@@ -243,6 +244,8 @@ pub(crate) struct Terms {
     /// Runs that each single cell needs: `minimum_n`, or one where that counts pairs or cells.
     pub(crate) minimum_runs: u64,
     pub(crate) censored: Censored,
+    /// The number of first trials of each condition that effect and p are told of as well.
+    pub(crate) also_at_n: Option<u64>,
 }
 
 impl Terms {
@@ -256,6 +259,7 @@ impl Terms {
             test: None,
             at_least: None,
             censored: Censored::Refuse,
+            also_at_n: None,
         }
     }
 }
@@ -325,9 +329,13 @@ impl Expect {
             };
         }
         match self {
-            Self::Less(f) | Self::Greater(f) => {
-                Terms { sides: f.sides, test: f.test, censored: f.censored, ..corrected!(f) }
-            }
+            Self::Less(f) | Self::Greater(f) => Terms {
+                sides: f.sides,
+                test: f.test,
+                censored: f.censored,
+                also_at_n: f.also_at_n,
+                ..corrected!(f)
+            },
             Self::Rank(f) => {
                 Terms { sides: f.sides, test: f.test, censored: f.censored, ..corrected!(f) }
             }
@@ -465,7 +473,10 @@ impl Expect {
                 add("where", &f.r#where);
                 f.ratio_to.iter().for_each(|cell| add("ratio-to", cell));
             }
-            Self::RmseWithPublished(f) => add("where", &f.r#where),
+            Self::RmseWithPublished(f) => {
+                add("where", &f.r#where);
+                f.ratio_to.iter().for_each(|cell| add("ratio-to", cell));
+            }
         }
         for cell in repeated.iter().flat_map(|each| &each.0) {
             all.push(("for-each".to_owned(), cell));

@@ -292,7 +292,10 @@ pub struct Rmse {
     /// Which of the published cells; default all.
     #[serde(default)]
     pub r#where: Where,
-    /// Root mean square difference claimed, in the metric's unit.
+    /// If given, log ratios to the cell with these factors replaced are compared.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ratio_to: Option<Where>,
+    /// Root mean square difference claimed, in the metric's unit; with `ratio-to`, of the log ratios.
     pub at_most: f64,
     /// Factors whose published means are the guess that skill is counted over.
     #[serde(default)]

@@ -24,6 +24,7 @@ mod level;
 pub mod measuring;
 pub mod metric;
 pub mod observations;
+mod pairing;
 pub mod power;
 pub mod published;
 mod rate;

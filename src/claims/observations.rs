@@ -128,12 +128,26 @@ impl Observations {
 
     /// Why `metric` cannot be read at all, if it cannot.
     pub(crate) fn lacks(&self, metric: &Metric) -> Option<String> {
-        match metric {
-            Metric::Measure(name) if !self.measures.contains(name) => {
-                Some(format!("the trials table has no column `{name}`"))
+        let lacking = metric.columns().into_iter().find(|name| !self.measures.contains(name));
+        lacking.map(|name| format!("the trials table has no column `{name}`"))
+    }
+
+    /// The first `n` trials of each condition, by number.
+    pub(crate) fn first(&self, n: u64) -> Self {
+        let mut kept = self.clone();
+        for condition in &mut kept.conditions {
+            let first: Vec<bool> =
+                condition.numbers.iter().map(|&i| u64::try_from(i).is_ok_and(|i| i < n)).collect();
+            let mut next = first.iter();
+            condition.numbers.retain(|_| next.next() == Some(&true));
+            let mut next = first.iter();
+            condition.outcomes.retain(|_| next.next() == Some(&true));
+            for values in condition.measures.values_mut() {
+                let mut next = first.iter();
+                values.retain(|_| next.next() == Some(&true));
             }
-            _ => None,
         }
+        kept
     }
 
     /// The conditions that `cell` selects.
@@ -211,16 +225,18 @@ impl Condition {
     /// The value of `metric` in one trial: `None` where the run did not reach it.
     pub(crate) fn reading(&self, row: usize, metric: &Metric) -> Result<Option<f64>, FailedTrial> {
         let Some(outcome) = self.outcomes.get(row) else {
-            return Ok(self.measures.get(&metric.to_string()).and_then(|values| values[row]));
+            let column = |name: &str| self.measures.get(name).and_then(|values| values[row]);
+            let share = metric.is_share().then(|| column(&metric.to_string()));
+            return Ok(share.unwrap_or_else(|| metric.of_columns(column)));
         };
         if outcome == FAILED {
             return Err(FailedTrial);
         }
-        match (metric, metric.counts(outcome)) {
-            (_, Some(counts)) => Ok(Some(f64::from(u8::from(counts)))),
-            (Metric::Measure(name), None) => Ok(self.measures.get(name).and_then(|v| v[row])),
-            (_, None) => Ok(None),
-        }
+        let column = |name: &str| self.measures.get(name).and_then(|values| values[row]);
+        Ok(match metric.counts(outcome) {
+            Some(counts) => Some(f64::from(u8::from(counts))),
+            None => metric.of_columns(column),
+        })
     }
 }
 

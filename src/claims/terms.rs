@@ -19,6 +19,8 @@ pub enum Test {
     Anova,
     /// Mann-Whitney test of two samples.
     MannWhitney,
+    /// Brown and Forsythe's test of two spreads: Student's test of the distances from each cell's median.
+    BrownForsythe,
     /// Spearman's correlation with a permutation p-value.
     Spearman,
 }
@@ -33,9 +35,20 @@ impl Test {
             Self::Welch => "welch",
             Self::Anova => "anova",
             Self::MannWhitney => "mann-whitney",
+            Self::BrownForsythe => "brown-forsythe",
             Self::Spearman => "spearman",
         }
     }
+}
+
+/// How several metrics of one run become one number, so that a run counts once.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum PerRun {
+    /// Mean of the logarithms: differences of its means are log ratios, whatever the size of each metric.
+    MeanLog,
+    /// Logarithm of the first of two metrics over the second.
+    LogRatio,
 }
 
 /// Which tails of a test count.

@@ -5,6 +5,7 @@ use crate::stats::assert_close;
 use crate::table::{Table, Value};
 use std::collections::BTreeMap;
 
+mod coverage;
 mod deadline;
 mod forms;
 mod levels;

@@ -5,6 +5,12 @@ use crate::stats::Interval;
 use serde_json::{Map, Value, json};
 use std::fmt;
 
+/// Names of the statistics that `also-at-n` tells of the first trials: their number, their p in the claimed direction,
+/// uncorrected, and their effect.
+pub(super) const FIRST_N: &str = "first-n";
+pub(super) const FIRST_N_P: &str = "first-n-p";
+pub(super) const FIRST_N_HEDGES_G: &str = "first-n-hedges-g";
+
 /// The answer to a claim or to one of its comparisons.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Judgement {
@@ -91,7 +97,8 @@ pub struct ComparisonVerdict {
 /// The statistics of a comparison with published numbers that a reader needs beside its effect, in words: the skill over
 /// trivial predictors above all. Empty for other comparisons.
 pub fn agreement_in_words<'a>(statistics: impl IntoIterator<Item = (&'a str, f64)>) -> String {
-    const SHOWN: [(&str, &str); 6] = [
+    const SHOWN: [(&str, &str); 7] = [
+        ("slope", "slope"),
         ("pearson", "Pearson"),
         ("within-baseline-correlation", "correlation of contrasts"),
         ("skill-over-constant", "skill over a constant"),
@@ -191,6 +198,17 @@ impl Effect {
 }
 
 impl ComparisonVerdict {
+    /// What `also-at-n` asked for in words: effect and p at the paper's number of runs beside those at ours.
+    pub fn at_both_numbers(&self) -> Option<String> {
+        let found = |name: &str| self.statistics.iter().find(|(n, _)| *n == name).map(|(_, x)| *x);
+        let (n, p) = (found(FIRST_N)?, found(FIRST_N_P)?);
+        let of = |g: Option<f64>| g.map(|g| format!(", g {g:+.2}")).unwrap_or_default();
+        let all = self.effect.as_ref().and_then(|effect| effect.standardised).map(|(_, g)| g);
+        let most = self.cells.iter().map(|cell| cell.reached).max().unwrap_or(0);
+        let all = format!("at n = {most} p {:.1e}{}", self.p_for?.0, of(all));
+        Some(format!("at n = {n} p {p:.1e}{}; {all}", of(found(FIRST_N_HEDGES_G))))
+    }
+
     fn to_json(&self) -> Value {
         let mut map = Map::new();
         map.insert("about".into(), json!(self.about));
@@ -222,6 +240,22 @@ impl ComparisonVerdict {
 }
 
 impl Verdict {
+    /// Runs that never reached what they were compared by, and all runs, each cell counted once for each of its measures.
+    /// `None` where all did.
+    pub fn censored(&self) -> Option<(u64, u64)> {
+        let cells = self.comparisons.iter().flat_map(|comparison| &comparison.cells);
+        let mut seen: Vec<(&str, u64, u64)> = Vec::new();
+        for cell in cells {
+            let one = (cell.cell.as_str(), cell.reached, cell.trials);
+            if !seen.contains(&one) {
+                seen.push(one);
+            }
+        }
+        let all: u64 = seen.iter().map(|cell| cell.2).sum();
+        let reached: u64 = seen.iter().map(|cell| cell.1).sum();
+        (reached < all).then(|| (all - reached, all))
+    }
+
     /// The entry of `results/claims.json`, statistics rounded to nine significant digits.
     pub fn to_json(&self) -> Value {
         json!({

@@ -266,6 +266,12 @@ pub(super) struct ReplayArgs {
     /// The instant of the still picture (s) [default: the end]
     #[arg(long, value_name = "SECONDS", requires = "svg")]
     pub(super) at: Option<f64>,
+    /// Prior-map study: instead of a still, draw what the candidate of this choice (from 1) promises, with and without prior
+    #[arg(long, value_name = "CHOICE", requires = "svg", conflicts_with = "at")]
+    pub(super) decision: Option<usize>,
+    /// Which candidate of that choice, from 1 [default: the chosen one]
+    #[arg(long, value_name = "CANDIDATE", requires = "decision")]
+    pub(super) gain: Option<usize>,
 }
 
 #[derive(Debug, Args)]

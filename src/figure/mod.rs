@@ -6,9 +6,11 @@
 
 mod axis;
 mod bar;
+pub(crate) mod canvas;
 mod chart;
 mod line;
 mod palette;
+mod plan;
 mod scatter;
 pub mod svg;
 
@@ -16,6 +18,7 @@ pub use axis::{Axis, Tick};
 pub use bar::{Bar, BarChart, BarGroup};
 pub use line::{LineChart, PublishedPoint, Series};
 pub use palette::{INK, Marker, PAPER, Style};
+pub use plan::{Plan, cell_runs};
 pub use scatter::{Scatter, ScatterPoint};
 
 #[cfg(test)]

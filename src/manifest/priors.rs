@@ -150,6 +150,8 @@ impl Resolver<'_> {
             known
         };
         let (grid, meaning) = known.ok_or(Told)?;
+        // Footprints and boxes leave most walls out by what they are: that few have one in the world is no slip.
+        let own = own || kind != Derived::FloorPlan;
         Ok(Some(UsedPrior { grid, meaning, described, pointer, own }))
     }
 

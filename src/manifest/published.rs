@@ -6,8 +6,8 @@ use super::document::ManifestDoc;
 use super::faults::{Faults, step};
 use crate::document::{Diagnostic, Source, suggestion};
 use crate::studies::deadline::OutcomeTable;
-use crate::studies::prior_map::{CoverageTable, MILESTONES};
-use crate::studies::{FactorValue, FigureLayout, StudyKind, TableLayout};
+use crate::studies::prior_map::{AgreementTable, CoverageTable, MILESTONES};
+use crate::studies::{FactorValue, FigureLayout, StudyKind, TableLayout, coverage_tables};
 use crate::table::{Table, Value};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -143,6 +143,11 @@ pub(super) fn check_requests(
                 foreign(StudyKind::PriorMap, &pointer, faults);
                 check_table(table, &pointer, doc, factors, published, faults);
             }
+            TableLayout::AgreementTable(wanted) => {
+                let pointer = format!("/tables/{i}/agreement-table");
+                foreign(StudyKind::PriorMap, &pointer, faults);
+                check_agreement(wanted, &pointer, doc, faults);
+            }
             TableLayout::OutcomeTable(table) => {
                 let pointer = format!("/tables/{i}/outcome-table");
                 foreign(StudyKind::Deadline, &pointer, faults);
@@ -162,6 +167,23 @@ pub(super) fn check_requests(
                 foreign(StudyKind::PriorMap, &pointer, faults);
                 faults.check_factor(factors, &curve.by, &format!("{pointer}/by"), false);
                 check_only(&curve.only, &pointer, factors, faults);
+            }
+            FigureLayout::WorldPlan(plan) => {
+                let pointer = format!("/figures/{i}/world-plan");
+                foreign(StudyKind::PriorMap, &pointer, faults);
+                check_only(&plan.only, &pointer, factors, faults);
+            }
+            FigureLayout::PriorOverWorld(plan) => {
+                let pointer = format!("/figures/{i}/prior-over-world");
+                foreign(StudyKind::PriorMap, &pointer, faults);
+                check_only(&plan.only, &pointer, factors, faults);
+                let chosen = plan.only.get("prior").map(|value| value.0.as_str());
+                if chosen.or(doc.prior.as_deref()).is_none_or(|name| name == "none") {
+                    let message = "the figure has no prior to lay over the world";
+                    let fault = faults.key_fault(&pointer, message.to_owned());
+                    let help = "say which, as in `where: {prior: bounding-box}`";
+                    faults.push(fault.label("expected a prior other than `none`").help(help));
+                }
             }
             FigureLayout::OutcomeBars(bars) => {
                 let pointer = format!("/figures/{i}/outcome-bars");
@@ -250,6 +272,35 @@ fn check_table(
         published,
         faults,
     );
+}
+
+/// Agreement is of coverage tables that have something to agree with.
+fn check_agreement(
+    wanted: &AgreementTable,
+    pointer: &str,
+    doc: &ManifestDoc,
+    faults: &mut Faults<'_>,
+) {
+    let coverage: Vec<(&str, &CoverageTable)> = coverage_tables(&doc.tables);
+    for (i, id) in wanted.tables.iter().enumerate() {
+        let place = format!("{pointer}/tables/{i}");
+        let Some((_, table)) = coverage.iter().find(|(known, _)| known == id) else {
+            let known: Vec<&str> = coverage.iter().map(|(id, _)| *id).collect();
+            let fault = faults
+                .fault(&place, format!("`{id}` is no coverage table of this manifest"))
+                .label("expected the id of a `coverage-table`");
+            faults.push(fault.help(known_or_near(id, &known)));
+            continue;
+        };
+        for (lacks, key) in
+            [(table.baseline.is_none(), "baseline"), (table.published.is_none(), "published")]
+        {
+            if lacks {
+                let message = format!("the table `{id}` has no `{key}`");
+                faults.at(&place, message, "its cells are compared as ratios with the paper's");
+            }
+        }
+    }
 }
 
 /// The factors that stand side by side and in rows.

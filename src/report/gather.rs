@@ -137,6 +137,14 @@ fn figures(bundle: &Bundle, plan: &Plan) -> Vec<Figure> {
                      paper's means with one standard deviation.",
                     "Line chart",
                 ),
+                FigureLayout::WorldPlan(_) => (
+                    "The world at the height of the laser scanner, with the robot's start.",
+                    "Floor plan",
+                ),
+                FigureLayout::PriorOverWorld(_) => (
+                    "The world at the height of the laser scanner; orange, the obstacles of the prior map.",
+                    "Floor plan with a prior map over it",
+                ),
                 FigureLayout::OutcomeBars(_) => (
                     "Bars are ours with 95 % intervals; hollow markers are the paper's numbers.",
                     "Bar chart",
@@ -162,7 +170,7 @@ fn claims(path: &str, bytes: Option<&[u8]>) -> Result<Vec<ClaimRow>, String> {
         says: text(v, "says"),
         cite: text(v, "cite"),
         verdict: text(v, "verdict"),
-        numbers: numbers(v),
+        numbers: numbers(v) + &censored(v),
         paper_table: text(v, "paper-table"),
     };
     Ok(verdicts.iter().map(row).collect())
@@ -184,6 +192,28 @@ fn numbers(verdict: &Value) -> String {
             format!("{name} {value} ({low} to {high}), {more}")
         }
         _ => reason,
+    }
+}
+
+/// Runs that never reached what they were compared by, in words; empty where all did.
+fn censored(verdict: &Value) -> String {
+    let comparisons = verdict["comparisons"].as_array().map(Vec::as_slice).unwrap_or_default();
+    let cells =
+        comparisons.iter().filter_map(|comparison| comparison["cells"].as_array()).flatten();
+    let mut seen: Vec<(&str, u64, u64)> = Vec::new();
+    for cell in cells {
+        let count = |key: &str| cell[key].as_u64().unwrap_or(0);
+        let one = (cell["cell"].as_str().unwrap_or_default(), count("reached"), count("trials"));
+        if !seen.contains(&one) {
+            seen.push(one);
+        }
+    }
+    let all: u64 = seen.iter().map(|cell| cell.2).sum();
+    let reached: u64 = seen.iter().map(|cell| cell.1).sum();
+    if reached < all {
+        format!("; {} of {all} runs compared never reached the measure", all - reached)
+    } else {
+        String::new()
     }
 }
 

@@ -6,6 +6,7 @@
 mod agreement;
 mod content;
 mod difference;
+mod gain_still;
 mod gather;
 mod inline_svg;
 mod pack;
@@ -23,6 +24,7 @@ pub use content::{
     ReportCell, ReportContent, ReportRow, ReportTable,
 };
 pub use difference::difference_page;
+pub use gain_still::{GainView, gain_svg};
 pub use gather::content_of;
 pub use page::page;
 pub use replay::replay_page;

@@ -6,13 +6,14 @@ use crate::plan::Plan;
 use crate::studies::deadline::results::OutcomeCell;
 use crate::studies::deadline::{ManeuverTable, OutcomeTable, Quantity};
 use crate::studies::prior_map::results::CoverageCell;
-use crate::studies::prior_map::{CoverageTable, Metric};
-use crate::studies::{Findings, TableLayout, TableRequest};
+use crate::studies::prior_map::{AgreementTable, CoverageTable, Metric};
+use crate::studies::{Findings, TableLayout, TableRequest, coverage_tables};
 
 /// What the page shows of a requested table.
 pub(super) fn table(findings: &Findings<'_>, request: &TableRequest, plan: &Plan) -> ReportTable {
     match &request.layout {
         TableLayout::CoverageTable(wanted) => coverage_table(findings, request, wanted, plan),
+        TableLayout::AgreementTable(wanted) => agreement_table(findings, request, wanted, plan),
         TableLayout::OutcomeTable(wanted) => outcome_table(findings, request, wanted, plan),
         TableLayout::ManeuverTable(wanted) => maneuver_table(findings, request, wanted),
     }
@@ -84,6 +85,62 @@ fn report_cell(cell: &CoverageCell) -> ReportCell {
         published,
         published_difference_percent: cell.published_difference_percent,
         agreement: Agreement::between(ours, published),
+    }
+}
+
+/// One line a part of a table; the columns are its measures of agreement, each on its own.
+fn agreement_table(
+    findings: &Findings<'_>,
+    request: &TableRequest,
+    wanted: &AgreementTable,
+    plan: &Plan,
+) -> ReportTable {
+    let tables = coverage_tables(&plan.experiment.tables);
+    let share = |(inside, known): (u64, u64)| {
+        #[expect(clippy::cast_precision_loss, reason = "counts of cells")]
+        let share = inside as f64 / known as f64;
+        (share, Some(known))
+    };
+    let rows = findings.agreement(wanted, &tables).into_iter().map(|part| {
+        let numbers = [
+            (part.line.slope, Some(part.ratios)),
+            (part.line.intercept, None),
+            (part.pearson, None),
+            (part.spearman, None),
+            (part.rmse, None),
+            (part.skill, None),
+            share(part.ratios_inside),
+            share(part.cells_inside),
+        ];
+        let cell = |(mean, n): (f64, Option<u64>)| ReportCell {
+            ours: mean.is_finite().then_some(Measured { mean, sd: None, n }),
+            ..ReportCell::default()
+        };
+        ReportRow {
+            label: format!("{}, {}", part.table, part.scope),
+            cells: numbers.map(cell).to_vec(),
+        }
+    });
+    ReportTable {
+        id: request.id.clone(),
+        title: request.title.clone(),
+        source: String::new(),
+        quantity: "of log ratios to the baseline, ours on the paper's".to_owned(),
+        decimals: 2,
+        row_header: "table, part".to_owned(),
+        rows: rows.collect(),
+        columns: [
+            "slope",
+            "intercept",
+            "Pearson",
+            "Spearman",
+            "rmse (the score)",
+            "skill over the mean ratio",
+            "share of ratios inside",
+            "share of cells inside",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
     }
 }
 

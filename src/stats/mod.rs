@@ -5,6 +5,7 @@
 //! Each function cites its formula, and each is checked against values of scipy, statsmodels or mpmath
 //! (the call stands beside the number in the tests).
 
+pub mod agreement;
 pub mod bootstrap;
 pub mod distribution;
 pub mod effect;

@@ -15,7 +15,7 @@ mod state_chain;
 pub use factor_value::FactorValue;
 pub use findings::Findings;
 pub use record::{CHAIN_STEP_S, Outcome, SeriesPoint, TrialRecord, first_divergence};
-pub use requests::{FigureLayout, FigureRequest, TableLayout, TableRequest};
+pub use requests::{FigureLayout, FigureRequest, TableLayout, TableRequest, coverage_tables};
 
 use crate::digest::TrialKey;
 use crate::geometry::Pose;

@@ -24,10 +24,25 @@ pub struct TableRequest {
 pub enum TableLayout {
     /// Prior map: mean and standard deviation of a metric at levels of coverage, as in Tables 1 to 10.
     CoverageTable(prior_map::CoverageTable),
+    /// Prior map: slope, correlation and distance of log ratios to the baseline, ours against the paper's.
+    AgreementTable(prior_map::AgreementTable),
     /// Deadline: shares of outcomes, means and ratios by condition, as in Tables 1 and 2.
     OutcomeTable(deadline::OutcomeTable),
     /// Deadline: the six maneuvers as calibrated and as they went in the study's own trials.
     ManeuverTable(deadline::ManeuverTable),
+}
+
+/// The coverage tables among `tables`, each with its id.
+pub fn coverage_tables(tables: &[TableRequest]) -> Vec<(&str, &prior_map::CoverageTable)> {
+    tables
+        .iter()
+        .filter_map(|request| match &request.layout {
+            TableLayout::CoverageTable(table) => Some((request.id.as_str(), table)),
+            TableLayout::AgreementTable(_)
+            | TableLayout::OutcomeTable(_)
+            | TableLayout::ManeuverTable(_) => None,
+        })
+        .collect()
 }
 
 /// One figure to produce.
@@ -50,6 +65,10 @@ pub struct FigureRequest {
 pub enum FigureLayout {
     /// Prior map: coverage over time or distance, one curve per value of a factor, as in Figure 4.
     CoverageCurve(prior_map::CoverageCurve),
+    /// Prior map: an environment's floor plan with its dimensions, as in Figure 3.
+    WorldPlan(prior_map::PlanFigure),
+    /// Prior map: the obstacles of a prior map over the floor plan, as in Figure 5.
+    PriorOverWorld(prior_map::PlanFigure),
     /// Deadline: one bar per value of a factor in groups of conditions, as in Figures 4 and 5.
     OutcomeBars(deadline::OutcomeTable),
 }

@@ -4,9 +4,10 @@ use crate::cli::args::ReplayArgs;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::load;
 use crate::cli::terminal::{Terminal, counted};
-use crate::report::{replay_page, still_svg};
+use crate::plan::Plan;
+use crate::report::{GainView, gain_svg, replay_page, still_svg};
 use crate::studies::recording::Recording;
-use crate::studies::{self, TrialRecord};
+use crate::studies::{self, Setup, TrialRecord};
 use crate::verify::plan_of;
 
 /// Re-enacts one trial or two.
@@ -50,7 +51,11 @@ pub(in crate::cli) fn run(args: &ReplayArgs, terminal: Terminal) -> Result<Exit,
         terminal.note(&format!("wrote {}", path.display()));
     }
     if let (Some(path), Some((_, recording))) = (&args.svg, played.first()) {
-        load::write(path, still_svg(recording, args.at).as_bytes())?;
+        let still = match args.decision {
+            None => still_svg(recording, args.at),
+            Some(decision) => gain_still(&plan, args, decision, recording)?,
+        };
+        load::write(path, still.as_bytes())?;
         terminal.note(&format!("wrote {}", path.display()));
     }
     if let (Some(folder), Some((_, recording))) = (&args.plans, played.first()) {
@@ -63,4 +68,26 @@ pub(in crate::cli) fn run(args: &ReplayArgs, terminal: Terminal) -> Result<Exit,
     }
     terminal.result(&notes.join("\n"));
     Ok(exit)
+}
+
+/// What a candidate of the first trial's choice promises.
+fn gain_still(
+    plan: &Plan,
+    args: &ReplayArgs,
+    decision: usize,
+    recording: &Recording,
+) -> Result<String, Failure> {
+    let spec = plan.find(&args.trials[0]).map_err(Failure::not_understood)?;
+    let Setup::PriorMap(setup) = &spec.setup else {
+        return Err(Failure::not_understood(
+            "`--decision` draws information gains, which the study `deadline` has none of; `--plans DIR` writes its plans",
+        ));
+    };
+    let view = GainView {
+        decision,
+        candidate: args.gain,
+        range_cells: setup.gain_range_cells(),
+        known_obstacles_occlude: setup.parameters.exploration.known_obstacles_occlude,
+    };
+    gain_svg(recording, view).map_err(Failure::not_understood)
 }

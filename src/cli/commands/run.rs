@@ -131,7 +131,7 @@ impl Done {
         let factors = assemble::factors(&self.plan);
         let findings = assemble::findings(&self.plan, &self.records, &factors);
         for request in &self.plan.experiment.tables {
-            text.push_str(&tables::table(&findings, request));
+            text.push_str(&tables::table(&findings, request, &self.plan.experiment.tables));
             text.push('\n');
         }
         text.push_str(&verdicts::in_words(&self.verdicts, &self.machine_verdicts));

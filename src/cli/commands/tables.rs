@@ -3,13 +3,21 @@
 use crate::studies::deadline::OutcomeTable;
 use crate::studies::prior_map::CoverageTable;
 use crate::studies::prior_map::results::CoverageCell;
-use crate::studies::{Findings, TableLayout, TableRequest};
+use crate::studies::{Findings, TableLayout, TableRequest, coverage_tables};
 use crate::table::{Table, Value};
 
 /// Ours beside the paper's.
-pub(super) fn table(findings: &Findings<'_>, request: &TableRequest) -> String {
+pub(super) fn table(
+    findings: &Findings<'_>,
+    request: &TableRequest,
+    all: &[TableRequest],
+) -> String {
     let body = match &request.layout {
         TableLayout::CoverageTable(wanted) => coverage_table(findings, wanted),
+        TableLayout::AgreementTable(wanted) => {
+            aligned(&findings.agreement_table_in_print(wanted, &coverage_tables(all)))
+                + "  (log ratios to the baseline, ours on the paper's; rmse is the score, skill is over the\n  paper's mean ratio; in: inside the paper's 95 % prediction interval)\n"
+        }
         TableLayout::OutcomeTable(wanted) => outcome_table(findings, wanted),
         TableLayout::ManeuverTable(wanted) => aligned(&findings.maneuver_table(wanted)),
     };
@@ -72,9 +80,12 @@ fn coverage_table(findings: &Findings<'_>, wanted: &CoverageTable) -> String {
         text.push_str(line.trim_end());
         text.push('\n');
     };
-    line(format!("  coverage  {:width$}  {:>16} {:>6}   {papers:>16}", wanted.by, "ours", ""));
+    let header = wanted.rows.iter().chain([&wanted.by]).cloned().collect::<Vec<_>>().join(", ");
+    let width = width.max(header.chars().count());
+    line(format!("  coverage  {header:width$}  {:>16} {:>6}   {papers:>16}", "ours", ""));
     let mut last = None;
-    for cell in &cells {
+    // A design may leave combinations out.
+    for cell in cells.iter().filter(|cell| cell.trials > 0) {
         let percent =
             if last == Some(cell.percent) { String::new() } else { format!("{} %", cell.percent) };
         last = Some(cell.percent);

@@ -45,6 +45,18 @@ fn list(title: &str, verdicts: &[Verdict]) -> String {
                 }
             }
         }
+        for comparison in &verdict.comparisons {
+            if let Some(words) = comparison.at_both_numbers() {
+                text.push_str(&format!("  {:id$}  {}\n", "", comparison.about));
+                text.push_str(&format!("  {:id$}    {words}\n", ""));
+            }
+        }
+        if let Some((censored, all)) = verdict.censored() {
+            text.push_str(&format!(
+                "  {:id$}  {censored} of {all} runs compared never reached the measure\n",
+                ""
+            ));
+        }
         if let Some(trials) = verdict.trials_to_decide {
             text.push_str(&format!(
                 "  {:id$}  {trials} trials per condition would have decided it\n",

@@ -1,8 +1,8 @@
 //! What was understood, in words: a few lines of `key: value` for a terminal.
 
-use super::canvas::metres;
 use super::graph::summary;
 use super::graph_of;
+use crate::figure::canvas::metres;
 use crate::geometry::{Outline, Pose};
 use crate::grid::{Occupancy, OccupancyGrid};
 use crate::robot::{DriveKind, Robot};

@@ -1,7 +1,7 @@
 //! A building's graph as the deadline study draws it (its Figure 2): corridors round, rooms square, and every directed
 //! edge with its label, R or L.
 
-use super::canvas::{ACCENT, Canvas, INK};
+use crate::figure::canvas::{ACCENT, Canvas, INK};
 use crate::figure::svg::{Element, path_data};
 use crate::geometry::{Cardinal, Outline, Point};
 use crate::math;

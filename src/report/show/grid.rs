@@ -1,6 +1,6 @@
 //! Grid maps: free white, occupied black, unknown grey.
 
-use super::canvas::{Canvas, FAINT, INK, metres};
+use crate::figure::canvas::{Canvas, FAINT, INK, metres};
 use crate::figure::svg::{Element, number};
 use crate::geometry::{Bounds, Point};
 use crate::grid::{Cell, GridFrame, Occupancy, OccupancyGrid};

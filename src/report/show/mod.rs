@@ -3,7 +3,6 @@
 //! [`draw`] tells the kind of a file by its content; the `*_svg`, `*_png` and `describe_*` functions do one kind
 //! each. All are pure: the caller fetches files and writes the results.
 
-mod canvas;
 mod describe;
 mod graph;
 mod grid;

@@ -1,6 +1,6 @@
 //! A robot from above: footprint, wheels, scanner and logical camera with their fields of view.
 
-use super::canvas::{ACCENT, Canvas, FAINT, INK, metres};
+use crate::figure::canvas::{ACCENT, Canvas, FAINT, INK, metres};
 use crate::geometry::{Bounds, Outline, Point, Pose};
 use crate::math;
 use crate::robot::Robot;

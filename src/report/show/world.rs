@@ -1,10 +1,10 @@
 //! A world cut at the lidar's height: layers in grey, regions, starts, goals and tags. Where its tags mean a graph, as
 //! the deadline study's Figures 2 and 3: the building above, the graph below.
 
-use super::canvas::{ACCENT, Canvas, FAINT, INK};
 use super::graph::{Mark, badge, graph_sheet, legend_entry, star, tag_mark};
 use super::graph_of;
 use super::grid::{cells_group, runs};
+use crate::figure::canvas::{ACCENT, Canvas, FAINT, INK};
 use crate::figure::svg::Element;
 use crate::geometry::{Bounds, Cardinal, Outline, Point};
 use crate::grid::{Cell, Occupancy, OccupancyGrid};

@@ -4,6 +4,8 @@
 //! A lidar robot maps an indoor environment; the next frontier maximises u(p) (equations 1 to 4), whose
 //! information gain I(p) may use a prior map (section 3.2).
 
+pub mod agreement;
+mod cell_tests;
 pub mod explorer;
 pub mod frontier;
 pub mod information_gain;
@@ -13,11 +15,12 @@ mod requests;
 pub mod results;
 pub mod utility;
 
+pub use cell_tests::{CellTests, Difference};
 pub use parameters::{
     Coverage, Exploration, Gain, Mapping, Measurement, Mission, Navigation, Parameters, Reselect,
     Sensing, Strategy,
 };
-pub use requests::{CoverageCurve, CoverageTable, Metric};
+pub use requests::{AgreementTable, CoverageCurve, CoverageTable, Metric, PlanFigure};
 
 use crate::geometry::Pose;
 use crate::grid::OccupancyGrid;
@@ -25,7 +28,7 @@ use crate::robot::Robot;
 use crate::world::World;
 use std::sync::{Arc, OnceLock};
 
-pub use mission::{MILESTONES, Prepared, run};
+pub use mission::{MILESTONES, Prepared, plan_figure, run};
 
 /// Everything a trial of this study needs.
 #[derive(Debug)]
@@ -53,6 +56,17 @@ impl Setup {
         parameters: Parameters,
     ) -> Self {
         Self { world, robot, prior, start, parameters, prepared: OnceLock::new() }
+    }
+
+    /// How far the scanner reaches when a gain is computed, in cells of the robot's map; 0 without a scanner.
+    pub fn gain_range_cells(&self) -> i32 {
+        let (sensing, mapping) = (&self.parameters.sensing, &self.parameters.mapping);
+        let own = self.robot.lidar.as_ref().map_or(0.0, |lidar| lidar.max_range);
+        let range = sensing.range_m.unwrap_or(own);
+        let range = mapping.clip_range_m.map_or(range, |clip| clip.min(range));
+        #[expect(clippy::cast_possible_truncation, reason = "ranges are checked to be below 200 m")]
+        let cells = (range / mapping.resolution_m).round() as i32;
+        cells
     }
 
     /// What all trials of this setup share, computed by the first that asks.

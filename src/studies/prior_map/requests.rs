@@ -25,6 +25,18 @@ pub struct CoverageTable {
     /// A key of `published`: the paper's own numbers, to stand beside.
     #[serde(default)]
     pub published: Option<String>,
+    /// Whether each cell tells how it differs from its baseline: effect, and p at all runs and at the paper's number.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub tests: bool,
+}
+
+/// How coverage tables agree with the paper's.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct AgreementTable {
+    /// Ids of the coverage tables, each with a `baseline` and `published` numbers.
+    #[schemars(length(min = 1))]
+    pub tables: Vec<String>,
 }
 
 /// What a trial's progress is measured in.
@@ -63,6 +75,15 @@ pub struct CoverageCurve {
     /// The factor that has one curve per value.
     pub by: String,
     /// Only trials of conditions with these factor values.
+    #[serde(default, rename = "where")]
+    pub only: BTreeMap<String, FactorValue>,
+}
+
+/// The building of a condition from above, with its dimensions.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct PlanFigure {
+    /// The first condition with these factor values.
     #[serde(default, rename = "where")]
     pub only: BTreeMap<String, FactorValue>,
 }

@@ -1,5 +1,6 @@
 //! From records to what a reader sees: the curves, the paper's tables and figures.
 
+use super::cell_tests::{self, CellTests, Difference};
 use super::requests::{CoverageCurve, CoverageTable, Metric};
 use crate::figure::{LineChart, PublishedPoint, Series};
 use crate::stats::summary::{Summary, median, quantile};
@@ -26,6 +27,8 @@ pub struct CoverageCell {
     pub published: Option<(f64, Option<f64>, Option<f64>)>,
     /// Difference of the paper's mean to its baseline's (percent), recomputed from its printed means.
     pub published_difference_percent: Option<f64>,
+    /// Tests against the baseline, where the request asks for them.
+    pub tests: Option<CellTests>,
 }
 
 impl Findings<'_> {
@@ -62,6 +65,7 @@ impl Findings<'_> {
                 }
                 let baseline = request.baseline.as_ref().map(|b| b.0.as_str());
                 add_differences(&mut cells[first..], baseline);
+                self.test_cells(request, &mut cells[first..]);
             }
         }
         cells
@@ -95,6 +99,7 @@ impl Findings<'_> {
             difference_percent: None,
             published,
             published_difference_percent: None,
+            tests: None,
         }
     }
 
@@ -116,6 +121,9 @@ impl Findings<'_> {
             ]
             .map(str::to_owned),
         );
+        if wanted.tests {
+            columns.extend(cell_tests::COLUMNS.map(str::to_owned));
+        }
         let mut table = Table::new(columns);
         for cell in self.coverage_cells(wanted) {
             let mut row: Vec<Value> = cell.rows.iter().map(|(_, v)| v.as_str().into()).collect();
@@ -131,6 +139,9 @@ impl Findings<'_> {
             row.push(cell.published.and_then(|p| p.1).into());
             row.push(cell.published.and_then(|p| p.2).into());
             row.push(cell.published_difference_percent.map(rounded).into());
+            if wanted.tests {
+                row.extend(CellTests::values(cell.tests));
+            }
             table.push(row);
         }
         table
@@ -256,6 +267,10 @@ fn add_differences(line: &mut [CoverageCell], baseline: Option<&str>) {
 }
 
 fn ours_in_print(cell: &CoverageCell) -> String {
+    // No condition of the design.
+    if cell.trials == 0 {
+        return String::new();
+    }
     let Some(ours) = &cell.ours else { return format!("not reached (0 of {})", cell.trials) };
     let mut text = if ours.n > 1 {
         format!("{:.2} ± {:.2}", ours.mean, ours.sd)
@@ -268,7 +283,18 @@ fn ours_in_print(cell: &CoverageCell) -> String {
     if ours.n < cell.trials {
         text.push_str(&format!(" [{} of {}]", ours.n, cell.trials));
     }
+    if let Some(tests) = cell.tests {
+        text.push_str(&tests_in_print(&tests));
+    }
     text
+}
+
+/// Effects with p at all runs, and at the paper's number of them.
+fn tests_in_print(tests: &CellTests) -> String {
+    let words = |difference: Option<Difference>| {
+        difference.map_or_else(|| "-".to_owned(), |d| format!("{:+.2}, p {:.1e}", d.g, d.p))
+    };
+    format!("; g {}; first {}: {}", words(tests.all), tests.first_n, words(tests.first))
 }
 
 fn published_in_print(cell: &CoverageCell) -> String {

@@ -1,11 +1,13 @@
 //! One trial: the simulator on one end, the mind on the other, and what is measured in between.
 
+mod plan_figure;
 mod recorder;
 mod reference;
 #[cfg(test)]
 mod tests;
 mod trace;
 
+pub use plan_figure::plan_figure;
 pub use trace::MILESTONES;
 
 use super::Setup;

@@ -1,6 +1,6 @@
 //! The sheet that everything is drawn on: metres to pixels, axes, a scale bar, dimensions, texts.
 
-use crate::figure::svg::{self, Element};
+use super::svg::{self, Element};
 use crate::geometry::{Bounds, Outline, Point};
 use crate::math;
 
@@ -11,14 +11,14 @@ const TOP: f64 = 62.0;
 const BOTTOM: f64 = 78.0;
 
 /// Ink for texts and axes.
-pub(super) const INK: &str = "#222";
+pub(crate) const INK: &str = "#222";
 /// Ink for what accompanies.
-pub(super) const FAINT: &str = "#777";
+pub(crate) const FAINT: &str = "#777";
 /// The one colour: what the robot does or is told (starts, goals, field of view).
-pub(super) const ACCENT: &str = "#0b62a4";
+pub(crate) const ACCENT: &str = "#0b62a4";
 
 /// A sheet under construction.
-pub(super) struct Canvas {
+pub(crate) struct Canvas {
     bounds: Bounds,
     scale: f64,
     elements: Vec<Element>,
@@ -26,7 +26,7 @@ pub(super) struct Canvas {
 
 impl Canvas {
     /// A sheet for `bounds` (m) with about `width` by at most `height` px for the drawing.
-    pub(super) fn new(bounds: Bounds, width: f64, height: f64) -> Self {
+    pub(crate) fn new(bounds: Bounds, width: f64, height: f64) -> Self {
         let scale = (width / bounds.width()).min(height / bounds.height());
         let mut canvas = Self { bounds, scale, elements: Vec::new() };
         let (w, h) = canvas.size();
@@ -42,24 +42,24 @@ impl Canvas {
     }
 
     /// Pixels per metre.
-    pub(super) fn scale(&self) -> f64 {
+    pub(crate) fn scale(&self) -> f64 {
         self.scale
     }
 
     /// Where `point` (m) lies on the sheet (px).
-    pub(super) fn at(&self, point: Point) -> (f64, f64) {
+    pub(crate) fn at(&self, point: Point) -> (f64, f64) {
         (
             LEFT + (point.x - self.bounds.min.x) * self.scale,
             TOP + (self.bounds.max.y - point.y) * self.scale,
         )
     }
 
-    pub(super) fn push(&mut self, element: Element) {
+    pub(crate) fn push(&mut self, element: Element) {
         self.elements.push(element);
     }
 
     /// The outline as an element to be styled.
-    pub(super) fn outline(&self, outline: &Outline) -> Element {
+    pub(crate) fn outline(&self, outline: &Outline) -> Element {
         match outline {
             Outline::Circle { center, radius } => {
                 let (x, y) = self.at(*center);
@@ -70,13 +70,13 @@ impl Canvas {
     }
 
     /// The polyline through `points` (m) as an element to be styled.
-    pub(super) fn path(&self, points: &[Point], closed: bool) -> Element {
+    pub(crate) fn path(&self, points: &[Point], closed: bool) -> Element {
         Element::new("path")
             .set("d", svg::path_data(points.iter().map(|point| self.at(*point)), closed))
     }
 
     /// A text of `size` px centred at `point` (m) and moved by `shift` px, with a white rim.
-    pub(super) fn label(&self, point: Point, shift: (f64, f64), size: f64, text: &str) -> Element {
+    pub(crate) fn label(&self, point: Point, shift: (f64, f64), size: f64, text: &str) -> Element {
         let (x, y) = self.at(point);
         Element::new("text")
             .at("x", x + shift.0)
@@ -92,7 +92,7 @@ impl Canvas {
     }
 
     /// A dimension line from `a` to `b` (m), `shift` px off to its left, with its length.
-    pub(super) fn dimension(&mut self, a: Point, b: Point, shift: f64, text: &str) {
+    pub(crate) fn dimension(&mut self, a: Point, b: Point, shift: f64, text: &str) {
         let ((ax, ay), (bx, by)) = (self.at(a), self.at(b));
         let length = math::hypot(bx - ax, by - ay).max(1e-9);
         let (ux, uy) = ((bx - ax) / length, (by - ay) / length);
@@ -134,7 +134,7 @@ impl Canvas {
     }
 
     /// An arrow from `tail` to `tip` (m).
-    pub(super) fn arrow(&mut self, tail: Point, tip: Point, color: &str) {
+    pub(crate) fn arrow(&mut self, tail: Point, tip: Point, color: &str) {
         let ((ax, ay), (bx, by)) = (self.at(tail), self.at(tip));
         let length = math::hypot(bx - ax, by - ay).max(1e-9);
         let (ux, uy) = ((bx - ax) / length, (by - ay) / length);
@@ -154,7 +154,7 @@ impl Canvas {
     }
 
     /// Light lines at every tick, below everything drawn after.
-    pub(super) fn raster(&mut self) {
+    pub(crate) fn raster(&mut self) {
         let Bounds { min, max } = self.bounds;
         let lines: Vec<[Point; 2]> = ticks(min.x, max.x)
             .map(|x| [Point::new(x, min.y), Point::new(x, max.y)])
@@ -167,7 +167,7 @@ impl Canvas {
     }
 
     /// Axes in metres around the drawing, and a scale bar below.
-    pub(super) fn axes(&mut self) {
+    pub(crate) fn axes(&mut self) {
         let Bounds { min, max } = self.bounds;
         let corners = [min, Point::new(max.x, min.y), max, Point::new(min.x, max.y)];
         let frame = self.path(&corners, true).set("fill", "none").set("stroke", FAINT);
@@ -227,7 +227,7 @@ impl Canvas {
     }
 
     /// Title and a line below it.
-    pub(super) fn heading(&mut self, title: &str, subtitle: &str) {
+    pub(crate) fn heading(&mut self, title: &str, subtitle: &str) {
         for (y, size, fill, weight, text) in
             [(24.0, 16.0, INK, "bold", title), (44.0, 12.0, FAINT, "normal", subtitle)]
         {
@@ -244,7 +244,7 @@ impl Canvas {
     }
 
     /// Swatches with names, below the drawing to the right of the scale bar.
-    pub(super) fn legend(&mut self, entries: &[(String, &str, &str)]) {
+    pub(crate) fn legend(&mut self, entries: &[(String, &str, &str)]) {
         let (_, height) = self.size();
         let mut x = LEFT + round_step(self.bounds.width() / 4.0) * self.scale + 80.0;
         for (name, fill, stroke) in entries {
@@ -272,19 +272,19 @@ impl Canvas {
     }
 
     /// Where a legend of one's own begins, and the height of its line (px).
-    pub(super) fn legend_at(&self) -> (f64, f64) {
+    pub(crate) fn legend_at(&self) -> (f64, f64) {
         let (_, height) = self.size();
         (LEFT + round_step(self.bounds.width() / 4.0) * self.scale + 80.0, height - 23.0)
     }
 
     /// The finished file.
-    pub(super) fn finish(self, title: &str) -> String {
+    pub(crate) fn finish(self, title: &str) -> String {
         let (width, height) = self.size();
         svg::document(width, height, title, self.elements)
     }
 
     /// The finished file with another sheet below this one.
-    pub(super) fn finish_above(self, below: Self, title: &str) -> String {
+    pub(crate) fn finish_above(self, below: Self, title: &str) -> String {
         let ((width, height), (other_width, other_height)) = (self.size(), below.size());
         let moved = format!("translate(0 {})", svg::number(height));
         let group = below
@@ -320,7 +320,7 @@ fn ticks(low: f64, high: f64) -> impl Iterator<Item = f64> {
 }
 
 /// A length in metres, to the millimetre, without trailing zeros.
-pub(super) fn metres(length: f64) -> String {
+pub(crate) fn metres(length: f64) -> String {
     let rounded = (length * 1000.0).round() / 1000.0;
     format!("{}", if rounded == 0.0 { 0.0 } else { rounded })
 }

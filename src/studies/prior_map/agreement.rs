@@ -1,0 +1,288 @@
+//! How our tables agree with the paper's: by the log ratios of cells to their baseline, never by counting signs, and by
+//! the intervals that the paper's own spread and number of runs put around its means.
+
+use super::requests::{AgreementTable, CoverageTable};
+use super::results::CoverageCell;
+use crate::math::ln;
+use crate::stats::Interval;
+use crate::stats::agreement::{
+    Line, line, log_ratio_half_width, prediction_half_width, rmse, skill_over_constant,
+};
+use crate::stats::rank::{pearson, spearman};
+use crate::stats::summary::{Summary, mean};
+use crate::studies::findings::{Findings, rounded};
+use crate::table::{Table, Value};
+
+/// Confidence of every interval here.
+const CONFIDENCE: f64 = 0.95;
+
+/// How one coverage table, or part of it, agrees with the paper's.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TableAgreement {
+    /// Id of the coverage table.
+    pub table: String,
+    /// `all`, or the factor value that the part has.
+    pub scope: String,
+    /// Cells with a log ratio to their baseline on both sides.
+    pub ratios: u64,
+    /// Printed cells that have none of ours: no run got there.
+    pub missing: u64,
+    /// Cells with runs that never reached the coverage; their means are of those that did.
+    pub censored: u64,
+    /// Sets of cells with no run in common: those of one combination of the rows' factors share their baseline.
+    pub blocks: u64,
+    /// Our log ratios on the paper's: 1 and 0 agree, a slope below 1 is a gain smaller than printed. Intervals by the
+    /// jackknife over blocks.
+    pub line: Line,
+    /// Pearson's correlation of the log ratios.
+    pub pearson: f64,
+    /// Spearman's.
+    pub spearman: f64,
+    /// Root mean square difference of the log ratios: the score, lower is better.
+    pub rmse: f64,
+    /// Its skill over the one ratio that fits the paper best, the mean of its log ratios.
+    pub skill: f64,
+    /// Mean of our log ratios.
+    pub mean: f64,
+    /// Mean of the paper's.
+    pub published_mean: f64,
+    /// Of the log ratios, how many lie inside the paper's prediction interval, and how many have one.
+    pub ratios_inside: (u64, u64),
+    /// Of the cells themselves (m or s), how many do, and how many have one.
+    pub cells_inside: (u64, u64),
+}
+
+/// A log ratio on both sides.
+struct Ratio {
+    block: Vec<(String, String)>,
+    ours: f64,
+    published: f64,
+    inside: Option<bool>,
+}
+
+/// A cell on both sides.
+struct Both<'a> {
+    cell: &'a CoverageCell,
+    ours: Summary,
+    printed: Summary,
+    spread: bool,
+}
+
+impl Findings<'_> {
+    /// Agreement of each of `tables` (with its id) that a request asks for: as a whole, by each factor of its rows, by
+    /// what stands side by side.
+    pub fn agreement(
+        &self,
+        wanted: &AgreementTable,
+        tables: &[(&str, &CoverageTable)],
+    ) -> Vec<TableAgreement> {
+        let mut found = Vec::new();
+        for (id, table) in tables.iter().filter(|(id, _)| wanted.tables.iter().any(|t| t == id)) {
+            let cells = self.coverage_cells(table);
+            found.push(agreement(id, "all", &cells, table));
+            for factor in &table.rows {
+                for value in self.values_of(factor) {
+                    let level = (factor.clone(), value);
+                    let part: Vec<CoverageCell> =
+                        cells.iter().filter(|cell| cell.rows.contains(&level)).cloned().collect();
+                    let scope = format!("{factor}={}", level.1);
+                    found.push(agreement(id, &scope, &part, table));
+                }
+            }
+            let baseline = table.baseline.as_ref().map(|b| b.0.clone());
+            let others = self.values_of(&table.by);
+            for value in others.into_iter().filter(|value| Some(value) != baseline.as_ref()) {
+                let part: Vec<CoverageCell> = cells
+                    .iter()
+                    .filter(|cell| cell.by == value || Some(&cell.by) == baseline.as_ref())
+                    .cloned()
+                    .collect();
+                found.push(agreement(id, &format!("{}={value}", table.by), &part, table));
+            }
+        }
+        found.retain(|part| part.ratios > 0 || part.scope == "all");
+        found
+    }
+
+    /// The same, tidy: one row a part.
+    pub fn agreement_table(
+        &self,
+        wanted: &AgreementTable,
+        tables: &[(&str, &CoverageTable)],
+    ) -> Table {
+        let mut table = Table::new([
+            "table",
+            "scope",
+            "ratios",
+            "missing",
+            "censored",
+            "blocks",
+            "slope",
+            "slope-low",
+            "slope-high",
+            "intercept",
+            "intercept-low",
+            "intercept-high",
+            "pearson",
+            "spearman",
+            "rmse-log-ratio",
+            "skill-over-mean-ratio",
+            "mean-log-ratio",
+            "published-mean-log-ratio",
+            "ratios-with-interval",
+            "ratios-inside",
+            "cells-with-interval",
+            "cells-inside",
+        ]);
+        for part in self.agreement(wanted, tables) {
+            let count = |n: u64| Value::from(i64::try_from(n).unwrap_or(i64::MAX));
+            let number = |x: f64| Value::from(rounded(x));
+            let (slope, intercept) = part.line.intervals.unzip();
+            let ends = |interval: Option<Interval>| {
+                [interval.map(|i| rounded(i.low)).into(), interval.map(|i| rounded(i.high)).into()]
+            };
+            let mut row: Vec<Value> = vec![part.table.into(), part.scope.into()];
+            row.extend([part.ratios, part.missing, part.censored, part.blocks].map(count));
+            row.push(number(part.line.slope));
+            row.extend(ends(slope));
+            row.push(number(part.line.intercept));
+            row.extend(ends(intercept));
+            row.extend(
+                [
+                    part.pearson,
+                    part.spearman,
+                    part.rmse,
+                    part.skill,
+                    part.mean,
+                    part.published_mean,
+                ]
+                .map(number),
+            );
+            let ((inside, known), (cells_inside, cells_known)) =
+                (part.ratios_inside, part.cells_inside);
+            row.extend([known, inside, cells_known, cells_inside].map(count));
+            table.push(row);
+        }
+        table
+    }
+
+    /// The same as people read it, in 80 columns where names are short: each table, then its parts.
+    pub fn agreement_table_in_print(
+        &self,
+        wanted: &AgreementTable,
+        tables: &[(&str, &CoverageTable)],
+    ) -> Table {
+        let columns = ["part", "ratios", "slope", "Pearson", "rmse", "skill", "in", "cells in"];
+        let mut table = Table::new(columns);
+        for part in self.agreement(wanted, tables) {
+            let number = |x: f64| {
+                Value::from(if x.is_finite() { format!("{x:.2}") } else { "-".to_owned() })
+            };
+            let slope = match part.line.intervals {
+                Some((slope, _)) => {
+                    format!("{:.2} [{:.2}, {:.2}]", part.line.slope, slope.low, slope.high)
+                }
+                None if part.line.slope.is_finite() => format!("{:.2}", part.line.slope),
+                None => "-".to_owned(),
+            };
+            let of = |(inside, known): (u64, u64)| Value::from(format!("{inside}/{known}"));
+            let whole = part.scope == "all";
+            let name = if whole { part.table.clone() } else { part.scope.clone() };
+            let ratios = match part.missing {
+                0 => part.ratios.to_string(),
+                missing => format!("{} (-{missing})", part.ratios),
+            };
+            table.push(vec![
+                name.into(),
+                ratios.into(),
+                slope.into(),
+                number(part.pearson),
+                number(part.rmse),
+                number(part.skill),
+                of(part.ratios_inside),
+                of(part.cells_inside),
+            ]);
+        }
+        table
+    }
+}
+
+fn agreement(
+    id: &str,
+    scope: &str,
+    cells: &[CoverageCell],
+    table: &CoverageTable,
+) -> TableAgreement {
+    let both: Vec<Both<'_>> = cells.iter().filter_map(on_both_sides).collect();
+    let baseline = table.baseline.as_ref().map(|b| b.0.as_str());
+    let mut ratios: Vec<Ratio> = Vec::new();
+    for above in both.iter().filter(|both| Some(both.cell.by.as_str()) != baseline) {
+        let base = both.iter().find(|below| {
+            Some(below.cell.by.as_str()) == baseline
+                && below.cell.rows == above.cell.rows
+                && below.cell.percent == above.cell.percent
+        });
+        let Some(below) = base else { continue };
+        let positive = [above.ours, above.printed, below.ours, below.printed];
+        if !positive.iter().all(|summary| summary.mean > 0.0) {
+            continue;
+        }
+        let (ours, published) =
+            (ln(above.ours.mean / below.ours.mean), ln(above.printed.mean / below.printed.mean));
+        let inside = (above.spread && below.spread).then(|| {
+            let (above, below) = ((above.printed, above.ours.n), (below.printed, below.ours.n));
+            (ours - published).abs() <= log_ratio_half_width(above, below, CONFIDENCE)
+        });
+        ratios.push(Ratio { block: above.cell.rows.clone(), ours, published, inside });
+    }
+    let mut blocks: Vec<(&Vec<(String, String)>, Vec<usize>)> = Vec::new();
+    for (i, ratio) in ratios.iter().enumerate() {
+        match blocks.iter_mut().find(|(block, _)| *block == &ratio.block) {
+            Some((_, places)) => places.push(i),
+            None => blocks.push((&ratio.block, vec![i])),
+        }
+    }
+    let places: Vec<Vec<usize>> = blocks.into_iter().map(|(_, places)| places).collect();
+    let (x, y): (Vec<f64>, Vec<f64>) = ratios.iter().map(|r| (r.published, r.ours)).unzip();
+    let points: Vec<(f64, f64)> = x.iter().copied().zip(y.iter().copied()).collect();
+    let cells_inside: Vec<bool> = both
+        .iter()
+        .filter(|both| both.spread)
+        .map(|both| {
+            let half = prediction_half_width(both.printed, both.ours.n, CONFIDENCE);
+            (both.ours.mean - both.printed.mean).abs() <= half
+        })
+        .collect();
+    let ratios_inside: Vec<bool> = ratios.iter().filter_map(|ratio| ratio.inside).collect();
+    let tally =
+        |inside: &[bool]| (inside.iter().filter(|is| **is).count() as u64, inside.len() as u64);
+    let printed = cells.iter().filter(|cell| cell.published.is_some());
+    TableAgreement {
+        table: id.to_owned(),
+        scope: scope.to_owned(),
+        ratios: ratios.len() as u64,
+        missing: printed.filter(|cell| cell.ours.is_none()).count() as u64,
+        censored: both.iter().filter(|both| both.ours.n < both.cell.trials).count() as u64,
+        blocks: places.len() as u64,
+        line: line(&points, &places, CONFIDENCE),
+        pearson: pearson(&x, &y),
+        spearman: spearman(&x, &y),
+        rmse: rmse(&x, &y),
+        skill: skill_over_constant(&y, &x),
+        mean: mean(&y),
+        published_mean: mean(&x),
+        ratios_inside: tally(&ratios_inside),
+        cells_inside: tally(&cells_inside),
+    }
+}
+
+fn on_both_sides(cell: &CoverageCell) -> Option<Both<'_>> {
+    let (ours, (mean, sd, n)) = (cell.ours?, cell.published?);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count of runs")]
+    let n = n.map_or(0, |n| n.max(0.0) as u64);
+    let printed = Summary { n, mean, sd: sd.unwrap_or(f64::NAN) };
+    Some(Both { cell, ours, printed, spread: sd.is_some() && n >= 2 })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,113 @@
+//! How a cell of a coverage table differs from its baseline: by all our runs, by as many first runs as the paper has, and
+//! by the paper's printed means. Effects stand beside p-values, as thirty runs find significant what ten do not.
+
+use super::requests::CoverageTable;
+use super::results::CoverageCell;
+use crate::stats::effect::hedges_g;
+use crate::stats::means::welch;
+use crate::stats::summary::Summary;
+use crate::studies::findings::{Findings, rounded};
+use crate::table::Value;
+
+/// Number of runs taken for the paper's where a cell prints none: what all of its tables have.
+const PAPERS_RUNS: u64 = 10;
+
+/// The columns of [`CellTests`] in a tidy table.
+pub(super) const COLUMNS: [&str; 8] = [
+    "hedges-g",
+    "welch-p",
+    "first-n",
+    "first-n-reached",
+    "first-n-hedges-g",
+    "first-n-welch-p",
+    "published-hedges-g",
+    "published-welch-p",
+];
+
+/// Effect (Hedges' g, cell less baseline) and two-sided p of Welch's test; `None` where a side has fewer than two runs or
+/// nothing varies.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Difference {
+    /// Hedges' g.
+    pub g: f64,
+    /// Two-sided p.
+    pub p: f64,
+}
+
+/// The differences of one cell to its baseline.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CellTests {
+    /// By all runs that got there.
+    pub all: Option<Difference>,
+    /// The paper's number of runs.
+    pub first_n: u64,
+    /// How many of that many first trials of this cell got there.
+    pub first_reached: u64,
+    /// By the first trials alone.
+    pub first: Option<Difference>,
+    /// By the paper's means, standard deviations and numbers.
+    pub published: Option<Difference>,
+}
+
+impl CellTests {
+    /// In the order of [`COLUMNS`].
+    pub(super) fn values(tests: Option<Self>) -> Vec<Value> {
+        let whole = |n: u64| Value::from(i64::try_from(n).unwrap_or(i64::MAX));
+        let pair = |difference: Option<Difference>| -> [Value; 2] {
+            [difference.map(|d| rounded(d.g)).into(), difference.map(|d| rounded(d.p)).into()]
+        };
+        let Some(tests) = tests else { return vec![Value::Missing; COLUMNS.len()] };
+        let counts = [whole(tests.first_n), whole(tests.first_reached)];
+        let parts = [pair(tests.all), counts, pair(tests.first), pair(tests.published)];
+        parts.into_iter().flatten().collect()
+    }
+}
+
+impl Findings<'_> {
+    /// Tests `cells`, side by side in one line of `request`, against their baseline, where the request asks for it.
+    pub(super) fn test_cells(&self, request: &CoverageTable, cells: &mut [CoverageCell]) {
+        let baseline = request.baseline.as_ref().map(|b| b.0.as_str());
+        let base = cells.iter().find(|cell| Some(cell.by.as_str()) == baseline).cloned();
+        let Some(base) = base.filter(|_| request.tests) else { return };
+        for cell in cells.iter_mut().filter(|cell| cell.by != base.by) {
+            let first_n = printed(cell).map_or(PAPERS_RUNS, |summary| summary.n);
+            let first = self.first_runs(request, cell, first_n);
+            let of_base = self.first_runs(request, &base, first_n);
+            cell.tests = Some(CellTests {
+                all: cell.ours.zip(base.ours).and_then(|(a, b)| difference(a, b)),
+                first_n,
+                first_reached: first.n,
+                first: difference(first, of_base),
+                published: printed(cell)
+                    .zip(printed(&base))
+                    .and_then(|(cell, base)| difference(cell, base)),
+            });
+        }
+    }
+
+    /// The runs among the first `n` trials of a cell that got there.
+    fn first_runs(&self, request: &CoverageTable, cell: &CoverageCell, n: u64) -> Summary {
+        let mut fixed = cell.rows.clone();
+        fixed.push((request.by.clone(), cell.by.clone()));
+        let measure = request.metric.measure_at(cell.percent);
+        let first = self.matching(&fixed).into_iter().filter(|r| u64::from(r.trial) < n);
+        let reached: Vec<f64> =
+            first.filter_map(|r| r.measures.get(&measure).copied().flatten()).collect();
+        Summary::of(&reached)
+    }
+}
+
+fn difference(a: Summary, b: Summary) -> Option<Difference> {
+    if a.n < 2 || b.n < 2 || !(a.sd > 0.0 || b.sd > 0.0) {
+        return None;
+    }
+    Some(Difference { g: hedges_g(a, b), p: welch(a, b).tails.two_sided })
+}
+
+/// What the paper prints of a cell, where it prints a spread.
+fn printed(cell: &CoverageCell) -> Option<Summary> {
+    let (mean, sd, n) = cell.published?;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count of runs")]
+    let n = n?.max(0.0) as u64;
+    Some(Summary { n, mean, sd: sd? })
+}
