@@ -1,5 +1,6 @@
 //! I(p): "the estimate of the amount of new (unexplored) area visible from p" (section 3.2).
 
+use super::field_of_view::{Headings, Sector};
 use crate::grid::{Cell, Occupancy, OccupancyGrid, visible_cells};
 
 /// What is needed to estimate I(p).
@@ -26,24 +27,53 @@ impl InformationGain<'_> {
     ///
     /// Without (Figure 2b), every unknown cell within range.
     pub fn at(&self, p: Cell) -> f64 {
-        let mut cells = 0_u32;
-        let count = |c: Cell| {
-            cells += u32::from(self.map.at(c) == Occupancy::Unknown);
+        let mut cells = 0;
+        self.unknown(p, |_| cells += 1);
+        self.area(cells)
+    }
+
+    /// The same, of what lies in `sector`.
+    pub(super) fn within(&self, p: Cell, sector: Sector) -> f64 {
+        let mut cells = 0;
+        self.unknown(p, |offset| cells += u32::from(sector.contains(offset)));
+        self.area(cells)
+    }
+
+    /// The same, of what is seen with the best of all headings.
+    pub(super) fn best(&self, p: Cell, headings: &Headings) -> f64 {
+        let mut cells = vec![0; headings.count()];
+        let mut here = 0;
+        self.unknown(p, |offset| match offset {
+            Cell { x: 0, y: 0 } => here += 1,
+            _ => cells[headings.direction(offset)] += 1,
+        });
+        self.area(here + headings.most(&cells))
+    }
+
+    /// Tells every cell that counts, as its offset from `p`.
+    fn unknown(&self, p: Cell, mut count: impl FnMut(Cell)) {
+        let see = |c: Cell| {
+            if self.map.at(c) == Occupancy::Unknown {
+                count(Cell::new(c.x - p.x, c.y - p.y));
+            }
         };
         match self.prior {
             Some(prior) => visible_cells(
                 p,
                 self.range,
                 |c| self.map.at(c) == Occupancy::Occupied || !prior.is_free(self.lattice(c)),
-                count,
+                see,
             ),
             None => visible_cells(
                 p,
                 self.range,
                 |c| self.known_obstacles_occlude && self.map.at(c) == Occupancy::Occupied,
-                count,
+                see,
             ),
         }
+    }
+
+    fn area(&self, cells: u32) -> f64 {
         f64::from(cells) * self.map.frame().resolution * self.map.frame().resolution
     }
 
@@ -160,6 +190,30 @@ mod tests {
         // Columns 6, 7 and 8 of the disc are unknown: 1 + 5 + 5 cells; behind the wall as many less the wall's.
         assert!((hidden - 0.11).abs() < 1e-9, "{hidden}");
         assert!((open - 0.17).abs() < 1e-9, "{open}");
+    }
+
+    #[test]
+    fn half_a_view_sees_half_and_the_best_half_is_the_unknown_one() {
+        use crate::studies::prior_map::field_of_view::{FieldOfView, Headings};
+        use std::f64::consts::{FRAC_PI_2, PI};
+        let mut map = grid(Point::ZERO, Occupancy::Free);
+        for cell in map.frame().cells().filter(|c| c.x > 20) {
+            map.set(cell, Occupancy::Unknown);
+        }
+        let gain = InformationGain {
+            map: &map,
+            offset: Cell::new(0, 0),
+            prior: None,
+            range: 8,
+            known_obstacles_occlude: true,
+        };
+        let p = Cell::new(20, 20);
+        let view = FieldOfView { min_angle: -FRAC_PI_2, max_angle: FRAC_PI_2 };
+        let all = gain.at(p);
+        assert_eq!(gain.within(p, view.facing(0.0)), all);
+        assert_eq!(gain.within(p, view.facing(PI)), 0.0);
+        assert!((gain.within(p, view.facing(FRAC_PI_2)) - all / 2.0).abs() <= 0.041);
+        assert_eq!(gain.best(p, &Headings::new(8, view.width())), all);
     }
 
     /// The same world seen from a start pose elsewhere and turned by a quarter.

@@ -4,18 +4,21 @@
 //! A lidar robot maps an indoor environment; the next frontier maximises u(p) (equations 1 to 4), whose
 //! information gain I(p) may use a prior map (section 3.2).
 
+pub mod choice;
 pub mod explorer;
+mod field_of_view;
 pub mod frontier;
 pub mod information_gain;
 mod mission;
 mod parameters;
+mod released_gain;
 mod requests;
 pub mod results;
 pub mod utility;
 
 pub use parameters::{
-    Coverage, Exploration, Gain, Mapping, Measurement, Mission, Navigation, Parameters, Reselect,
-    Sensing, Strategy,
+    Candidate, Coverage, Crossing, Exploration, Gain, Mapping, Measurement, Mission, Navigation,
+    Parameters, Reselect, Sensing, Strategy, View,
 };
 pub use requests::{CoverageCurve, CoverageTable, Metric};
 
@@ -25,7 +28,7 @@ use crate::robot::Robot;
 use crate::world::World;
 use std::sync::{Arc, OnceLock};
 
-pub use mission::{MILESTONES, Prepared, run};
+pub use mission::{FURTHER_AT_MILESTONES, MILESTONES, Prepared, run};
 
 /// Everything a trial of this study needs.
 #[derive(Debug)]
