@@ -19,6 +19,7 @@ use crate::rng::Stream;
 use crate::robot::{Lidar, Odometry, Scan, Twist};
 use crate::units::{Seconds, Tick};
 use std::f64::consts::FRAC_PI_2;
+use std::sync::Arc;
 
 /// The navigator plans at 5 Hz, the operator drives at 10 Hz, and the local map is renewed at about 3 Hz
 /// (prior-map facts, section 4).
@@ -230,8 +231,8 @@ impl Explorer {
         if !std::mem::take(&mut self.path_changed) {
             return None;
         }
-        let frame = self.map().grid().frame();
-        let wave = self.wave.as_ref()?;
+        let frame = *self.map().grid().frame();
+        let wave = self.wave.as_mut()?;
         let start = nearest_reached(wave, frame.cell_at(pose.position()))?;
         Some(wave.path(start).into_iter().map(|cell| frame.center(cell)).collect())
     }
@@ -295,8 +296,9 @@ impl Explorer {
             self.wave = Some(self.wave_to(&costs, journey.target));
             self.path_changed = true;
         }
-        let Some(wave) = &self.wave else { return };
-        let Some(here) = nearest_reached(wave, self.cell_at(odometry.pose)) else {
+        let robot = self.cell_at(odometry.pose);
+        let Some(wave) = &mut self.wave else { return };
+        let Some(here) = nearest_reached(wave, robot) else {
             self.steering = None;
             self.phase = Phase::Choosing;
             return;
@@ -311,7 +313,7 @@ impl Explorer {
             self.phase = Phase::Choosing;
             return;
         }
-        let ahead = self.look_ahead(wave, here);
+        let ahead = self.mapper.map().grid().frame().center(look_ahead(wave, here));
         let off = bearing(odometry.pose, ahead);
         let speed = if remaining < 1.0 { 0.5 + remaining / 2.0 } else { 1.0 };
         self.steering = Some(Steering {
@@ -320,18 +322,6 @@ impl Explorer {
             distance: odometry.pose.position().distance(ahead),
         });
         self.phase = Phase::Driving(journey);
-    }
-
-    /// The place to head for: the furthest of the next cells down the wave that there is a straight way to, so
-    /// that the robot does not cut the corners of doors.
-    fn look_ahead(&self, wave: &Wavefront, here: Cell) -> Point {
-        let path = wave.path(here);
-        let furthest = path
-            .iter()
-            .take(LOOK_AHEAD + 1)
-            .rev()
-            .find(|&&ahead| line(here, ahead).all(|cell| wave.metres(cell).is_some()));
-        self.map().grid().frame().center(furthest.copied().unwrap_or(here))
     }
 
     /// Step (c): the most promising candidate location that there is a way to.
@@ -356,8 +346,8 @@ impl Explorer {
                 self.given_up.push(target);
                 continue;
             }
-            let wave = self.wave_to(&costs, target);
-            if let Some(here) = nearest_reached(&wave, robot) {
+            let mut wave = self.wave_to(&costs, target);
+            if let Some(here) = nearest_reached(&mut wave, robot) {
                 choice.chosen = Some(i);
                 let distance = wave.metres(here).unwrap_or(f64::INFINITY);
                 let closest = (distance, odometry.stamp);
@@ -441,7 +431,7 @@ impl Explorer {
     }
 
     /// The inflated map, with the place where the robot stands free (prior-map facts, section 4).
-    fn costs(&self, pose: Pose) -> CostGrid {
+    fn costs(&self, pose: Pose) -> Arc<CostGrid> {
         let mut map = self.map().grid().clone();
         let robot = map.frame().cell_at(pose.position());
         for y in -2..=1 {
@@ -449,19 +439,30 @@ impl Explorer {
                 map.set(Cell::new(robot.x + x, robot.y + y), Occupancy::Free);
             }
         }
-        inflate(&map, self.parameters.navigation.inflation_radius_cells)
+        Arc::new(inflate(&map, self.parameters.navigation.inflation_radius_cells))
     }
 
-    fn wave_to(&self, costs: &CostGrid, target: Point) -> Wavefront {
+    fn wave_to(&self, costs: &Arc<CostGrid>, target: Point) -> Wavefront {
         let navigation = &self.parameters.navigation;
         let goal = costs.frame().cell_at(target);
         let lethal = cost(navigation.planner_lethal_cost);
-        Wavefront::from_goal(costs, goal, lethal, navigation.cost_weight)
+        Wavefront::from_goal(Arc::clone(costs), goal, lethal, navigation.cost_weight)
     }
 
     fn cell_at(&self, pose: Pose) -> Cell {
         self.map().grid().frame().cell_at(pose.position())
     }
+}
+
+/// The cell to head for: the furthest of the next ones down the wave that there is a straight way to, so that
+/// the robot does not cut the corners of doors.
+fn look_ahead(wave: &mut Wavefront, here: Cell) -> Cell {
+    let path: Vec<Cell> = std::iter::successors(Some(here), |&cell| wave.downhill(cell))
+        .take(LOOK_AHEAD + 1)
+        .collect();
+    let furthest =
+        path.iter().rev().find(|&&ahead| line(here, ahead).all(|cell| wave.reaches(cell)));
+    furthest.copied().unwrap_or(here)
 }
 
 /// Bearing (rad) of `point` from the robot's heading.
@@ -477,15 +478,15 @@ pub(super) fn cost(parameter: u32) -> u8 {
 
 /// The cell itself where the wave came, or else the cheapest reached one within 6 cells: a robot that stands
 /// too close to an obstacle first heads out.
-fn nearest_reached(wave: &Wavefront, cell: Cell) -> Option<Cell> {
-    if wave.metres(cell).is_some() {
+fn nearest_reached(wave: &mut Wavefront, cell: Cell) -> Option<Cell> {
+    if wave.reaches(cell) {
         return Some(cell);
     }
     (1..=6).find_map(|ring: i32| {
         let side = -ring..=ring;
         side.clone()
             .flat_map(|y| side.clone().map(move |x| Cell::new(cell.x + x, cell.y + y)))
-            .filter(|c| wave.metres(*c).is_some())
+            .filter(|c| wave.reaches(*c))
             .min_by_key(|c| (c.distance_squared(cell), c.y, c.x))
     })
 }
