@@ -128,10 +128,13 @@ impl OccupancyMap {
         let count = &mut self.counts.values_mut()[index];
         count.visits = count.visits.saturating_add(1);
         count.hits = count.hits.saturating_add(u16::from(is_hit));
-        let ratio = f64::from(count.hits) / f64::from(count.visits);
-        let now = if ratio > self.rule.hit_ratio { Occupancy::Occupied } else { Occupancy::Free };
-        let was = std::mem::replace(&mut self.grid.values_mut()[index], now);
+        let is_occupied =
+            count.hits > 0 && f64::from(count.hits) / f64::from(count.visits) > self.rule.hit_ratio;
+        let now = if is_occupied { Occupancy::Occupied } else { Occupancy::Free };
+        let value = &mut self.grid.values_mut()[index];
+        let was = *value;
         if was != now {
+            *value = now;
             let lattice = Cell::new(cell.x + self.offset.x, cell.y + self.offset.y);
             self.changes.push(Change { cell: lattice, from: was, to: now });
         }
