@@ -38,7 +38,7 @@ fn runs(mean: impl Fn(f64) -> f64, late: &[i64]) -> Table {
     table
 }
 
-fn printed() -> BTreeMap<String, Table> {
+pub(super) fn printed() -> BTreeMap<String, Table> {
     let mut table = Table::new(["environment", "prior", "coverage-percent", "value", "sd", "n"]);
     for (environment, cells) in PRINTED {
         for (prior, values) in PRIORS.iter().zip(cells) {
