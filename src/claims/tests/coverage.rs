@@ -178,7 +178,7 @@ fn log_ratios_agree_where_gains_do_whatever_the_levels() {
     assert_eq!(statistic(&same, "cells"), 12.0);
     assert_eq!(statistic(&same, "inside-prediction-interval"), 1.0);
     // Half of the gain: the slope says so, and the bound is missed.
-    let damped = judged(&runs(|x| x.sqrt(), &[]), &expect);
+    let damped = judged(&runs(f64::sqrt, &[]), &expect);
     assert_eq!(damped.judgement, Judgement::Contradicted, "{}", damped.reason);
     assert_close(statistic(&damped, "slope"), 0.5, 1e-9);
     assert_close(statistic(&damped, "pearson"), 1.0, 1e-9);

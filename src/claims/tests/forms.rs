@@ -69,7 +69,7 @@ fn every_documented_example_is_judged() {
             || claim.expect.metrics()[0].starts_with(metric::WALL_TIME);
         let trials = if of_priors { &prior } else { &deadline };
         let mut published = published();
-        published.extend(super::coverage::printed());
+        published.extend(coverage::printed());
         let found = judge(&claim, trials, &Context::new(&published, &[], 2019)).unwrap();
         assert_ne!(found.judgement, Judgement::CannotBeTested, "{}: {}", claim.id, found.reason);
         assert!(!found.comparisons.is_empty(), "{}", claim.id);
