@@ -207,7 +207,7 @@ mod tests {
     use super::*;
 
     fn view(candidate: Option<usize>) -> GainView {
-        GainView { decision: 1, candidate, range_cells: 40, known_obstacles_occlude: true }
+        GainView { decision: 1, candidate, range_cells: 80, known_obstacles_occlude: true }
     }
 
     #[test]
@@ -221,7 +221,7 @@ mod tests {
         };
         let (without, with) = (area("(b) I(p)"), area("(d) I(p)"));
         assert!(with > 0.0 && with < without, "{with} of {without}");
-        assert!(without <= std::f64::consts::PI * 2.0 * 2.0 + 0.1, "a disc of 2 m: {without}");
+        assert!(without <= std::f64::consts::PI * 16.0 + 0.1, "a disc of 4 m: {without}");
     }
 
     #[test]

@@ -118,8 +118,8 @@ mod tests {
         assert_close(slope.high, SLOPE_HIGH, 1e-9);
     }
 
-    const SLOPE_LOW: f64 = 0.9116641104923223;
-    const SLOPE_HIGH: f64 = 1.1283358895076776;
+    const SLOPE_LOW: f64 = 0.911_664_110_492_322_3;
+    const SLOPE_HIGH: f64 = 1.128_335_889_507_677_6;
 
     #[test]
     fn two_blocks_have_no_interval_and_equal_x_no_line() {
@@ -148,7 +148,7 @@ mod tests {
     fn prediction_intervals_use_the_papers_spread() {
         let printed = Summary { n: 10, mean: 20.0, sd: 3.0 };
         // t quantile 2.262157162798205 at 9 df, times 3 sqrt(1/10 + 1/30)
-        assert_close(prediction_half_width(printed, 30, 0.95), 2.478069013372927, 1e-6);
+        assert_close(prediction_half_width(printed, 30, 0.95), 2.478_069_013_372_927, 1e-6);
         let exact = Summary { sd: 0.0, ..printed };
         // With an exact base the ratio is as uncertain as its numerator: 15 % of sd.
         let ratio = log_ratio_half_width((printed, 30), (exact, 30), 0.95);

@@ -38,7 +38,7 @@ fn runs(mean: impl Fn(f64) -> f64, late: &[i64]) -> Table {
     table
 }
 
-fn printed() -> BTreeMap<String, Table> {
+pub(super) fn printed() -> BTreeMap<String, Table> {
     let mut table = Table::new(["environment", "prior", "coverage-percent", "value", "sd", "n"]);
     for (environment, cells) in PRINTED {
         for (prior, values) in PRIORS.iter().zip(cells) {
@@ -178,7 +178,7 @@ fn log_ratios_agree_where_gains_do_whatever_the_levels() {
     assert_eq!(statistic(&same, "cells"), 12.0);
     assert_eq!(statistic(&same, "inside-prediction-interval"), 1.0);
     // Half of the gain: the slope says so, and the bound is missed.
-    let damped = judged(&runs(|x| x.sqrt(), &[]), &expect);
+    let damped = judged(&runs(f64::sqrt, &[]), &expect);
     assert_eq!(damped.judgement, Judgement::Contradicted, "{}", damped.reason);
     assert_close(statistic(&damped, "slope"), 0.5, 1e-9);
     assert_close(statistic(&damped, "pearson"), 1.0, 1e-9);

@@ -27,6 +27,7 @@ fn explorations() -> Table {
         "distance-m-at-70",
         "distance-m-at-80",
         "distance-m-at-90",
+        "distance-m-at-95",
         "time-s-at-70",
         "wall-time-s-per-selection",
     ];
@@ -37,13 +38,15 @@ fn explorations() -> Table {
     );
     for environment in ["basic", "office", "open"] {
         for furnished in ["true", "false"] {
-            for (prior, factor) in [("none", 1.0), ("floor-plan", 0.67)] {
+            for (prior, factor) in [("none", 1.0), ("floor-plan", 0.67), ("footprint", 0.8)] {
                 for trial in 0..12_i64 {
                     let noise = f64::from(u8::try_from(trial * 7 % 12).unwrap()) / 3.0;
                     let mut row: Vec<Value> = vec!["k".into()];
                     row.extend([environment, furnished, prior].map(Value::from));
                     row.extend([trial.into(), "explored".into()]);
-                    row.extend([20.0, 30.0, 40.0, 60.0].map(|x| Value::from(x * factor + noise)));
+                    row.extend(
+                        [20.0, 30.0, 40.0, 50.0, 60.0].map(|x| Value::from(x * factor + noise)),
+                    );
                     row.push((0.002 + noise / 1000.0).into());
                     table.push(row);
                 }
@@ -65,7 +68,8 @@ fn every_documented_example_is_judged() {
         let of_priors = serde_json::to_string(&claim).unwrap().contains("prior\":")
             || claim.expect.metrics()[0].starts_with(metric::WALL_TIME);
         let trials = if of_priors { &prior } else { &deadline };
-        let published = published();
+        let mut published = published();
+        published.extend(coverage::printed());
         let found = judge(&claim, trials, &Context::new(&published, &[], 2019)).unwrap();
         assert_ne!(found.judgement, Judgement::CannotBeTested, "{}: {}", claim.id, found.reason);
         assert!(!found.comparisons.is_empty(), "{}", claim.id);

@@ -12,7 +12,7 @@ fn known() -> Known {
         ("start".to_owned(), owned(&["A", "B", "C"])),
         ("strategy".to_owned(), owned(&STRATEGIES)),
         ("deadline-s".to_owned(), owned(&["68", "272", "477", "680"])),
-        ("prior".to_owned(), owned(&["none", "floor-plan"])),
+        ("prior".to_owned(), owned(&["none", "floor-plan", "footprint"])),
         ("furnished".to_owned(), owned(&["true", "false"])),
         ("environment".to_owned(), owned(&["basic", "office", "open"])),
     ];
@@ -28,9 +28,10 @@ fn known() -> Known {
         "distance-m-at-70",
         "distance-m-at-80",
         "distance-m-at-90",
+        "distance-m-at-95",
         "wall-time-s-per-selection",
     ]);
-    (factors, metrics, owned(&["success-percent"]))
+    (factors, metrics, owned(&["success-percent", "distance-m"]))
 }
 
 pub(super) fn faults(expect: &str) -> Vec<String> {
@@ -118,7 +119,7 @@ fn faults_are_named_with_their_place_and_the_nearest_name() {
              strategy, deadline-s, prior, furnished, environment)",
             "claim `X`: expect.less.than.where.start: unknown value `D` (known: A, B, C)",
             "claim `X`: expect.less.metric: unknown metric `sucess`; did you mean `success`? (known: success, \
-             outcome:late, time-s, fast-collisions, fast-maneuvers, slow-collisions, slow-maneuvers, time-s-at-70, distance-m-at-70, distance-m-at-80, distance-m-at-90, wall-time-s-per-selection)",
+             outcome:late, time-s, fast-collisions, fast-maneuvers, slow-collisions, slow-maneuvers, time-s-at-70, distance-m-at-70, distance-m-at-80, distance-m-at-90, distance-m-at-95, wall-time-s-per-selection)",
         ]
     );
     assert_eq!(

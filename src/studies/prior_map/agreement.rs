@@ -235,14 +235,16 @@ fn agreement(
         });
         ratios.push(Ratio { block: above.cell.rows.clone(), ours, published, inside });
     }
-    let mut blocks: Vec<(&Vec<(String, String)>, Vec<usize>)> = Vec::new();
+    let mut blocks: Vec<&[(String, String)]> = Vec::new();
+    let mut places: Vec<Vec<usize>> = Vec::new();
     for (i, ratio) in ratios.iter().enumerate() {
-        match blocks.iter_mut().find(|(block, _)| *block == &ratio.block) {
-            Some((_, places)) => places.push(i),
-            None => blocks.push((&ratio.block, vec![i])),
+        if let Some(known) = blocks.iter().position(|block| *block == ratio.block) {
+            places[known].push(i);
+        } else {
+            blocks.push(&ratio.block);
+            places.push(vec![i]);
         }
     }
-    let places: Vec<Vec<usize>> = blocks.into_iter().map(|(_, places)| places).collect();
     let (x, y): (Vec<f64>, Vec<f64>) = ratios.iter().map(|r| (r.published, r.ours)).unzip();
     let points: Vec<(f64, f64)> = x.iter().copied().zip(y.iter().copied()).collect();
     let cells_inside: Vec<bool> = both
