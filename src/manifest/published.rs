@@ -339,10 +339,15 @@ fn check_published(
             .label("not a key of `published`");
         faults.push(fault.help(known_or_near(name, &known)));
     } else if let Some(numbers) = published.get(name) {
+        let for_all = doc.published[name].for_all();
         for factor in std::iter::once(by).chain(rows.iter().map(String::as_str)) {
-            if numbers.column(factor).is_none() {
+            if numbers.column(factor).is_none() && !for_all.iter().any(|name| name == factor) {
                 let message = format!("the published numbers `{name}` have no column `{factor}`");
-                faults.at(&place, message, "asked for by this table");
+                let fault = faults.fault(&place, message).label("asked for by this table");
+                let help = format!(
+                    "where the paper did not vary it: `{name}: {{file: FILE, for-all: [{factor}]}}`"
+                );
+                faults.push(fault.help(help));
             }
         }
     }
