@@ -3,11 +3,13 @@
 //! Cells are squares of `resolution` m; cell (0, 0) has its lower left corner at `origin` and rows run along
 //! y, as in ROS's `nav_msgs/OccupancyGrid`.
 
+mod cell_set;
 mod line;
 mod visibility;
 
+pub use cell_set::{Axis, CellSet, Run};
 pub use line::line;
-pub use visibility::visible_cells;
+pub use visibility::visible_runs;
 
 use crate::geometry::{Bounds, Point};
 use serde::{Deserialize, Serialize};

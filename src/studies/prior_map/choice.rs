@@ -94,20 +94,27 @@ impl Chooser {
     pub fn appraise(&self, sight: Sight<'_>, frontiers: Vec<Frontier>) -> Choice {
         let frame = *sight.map.grid().frame();
         let nearest_only = self.exploration.strategy == Strategy::NearestFrontier;
+        let gains = if nearest_only {
+            vec![0.0; frontiers.len()]
+        } else {
+            let candidates: Vec<Cell> = frontiers.iter().map(|f| f.candidate).collect();
+            self.gains(sight, &candidates)
+        };
+        let distance = |f: &Frontier| sight.pose.position().distance(frame.center(f.candidate));
         let appraisals: Vec<_> = frontiers
             .iter()
-            .map(|f| Appraisal {
-                distance: sight.pose.position().distance(frame.center(f.candidate)),
-                gain: if nearest_only { 0.0 } else { self.gain(sight, f.candidate) },
-            })
+            .zip(gains)
+            .map(|(f, gain)| Appraisal { distance: distance(f), gain })
             .collect();
         let alpha = if nearest_only { 1.0 } else { self.exploration.alpha };
         let utilities = utilities(&appraisals, alpha);
         Choice { frame, frontiers, appraisals, utilities, chosen: None }
     }
 
-    fn gain(&self, sight: Sight<'_>, p: Cell) -> f64 {
+    /// I(p) of every candidate location.
+    fn gains(&self, sight: Sight<'_>, candidates: &[Cell]) -> Vec<f64> {
         let (map, offset, prior) = (sight.map.grid(), sight.map.offset(), self.prior.as_ref());
+        let exploration = &self.exploration;
         if let Some(rays) = &self.rays {
             let released = ReleasedGain {
                 rays,
@@ -115,19 +122,14 @@ impl Chooser {
                 costs: sight.costs,
                 offset,
                 prior,
-                prior_stop: cost(self.exploration.prior_ray_stop_cost),
-                baseline_stop: cost(self.exploration.baseline_ray_stop_cost),
+                prior_stop: cost(exploration.prior_ray_stop_cost),
+                baseline_stop: cost(exploration.baseline_ray_stop_cost),
             };
-            return released.at(p);
+            return candidates.iter().map(|&p| released.at(p)).collect();
         }
-        let gain = InformationGain {
-            map,
-            offset,
-            prior,
-            range: self.range,
-            known_obstacles_occlude: self.exploration.known_obstacles_occlude,
-        };
-        match (self.view, &self.headings) {
+        let occlude = exploration.known_obstacles_occlude;
+        let gain = InformationGain::new(map, offset, prior, self.range, occlude);
+        let one = |&p: &Cell| match (self.view, &self.headings) {
             (None, _) => gain.at(p),
             (Some(_), Some(headings)) => gain.best(p, headings),
             (Some(view), None) => {
@@ -137,6 +139,7 @@ impl Chooser {
                 let heading = if is_there { sight.pose.heading } else { math::atan2(way.y, way.x) };
                 gain.within(p, view.facing(heading))
             }
-        }
+        };
+        candidates.iter().map(one).collect()
     }
 }

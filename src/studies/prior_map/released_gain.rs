@@ -144,7 +144,7 @@ mod tests {
         let rays = Rays::new(30);
         let prior = OccupancyGrid::filled(FRAME, Occupancy::Free);
         let aligned = AlignedPrior::new(&prior, Pose::default(), 0.1);
-        let p = Cell::new(25, 40);
+        let p = Cell::new(32, 40);
         assert_eq!(cells(gain(&rays, &map, &costs, None).at(p)), 0);
         assert!(cells(gain(&rays, &map, &costs, Some(&aligned)).at(p)) > 50);
         let outside = AlignedPrior::new(&prior, Pose::new(500.0, 0.0, 0.0), 0.1);
