@@ -27,6 +27,8 @@ pub struct Wavefront {
     diagonal: Vec<u32>,
     /// Cells (padded indices) by their distance at the time, modulo the number of buckets.
     buckets: Vec<Vec<u32>>,
+    /// Cells that have a distance, to be forgotten when the memory is used again.
+    reached: Vec<u32>,
     /// Cells in all buckets.
     waiting: usize,
     level: u32,
@@ -38,6 +40,17 @@ impl Wavefront {
     /// The wave from `goal` over `costs`, crossing cells cheaper than `lethal`. Where the goal itself is not
     /// crossable, all crossable cells in the 11-cell box around it are seeds instead.
     pub fn from_goal(costs: Arc<CostGrid>, goal: Cell, lethal: u8, weight: f64) -> Self {
+        Self::instead_of(None, costs, goal, lethal, weight)
+    }
+
+    /// The same, in the memory of an earlier wave where that has the size.
+    pub fn instead_of(
+        earlier: Option<Self>,
+        costs: Arc<CostGrid>,
+        goal: Cell,
+        lethal: u8,
+        weight: f64,
+    ) -> Self {
         let frame = *costs.frame();
         #[expect(
             clippy::cast_possible_truncation,
@@ -48,8 +61,18 @@ impl Wavefront {
             (f64::from(plain) * FINE * (1.0 + weight * f64::from(cost) / 100.0)).round() as u32
         };
         let diagonal: Vec<u32> = (0..=100).map(|cost| step(DIAGONAL, cost)).collect();
+        let distances = match earlier {
+            Some(mut earlier) if earlier.distances.len() == padded_len(&frame) => {
+                for index in earlier.reached {
+                    earlier.distances[index as usize] = UNREACHED;
+                }
+                earlier.distances
+            }
+            _ => vec![UNREACHED; padded_len(&frame)],
+        };
         let mut wave = Self {
-            distances: vec![UNREACHED; padded_len(&frame)],
+            distances,
+            reached: Vec::new(),
             straight: (0..=100).map(|cost| step(STRAIGHT, cost)).collect(),
             buckets: vec![Vec::new(); diagonal[100] as usize + 1],
             diagonal,
@@ -84,9 +107,12 @@ impl Wavefront {
     }
 
     fn reach(&mut self, index: usize, distance: u32) {
-        self.distances[index] = distance;
+        let number = u32::try_from(index).unwrap_or(u32::MAX);
+        if std::mem::replace(&mut self.distances[index], distance) == UNREACHED {
+            self.reached.push(number);
+        }
         let slot = distance as usize % self.buckets.len();
-        self.buckets[slot].push(u32::try_from(index).unwrap_or(u32::MAX));
+        self.buckets[slot].push(number);
         self.waiting += 1;
     }
 
@@ -288,6 +314,12 @@ mod tests {
             }
             for (index, &distance) in least.iter().enumerate() {
                 prop_assert_eq!(wave.distance(costs.frame().cell_of(index)), distance);
+            }
+            // In the same memory, to another goal.
+            let goal = Cell::new(2, 3);
+            let mut again = Wavefront::instead_of(Some(wave), Arc::clone(&costs), goal, 101, 10.0);
+            for (index, distance) in by_relaxation(&costs, goal, 101).into_iter().enumerate() {
+                prop_assert_eq!(again.distance(costs.frame().cell_of(index)), distance);
             }
         }
     }

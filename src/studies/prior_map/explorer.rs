@@ -293,7 +293,8 @@ impl Explorer {
     fn drive_on(&mut self, mut journey: Journey, odometry: Odometry) {
         if std::mem::take(&mut self.map_changed) || self.wave.is_none() {
             let costs = self.costs(odometry.pose);
-            self.wave = Some(self.wave_to(&costs, journey.target));
+            let earlier = self.wave.take();
+            self.wave = Some(self.wave_to(earlier, &costs, journey.target));
             self.path_changed = true;
         }
         let robot = self.cell_at(odometry.pose);
@@ -346,7 +347,7 @@ impl Explorer {
                 self.given_up.push(target);
                 continue;
             }
-            let mut wave = self.wave_to(&costs, target);
+            let mut wave = self.wave_to(None, &costs, target);
             if let Some(here) = nearest_reached(&mut wave, robot) {
                 choice.chosen = Some(i);
                 let distance = wave.metres(here).unwrap_or(f64::INFINITY);
@@ -442,11 +443,17 @@ impl Explorer {
         Arc::new(inflate(&map, self.parameters.navigation.inflation_radius_cells))
     }
 
-    fn wave_to(&self, costs: &Arc<CostGrid>, target: Point) -> Wavefront {
+    fn wave_to(
+        &self,
+        earlier: Option<Wavefront>,
+        costs: &Arc<CostGrid>,
+        target: Point,
+    ) -> Wavefront {
         let navigation = &self.parameters.navigation;
         let goal = costs.frame().cell_at(target);
         let lethal = cost(navigation.planner_lethal_cost);
-        Wavefront::from_goal(Arc::clone(costs), goal, lethal, navigation.cost_weight)
+        let weight = navigation.cost_weight;
+        Wavefront::instead_of(earlier, Arc::clone(costs), goal, lethal, weight)
     }
 
     fn cell_at(&self, pose: Pose) -> Cell {
