@@ -116,6 +116,11 @@ impl GridFrame {
         (0..self.width).contains(&cell.x) && (0..self.height).contains(&cell.y)
     }
 
+    /// Whether `cell` and all its eight neighbours belong to the grid.
+    pub fn is_inside(&self, cell: Cell) -> bool {
+        (1..self.width - 1).contains(&cell.x) && (1..self.height - 1).contains(&cell.y)
+    }
+
     /// Index of `cell` in row-major order from the lower left, or `None` outside.
     pub fn index(&self, cell: Cell) -> Option<usize> {
         #[expect(clippy::cast_sign_loss, reason = "contained cells are not negative")]

@@ -33,8 +33,19 @@ pub fn find_frontiers(
     }
     // Cells of frontiers with the order of their discovery.
     let mut order: BTreeMap<Cell, usize> = BTreeMap::new();
+    let (values, width) = (map.values(), usize::try_from(frame.width).unwrap_or(0));
+    let borders_on_unknown = |cell: Cell| match frame.index(cell) {
+        // Three cells of three rows, not one by one: most cells met are well inside.
+        Some(at) if frame.is_inside(cell) => {
+            [at - width, at, at + width]
+                .iter()
+                .any(|&middle| values[middle - 1..=middle + 1].contains(&Occupancy::Unknown))
+                && cell.neighbours8().iter().any(|&n| map.at(n) == Occupancy::Unknown)
+        }
+        _ => cell.neighbours8().iter().any(|&n| map.at(n) == Occupancy::Unknown),
+    };
     while let Some(cell) = queue.pop_front() {
-        if cell.neighbours8().iter().any(|&n| map.at(n) == Occupancy::Unknown) {
+        if borders_on_unknown(cell) {
             order.insert(cell, order.len());
         }
         for neighbour in cell.neighbours4() {

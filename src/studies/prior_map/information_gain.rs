@@ -115,8 +115,13 @@ fn word_of(map: &OccupancyGrid, x: i32, y: i32, value: Occupancy) -> u64 {
     #[expect(clippy::cast_sign_loss, reason = "a part of 64 cells")]
     let (skipped, length) = ((first - x) as usize, (end - first) as usize);
     let cells = &map.values()[index..index + length];
-    let inside = cells.iter().rev().fold(0, |bits, &cell| bits << 1 | u64::from(cell == value));
     let mask = (u64::MAX >> (64 - length)) << skipped;
+    // Most words are all of one kind, which counting finds faster than going bit by bit.
+    let inside = match cells.iter().map(|&cell| u8::from(cell == value)).sum::<u8>() {
+        0 => 0,
+        all if usize::from(all) == length => mask >> skipped,
+        _ => cells.iter().rev().fold(0, |bits, &cell| bits << 1 | u64::from(cell == value)),
+    };
     (outside & !mask) | (inside << skipped)
 }
 
