@@ -1,7 +1,7 @@
 //! Obstacles inflated over the free cells around them.
 
 use super::CostGrid;
-use super::costmap::{UNKNOWN, padded_width};
+use super::costmap::padded_width;
 use crate::grid::{Occupancy, OccupancyGrid};
 
 /// The map with costs that fall from 100 at obstacles to 0 at `radius` cells: trunc(100 (1 - d / radius)), d
@@ -16,15 +16,15 @@ pub fn inflate(map: &OccupancyGrid, radius: u32) -> CostGrid {
     let mut front: Vec<Fire> = Vec::new();
     for (y, row) in map.values().chunks((width - 2).max(1)).enumerate() {
         let first = (y + 1) * width + 1;
-        for (cost, value) in costs[first..].iter_mut().zip(row) {
-            *cost = match value {
-                Occupancy::Occupied => 100,
-                Occupancy::Free => 0,
-                Occupancy::Unknown => UNKNOWN,
-            };
-        }
-        for (x, _) in row.iter().enumerate().filter(|(_, value)| **value == Occupancy::Occupied) {
-            front.push(Fire { index: first + x, dx: 0, dy: 0 });
+        for (x, &value) in row.iter().enumerate() {
+            match value {
+                Occupancy::Occupied => {
+                    costs[first + x] = 100;
+                    front.push(Fire { index: first + x, dx: 0, dy: 0 });
+                }
+                Occupancy::Free => costs[first + x] = 0,
+                Occupancy::Unknown => {}
+            }
         }
     }
     let reach = i64::from(radius) * i64::from(radius);
