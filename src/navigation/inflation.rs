@@ -8,6 +8,11 @@ use crate::grid::{Occupancy, OccupancyGrid};
 /// the distance in cells to the obstacle that reached the cell first over free cells. Unknown cells are
 /// neither inflated nor crossed (prior-map facts, section 4, "Inflation").
 pub fn inflate(map: &OccupancyGrid, radius: u32) -> CostGrid {
+    inflate_in_steps(map, radius).0
+}
+
+/// [`inflate`], and how many steps the fires took until all were out.
+pub(super) fn inflate_in_steps(map: &OccupancyGrid, radius: u32) -> (CostGrid, u32) {
     let frame = *map.frame();
     let mut grid = CostGrid::unknown(frame);
     let width = padded_width(&frame);
@@ -30,7 +35,9 @@ pub fn inflate(map: &OccupancyGrid, radius: u32) -> CostGrid {
     let reach = i64::from(radius) * i64::from(radius);
     let table: Vec<u8> = (0..reach).map(|squared| cost_at(squared, radius)).collect();
     let mut next = Vec::new();
+    let mut steps = 0;
     while !front.is_empty() {
+        steps += 1;
         for &Fire { index, dx, dy } in &front {
             let neighbours = [
                 Fire { index: index + 1, dx: dx + 1, dy },
@@ -51,7 +58,7 @@ pub fn inflate(map: &OccupancyGrid, radius: u32) -> CostGrid {
         front.clear();
         std::mem::swap(&mut front, &mut next);
     }
-    grid
+    (grid, steps)
 }
 
 /// A cell that a fire has come to: its padded index, and how many cells it is from where the fire began.
