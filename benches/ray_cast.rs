@@ -3,7 +3,7 @@
 //!
 //! `cargo bench --bench ray_cast`
 
-mod quickstart;
+mod shipped;
 
 use reenact::geometry::{Outline, Point, Pose};
 use reenact::robot::Lidar;
@@ -16,7 +16,7 @@ struct Case {
 }
 
 fn case() -> Case {
-    let plan = quickstart::plan();
+    let plan = shipped::plan("quickstart.yaml");
     let setup = &plan.trials[0].setup;
     let lidar = setup.robot().lidar.clone().expect("the robot has a lidar");
     let visible = setup.world().slice(lidar.height);

@@ -3,7 +3,7 @@
 //!
 //! `cargo bench --bench sim_step`
 
-mod quickstart;
+mod shipped;
 
 use reenact::rng::Seeds;
 use reenact::robot::Twist;
@@ -18,7 +18,7 @@ fn main() {
 
 #[divan::bench(args = [true, false], sample_count = 20, sample_size = 1)]
 fn circle(bencher: divan::Bencher<'_, '_>, reads_scans: bool) {
-    let plan = quickstart::plan();
+    let plan = shipped::plan("quickstart.yaml");
     let setup = &plan.trials[0].setup;
     let robot = setup.robot();
     let lidar = robot.lidar.clone().expect("the robot has a lidar");

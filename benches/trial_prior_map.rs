@@ -2,7 +2,7 @@
 //!
 //! `cargo bench --bench trial_prior_map`
 
-mod quickstart;
+mod shipped;
 
 use reenact::studies;
 
@@ -12,7 +12,7 @@ fn main() {
 
 #[divan::bench(args = ["none/0", "floor-plan/0"], sample_count = 5, sample_size = 1)]
 fn trial(bencher: divan::Bencher<'_, '_>, name: &str) {
-    let plan = quickstart::plan();
+    let plan = shipped::plan("quickstart.yaml");
     let spec = plan.find(name).expect("the quickstart has this trial");
     // Once beforehand: what all trials of a setup share is computed by the first.
     let record = studies::execute(spec);

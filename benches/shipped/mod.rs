@@ -1,4 +1,4 @@
-//! The quickstart's plan: the same world, robot and parameters for every benchmark.
+//! Plans of shipped manifests: the same worlds, robots and parameters for every benchmark.
 
 use reenact::manifest::{self, Inputs, WrittenIn};
 use reenact::plan::Plan;
@@ -13,12 +13,12 @@ impl Inputs for Files {
     }
 }
 
-/// All trials of `manifests/quickstart.yaml`.
-pub(crate) fn plan() -> Plan {
+/// All trials of the manifest `name`.
+pub(crate) fn plan(name: &str) -> Plan {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("manifests");
-    let text = std::fs::read_to_string(folder.join("quickstart.yaml")).expect("it is shipped");
-    let source = reenact::document::Source::new("quickstart.yaml", text);
+    let text = std::fs::read_to_string(folder.join(name)).expect("it is shipped");
+    let source = reenact::document::Source::new(name, text);
     let (experiment, _) = manifest::resolve(&source, &[], &Files(folder))
-        .unwrap_or_else(|faults| panic!("the quickstart has {} faults", faults.len()));
+        .unwrap_or_else(|faults| panic!("{name} has {} faults", faults.len()));
     Plan::of(experiment)
 }
