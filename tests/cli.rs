@@ -280,3 +280,33 @@ fn a_constrained_mdp_is_solved_refused_or_infeasible() {
     let says = "error: b.json: absorbing[0]: state 7 does not exist; expected an index below 2\n";
     assert_eq!((answer.stderr.as_str(), answer.code), (says, 2));
 }
+
+#[test]
+fn a_derived_prior_laid_over_its_world_lies_on_it() {
+    let desk = Desk::new();
+    let world = "demo/apartment.yaml";
+    let derived = desk.run(&["show", world, "--derive", "floor-plan", "-o", "plan.png"]);
+    assert_eq!((derived.stderr.as_str(), derived.code), ("wrote plan.png\n", 0));
+    let line = |start: &str| derived.stdout.lines().find_map(|l| l.strip_prefix(start)).unwrap();
+    let origin = line("origin: (").trim_end_matches(") m");
+    let cells = line("occupied: ").split(' ').next().unwrap();
+    desk.write(
+        "plan.yaml",
+        &format!(
+            "image: plan.png\nresolution: 0.1\norigin: [{origin}, 0.0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
+        ),
+    );
+    let over = ["show", world, "--over", "plan.yaml", "-o", "over.svg"];
+    let laid = desk.run(&over);
+    let agreement = |near: &str| {
+        format!("agreement: {near} of {cells} occupied cells lie within 0.2 m of something solid\n")
+    };
+    assert!(laid.stdout.ends_with(&agreement(cells)), "{}", laid.stdout);
+    let away = desk.run(&[&over[..], &["--start", "-100,50"]].concat());
+    assert!(away.stdout.ends_with(&agreement("0")), "{} {}", away.stdout, away.stderr);
+    let refused = desk.run(&[&over[..], &["--start", "1"]].concat());
+    assert_eq!(
+        (refused.stderr.as_str(), refused.code),
+        ("error: --start: expected x,y (m), found 1 numbers\n", 2)
+    );
+}

@@ -292,6 +292,39 @@ pub(super) struct ShowArgs {
     /// Cut worlds at this height (m)
     #[arg(long, value_name = "METRES")]
     pub(super) height: Option<f64>,
+    /// Layers of a world to draw beside its walls [default: all]
+    #[arg(long, value_delimiter = ',', value_name = "LAYERS", conflicts_with = "generate")]
+    pub(super) layers: Option<Vec<String>>,
+    /// Instead of a world: what is derived from it as prior knowledge
+    #[arg(long, value_enum, value_name = "PRIOR", conflicts_with = "generate")]
+    pub(super) derive: Option<DerivedArg>,
+    /// Side of a derived prior's cells (m)
+    #[arg(long, value_name = "METRES", default_value_t = 0.1, requires = "derive")]
+    pub(super) resolution: f64,
+    /// A `map_server` map to lay over the world
+    #[arg(long, value_name = "MAP", conflicts_with_all = ["generate", "derive"])]
+    pub(super) over: Option<PathBuf>,
+    /// The start that the map's origin is relative to: x,y (m) in the world
+    #[arg(
+        long,
+        value_delimiter = ',',
+        num_args = 1,
+        value_name = "X,Y",
+        requires = "over",
+        allow_hyphen_values = true
+    )]
+    pub(super) start: Option<Vec<f64>>,
+}
+
+/// Prior knowledge derived from a world.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum DerivedArg {
+    /// Everything solid at the lidar's height
+    FloorPlan,
+    /// Of that what can be touched from outside
+    Footprint,
+    /// The box around it
+    BoundingBox,
 }
 
 /// Families of buildings.

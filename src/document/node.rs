@@ -223,6 +223,26 @@ impl Tree {
         Ok(())
     }
 
+    /// Lays what `source` has under `key` beneath what this tree has there: entries that the tree lacks are taken, mappings
+    /// that both have are merged in the same way, but for those that `is_value` calls values: there the tree's own stands.
+    ///
+    /// # Errors
+    /// Where `source` is no YAML.
+    pub fn underlay(
+        &mut self,
+        source: &Source,
+        key: &str,
+        is_value: &dyn Fn(&Node) -> bool,
+    ) -> Result<(), Vec<Diagnostic>> {
+        let number = u16::try_from(self.sources.len()).unwrap_or(u16::MAX);
+        let base = read_node(source, number, 0)?;
+        self.sources.push(source.clone());
+        let Content::Map(base) = base.content else { return Ok(()) };
+        let base = base.into_iter().filter(|entry| entry.key == key).collect();
+        merge(&mut self.root, base, is_value);
+        Ok(())
+    }
+
     /// The deepest node towards `pointer`, its key's place, and whether it is what the pointer names.
     fn walk(&self, pointer: &str) -> (&Node, Option<Place>, bool) {
         let (mut node, mut key_place) = (&self.root, None);
@@ -241,6 +261,23 @@ impl Tree {
             (node, key_place) = found;
         }
         (node, key_place, true)
+    }
+}
+
+/// Adds `base`'s entries to the mapping `node`, where it is one and lacks them.
+fn merge(node: &mut Node, base: Vec<Entry>, is_value: &dyn Fn(&Node) -> bool) {
+    let Content::Map(entries) = &mut node.content else { return };
+    for theirs in base {
+        let Some(ours) = entries.iter_mut().find(|entry| entry.key == theirs.key) else {
+            entries.push(theirs);
+            continue;
+        };
+        if is_value(&ours.value) || is_value(&theirs.value) {
+            continue;
+        }
+        if let Content::Map(base) = theirs.value.content {
+            merge(&mut ours.value, base, is_value);
+        }
     }
 }
 

@@ -3,11 +3,13 @@
 //! Cells are squares of `resolution` m; cell (0, 0) has its lower left corner at `origin` and rows run along
 //! y, as in ROS's `nav_msgs/OccupancyGrid`.
 
+mod cell_set;
 mod line;
 mod visibility;
 
+pub use cell_set::{Axis, CellSet, Run};
 pub use line::line;
-pub use visibility::visible_cells;
+pub use visibility::visible_runs;
 
 use crate::geometry::{Bounds, Point};
 use serde::{Deserialize, Serialize};
@@ -89,12 +91,14 @@ impl GridFrame {
     /// The cell that holds `point`; it may lie outside of the grid.
     pub fn cell_at(&self, point: Point) -> Cell {
         let index = |v: f64| {
+            let cells = v / self.resolution;
             #[expect(
                 clippy::cast_possible_truncation,
                 reason = "saturates, and such cells are outside"
             )]
-            let cell = (v / self.resolution).floor() as i32;
-            cell
+            let cut = cells as i32;
+            // Rounded down: what `floor` yields, without a call where the processor has no instruction for it.
+            cut.saturating_sub(i32::from(f64::from(cut) > cells))
         };
         Cell::new(index(point.x - self.origin.x), index(point.y - self.origin.y))
     }
@@ -110,6 +114,11 @@ impl GridFrame {
     /// Whether `cell` belongs to the grid.
     pub fn contains(&self, cell: Cell) -> bool {
         (0..self.width).contains(&cell.x) && (0..self.height).contains(&cell.y)
+    }
+
+    /// Whether `cell` and all its eight neighbours belong to the grid.
+    pub fn is_inside(&self, cell: Cell) -> bool {
+        (1..self.width - 1).contains(&cell.x) && (1..self.height - 1).contains(&cell.y)
     }
 
     /// Index of `cell` in row-major order from the lower left, or `None` outside.
@@ -252,6 +261,15 @@ mod tests {
     }
 
     proptest! {
+        #[test]
+        fn cells_are_rounded_down(x in prop::num::f64::ANY, y in -5.0..5.0_f64) {
+            let frame = frame();
+            #[expect(clippy::cast_possible_truncation, reason = "saturates too")]
+            let down = |v: f64| (v / frame.resolution).floor() as i32;
+            let expected = Cell::new(down(x - frame.origin.x), down(y - frame.origin.y));
+            prop_assert_eq!(frame.cell_at(Point::new(x, y)), expected);
+        }
+
         #[test]
         fn a_cell_holds_its_centre_and_its_index(x in 0..30, y in 0..20) {
             let (frame, cell) = (frame(), Cell::new(x, y));

@@ -6,27 +6,68 @@
 //! [(c - ½) / (d ± ½), (c + ½) / (d ∓ ½)], of cells in its own row only what lies before the row's middle.
 //! Each quadrant is swept row by row, keeping the slopes hidden so far as a sorted list of intervals.
 
-use super::Cell;
+use super::{Axis, Cell, CellSet, Run};
 use std::cmp::Ordering;
 
-/// Calls `see` with every cell within `radius` cells of `origin` (Euclidean, centres) that is visible from it
-/// past the cells that are `blocking`, the origin itself included. Blocking cells are not visible; a blocking
-/// origin still sees.
-pub fn visible_cells(
-    origin: Cell,
-    radius: i32,
-    blocking: impl Fn(Cell) -> bool,
-    mut see: impl FnMut(Cell),
-) {
-    see(origin);
-    // The four quadrants: (column, row) to the two axes.
-    for (column, row) in
-        [((1, 0), (0, 1)), ((0, -1), (1, 0)), ((-1, 0), (0, -1)), ((0, 1), (-1, 0))]
-    {
-        let cell = |c: i32, d: i32| {
-            Cell::new(origin.x + c * column.0 + d * row.0, origin.y + c * column.1 + d * row.1)
+/// Calls `see` with all cells within `radius` cells of `origin` (Euclidean, centres) that are visible from it
+/// past the cells that are `blocking`, the origin itself included, in runs that do not overlap. Blocking cells are not
+/// visible; a blocking origin still sees.
+pub fn visible_runs(origin: Cell, radius: i32, blocking: &CellSet, mut see: impl FnMut(Run)) {
+    see(Run { axis: Axis::X, line: origin.y, from: origin.x, to: origin.x });
+    for quadrant in [
+        Quadrant { origin, axis: Axis::X, columns: 1, rows: 1 },
+        Quadrant { origin, axis: Axis::Y, columns: -1, rows: 1 },
+        Quadrant { origin, axis: Axis::X, columns: -1, rows: -1 },
+        Quadrant { origin, axis: Axis::Y, columns: 1, rows: -1 },
+    ] {
+        let blocks = |row, from, to, found: &mut Vec<i32>| {
+            found.clear();
+            blocking.members(quadrant.run(row, from, to), found);
+            quadrant.to_columns(found);
         };
-        sweep(radius, |c, d| blocking(cell(c, d)), |c, d| see(cell(c, d)));
+        sweep(radius, blocks, |row, from, to| see(quadrant.run(row, from, to)));
+    }
+}
+
+/// One of four: its columns and rows count along the two axes, up or down.
+#[derive(Debug, Clone, Copy)]
+struct Quadrant {
+    origin: Cell,
+    /// The axis of its columns.
+    axis: Axis,
+    columns: i32,
+    rows: i32,
+}
+
+impl Quadrant {
+    /// Coordinates of the origin along the axis and across it.
+    fn start(&self) -> (i32, i32) {
+        match self.axis {
+            Axis::X => (self.origin.x, self.origin.y),
+            Axis::Y => (self.origin.y, self.origin.x),
+        }
+    }
+
+    fn run(&self, row: i32, from: i32, to: i32) -> Run {
+        let (along, across) = self.start();
+        let ends = [along + self.columns * from, along + self.columns * to];
+        Run {
+            axis: self.axis,
+            line: across + self.rows * row,
+            from: ends[0].min(ends[1]),
+            to: ends[0].max(ends[1]),
+        }
+    }
+
+    /// Turns coordinates along the axis to columns, still ascending.
+    fn to_columns(self, found: &mut [i32]) {
+        let (along, _) = self.start();
+        for column in &mut *found {
+            *column = (*column - along) * self.columns;
+        }
+        if self.columns < 0 {
+            found.reverse();
+        }
     }
 }
 
@@ -41,6 +82,16 @@ impl Slope {
     fn compare(self, other: Self) -> Ordering {
         (i64::from(self.over) * i64::from(other.under))
             .cmp(&(i64::from(other.over) * i64::from(self.under)))
+    }
+
+    /// The last column of `row` that is not beyond the slope.
+    fn floor(self, row: i32) -> i32 {
+        (self.over * row).div_euclid(self.under)
+    }
+
+    /// The first column of `row` that is not before the slope.
+    fn ceil(self, row: i32) -> i32 {
+        -(-self.over * row).div_euclid(self.under)
     }
 
     fn at_most(self, other: Self) -> bool {
@@ -62,44 +113,58 @@ impl Shadow {
     }
 }
 
-/// One quadrant: rows 1..=radius, columns -row < c <= row (each diagonal belongs to one quadrant).
-fn sweep(radius: i32, blocking: impl Fn(i32, i32) -> bool, mut see: impl FnMut(i32, i32)) {
+/// One quadrant: rows 1..=radius, columns -row < c <= row (each diagonal belongs to one quadrant). `blocks` finds
+/// the blocking columns of a row from one column to another in ascending order.
+///
+/// Only what lies in the gaps between shadows is looked at: a square within a shadow adds none.
+fn sweep(
+    radius: i32,
+    blocks: impl Fn(i32, i32, i32, &mut Vec<i32>),
+    mut see: impl FnMut(i32, i32, i32),
+) {
     let mut earlier: Vec<Shadow> = Vec::new();
+    let (mut found, mut whole) = (Vec::new(), Vec::new());
     // The neighbours beside the origin touch the diagonals with a corner.
     for side in [-1, 1] {
-        if blocking(side, 0) {
+        blocks(0, side, side, &mut found);
+        if !found.is_empty() {
             let corner = Slope { over: side, under: 1 };
             add(&mut earlier, Shadow { low: corner, high: corner });
         }
     }
-    let (mut before, mut whole) = (Vec::new(), Vec::new());
     for row in 1..=radius {
         if earlier.first().is_some_and(Shadow::hides_the_quadrant) {
             return;
         }
-        before.clear();
-        whole.clear();
-        // Squares just outside of the quadrant reach into it with a corner.
-        for column in -row - 1..=row + 1 {
-            if blocking(column, row) {
-                // Doubled coordinates keep corners whole.
-                let (near, middle, far) = (2 * row - 1, 2 * row, 2 * row + 1);
-                let (left, right) = (2 * column - 1, 2 * column + 1);
-                let low = |inner| Slope { over: left, under: if left < 0 { near } else { inner } };
-                let high =
-                    |inner| Slope { over: right, under: if right > 0 { near } else { inner } };
-                before.push(Shadow { low: low(middle), high: high(middle) });
-                whole.push(Shadow { low: low(far), high: high(far) });
-            }
-        }
         let half_width = row.min((radius * radius - row * row).max(0).isqrt());
-        let (mut hidden_earlier, mut hidden_here) = (Sorted(&earlier), Sorted(&before));
-        for column in (-half_width).max(1 - row)..=half_width {
-            let slope = Slope { over: column, under: row };
-            // Both lists must move along, whatever the other says.
-            let hidden = [hidden_earlier.hide(slope), hidden_here.hide(slope)];
-            if hidden == [false, false] {
-                see(column, row);
+        let (low, high) = ((-half_width).max(1 - row), half_width);
+        // Squares just outside of the quadrant, or of the disc, reach into it with a corner.
+        let reach = (half_width + MARGIN).min(row + 1);
+        whole.clear();
+        for i in 0..=earlier.len() {
+            let before = i.checked_sub(1).map(|i| earlier[i].high.floor(row));
+            let after = earlier.get(i).map(|shadow| shadow.low.ceil(row));
+            let first = before.map_or(-reach, |column| (column - MARGIN).max(-reach));
+            let last = after.map_or(reach, |column| (column + MARGIN).min(reach));
+            if first > last {
+                continue;
+            }
+            let mut from = before.map_or(low, |column| (column + 1).max(low));
+            let to = after.map_or(high, |column| (column - 1).min(high));
+            blocks(row, first, last, &mut found);
+            for &column in &found {
+                let (within, beyond) = shadows(column, row);
+                // Of its own row a square hides what lies before the row's middle.
+                let hidden = within.low.ceil(row)..=within.high.floor(row);
+                let seen = (hidden.start() - 1).min(to);
+                if from <= seen {
+                    see(row, from, seen);
+                }
+                from = from.max(hidden.end() + 1);
+                whole.push(beyond);
+            }
+            if from <= to {
+                see(row, from, to);
             }
         }
         for &shadow in &whole {
@@ -108,16 +173,18 @@ fn sweep(radius: i32, blocking: impl Fn(i32, i32) -> bool, mut see: impl FnMut(i
     }
 }
 
-/// Shadows in ascending order, asked in ascending order of slope.
-struct Sorted<'a>(&'a [Shadow]);
+/// A square's shadow, and what it hides of its own row, reach less than this many columns beyond its own.
+const MARGIN: i32 = 3;
 
-impl Sorted<'_> {
-    fn hide(&mut self, slope: Slope) -> bool {
-        while self.0.first().is_some_and(|s| s.high.compare(slope) == Ordering::Less) {
-            self.0 = &self.0[1..];
-        }
-        self.0.first().is_some_and(|s| s.low.at_most(slope))
-    }
+/// What the square of `column` hides of its own row, and of later ones.
+fn shadows(column: i32, row: i32) -> (Shadow, Shadow) {
+    // Doubled coordinates keep corners whole.
+    let (near, middle, far) = (2 * row - 1, 2 * row, 2 * row + 1);
+    let (left, right) = (2 * column - 1, 2 * column + 1);
+    let low = |inner| Slope { over: left, under: if left < 0 { near } else { inner } };
+    let high = |inner| Slope { over: right, under: if right > 0 { near } else { inner } };
+    let shadow = |inner| Shadow { low: low(inner), high: high(inner) };
+    (shadow(middle), shadow(far))
 }
 
 /// Adds a shadow to the sorted list, merging what it meets.
@@ -167,6 +234,27 @@ mod tests {
             }
         }
         seen
+    }
+
+    fn visible_cells(
+        origin: Cell,
+        radius: i32,
+        blocking: impl Fn(Cell) -> bool,
+        mut see: impl FnMut(Cell),
+    ) {
+        let reach = radius + 4;
+        let (low, high) = (
+            Cell::new(origin.x - reach, origin.y - reach),
+            Cell::new(origin.x + reach, origin.y + reach),
+        );
+        let set = CellSet::of_words(low, high, |x, y| {
+            (0..64).filter(|i| blocking(Cell::new(x + i, y))).fold(0, |bits, i| bits | 1 << i)
+        });
+        visible_runs(origin, radius, &set, |run| {
+            for along in run.from..=run.to {
+                see(run.cell(along));
+            }
+        });
     }
 
     proptest! {

@@ -4,7 +4,7 @@ use super::Experiment;
 use crate::claims::metric::WALL_TIME_COLUMNS;
 use crate::claims::{self, Claim};
 use crate::document::Diagnostic;
-use crate::studies::prior_map::MILESTONES;
+use crate::studies::prior_map::{FURTHER_AT_MILESTONES, MILESTONES};
 use crate::studies::{StudyKind, deadline};
 
 /// Every fault of the experiment's claims.
@@ -54,12 +54,14 @@ fn prior_map_measures() -> Vec<String> {
         "decisions",
         "frontiers-given-up",
         "contacts",
+        "turning-rad-per-m",
     ]
     .map(str::to_owned)
     .to_vec();
     for percent in MILESTONES {
         names.push(format!("distance-m-at-{percent}"));
         names.push(format!("time-s-at-{percent}"));
+        names.extend(FURTHER_AT_MILESTONES.map(|name| format!("{name}-at-{percent}")));
     }
     names.extend(WALL_TIME_COLUMNS.map(str::to_owned));
     names

@@ -63,7 +63,7 @@ pub(super) fn cross(doc: &ManifestDoc, faults: &mut Faults<'_>) -> (Vec<Factor>,
                     faults.push(fault.help(known_or_near(&by.by, &known)));
                     continue;
                 };
-                faults.check_levels(by.values.keys(), other, &format!("{pointer}/values"));
+                faults.check_levels(by.values.keys(), other, &format!("{pointer}/values"), true);
                 for (level, list) in &by.values {
                     note(list, &step(&format!("{pointer}/values"), level), faults);
                 }

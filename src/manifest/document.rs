@@ -2,6 +2,7 @@
 
 use super::choice::{Choice, FactorDoc, Ordered};
 use super::parameters::ParametersDoc;
+use super::pinned::PinnedDoc;
 use crate::studies::StudyKind;
 use crate::studies::{FactorValue, FigureRequest, TableRequest};
 use crate::world::generate::Family;
@@ -33,6 +34,9 @@ pub struct ManifestDoc {
     /// Licences of input files that others made, by the path as written.
     #[serde(default)]
     pub license_of: BTreeMap<String, String>,
+    /// Inputs that others published: where they are to be had, and what they must hold.
+    #[serde(default)]
+    pub pinned: Vec<PinnedDoc>,
     /// Which study this is.
     pub study: StudyKind,
     /// Seed of all randomness.
@@ -68,7 +72,11 @@ pub struct ManifestDoc {
     /// trials are not in the store, and what they showed is sealed as an input.
     #[serde(default)]
     pub calibration: Option<String>,
-    /// Everything else a trial needs; every value may be plain, `{value, why}`, `{factor, why}` or `{by, values, why}`.
+    /// A file with parameters that several manifests share; those written here go before them.
+    #[serde(default)]
+    pub settings: Option<String>,
+    /// Everything else a trial needs; every value may be plain, `{value, why}`, `{factor, why}` or
+    /// `{by, values, otherwise, why}`.
     #[serde(default)]
     pub parameters: ParametersDoc,
     /// The paper's own numbers by name: tidy CSV files.

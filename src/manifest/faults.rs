@@ -103,12 +103,14 @@ impl<'a> Faults<'a> {
         found
     }
 
-    /// Faults of a `values` mapping at `pointer` whose keys should be those of `factor`.
+    /// Faults of a `values` mapping at `pointer` whose keys should be those of `factor`: all of them where it is to be
+    /// `complete`.
     pub(super) fn check_levels<'k>(
         &mut self,
         keys: impl IntoIterator<Item = &'k String>,
         factor: &Factor,
         pointer: &str,
+        complete: bool,
     ) {
         let known: Vec<&str> = factor.values.iter().map(String::as_str).collect();
         let mut written = Vec::new();
@@ -129,7 +131,7 @@ impl<'a> Faults<'a> {
                 .help(help);
             self.push(fault);
         }
-        for level in &known {
+        for level in known.iter().filter(|_| complete) {
             // A misspelled value is one fault, not two.
             if !written.contains(level) && !meant.contains(level) {
                 let message = format!("`{level}`, a value of `{}`, has no entry here", factor.name);

@@ -15,10 +15,12 @@ mod inputs;
 mod lint;
 mod overrides;
 mod parameters;
+mod pinned;
 mod priors;
 mod published;
 mod readers;
 mod resolve;
+mod settings;
 mod worlds;
 
 pub use choice::{By, Choice, DependentFactor, FactorDoc, Levels, Ordered};
@@ -32,6 +34,7 @@ pub use document::{
 pub use experiment::{Assumption, Experiment, Meanings};
 pub use inputs::{Input, Inputs, WrittenIn};
 pub use parameters::ParametersDoc;
+pub use pinned::{PinnedDoc, PinnedFileDoc};
 pub use resolve::resolve;
 
 use crate::studies::StudyKind;

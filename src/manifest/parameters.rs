@@ -1,5 +1,6 @@
 //! A study's parameters as written: every value plain, with a reason, or by a factor.
 
+use crate::document::Node;
 use crate::studies::{StudyKind, deadline, prior_map};
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Deserialize;
@@ -11,6 +12,11 @@ use std::borrow::Cow;
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
 #[serde(transparent)]
 pub struct ParametersDoc(pub Map<String, Value>);
+
+/// Whether this is a value in one of the ways that [`Wrapped`] knows, not a group of parameters.
+pub(super) fn is_wrapped(node: &Node) -> bool {
+    ["value", "factor", "by"].iter().any(|key| node.get(key).is_some())
+}
 
 /// One value that is written with a reason or by a factor.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,6 +40,8 @@ pub(super) enum WrappedValue<'a> {
         factor: &'a str,
         /// Value of the factor to value of the parameter.
         values: &'a Map<String, Value>,
+        /// For the values of the factor that are not named, if there is one.
+        otherwise: Option<&'a Value>,
     },
     /// The value of this factor itself.
     Factor(&'a str),
@@ -81,7 +89,8 @@ fn wrap<'a>(value: &'a Value, pointer: &str) -> Option<Wrapped<'a>> {
         (Some(value), None, None, None) => WrappedValue::Plain(value),
         (None, Some(factor), None, None) => WrappedValue::Factor(factor.as_str()?),
         (None, None, Some(by), Some(values)) => {
-            WrappedValue::By { factor: by.as_str()?, values: values.as_object()? }
+            let otherwise = map.get("otherwise");
+            WrappedValue::By { factor: by.as_str()?, values: values.as_object()?, otherwise }
         }
         _ => return None,
     };
@@ -119,8 +128,8 @@ fn unwrap_all<'c>(
             _ => match wrap(value, "").map(|wrapped| wrapped.value) {
                 None => Some(value.clone()),
                 Some(WrappedValue::Plain(value)) => Some(value.clone()),
-                Some(WrappedValue::By { factor, values }) => {
-                    value_of(factor).and_then(|level| values.get(level)).cloned()
+                Some(WrappedValue::By { factor, values, otherwise }) => {
+                    value_of(factor).and_then(|level| values.get(level)).or(otherwise).cloned()
                 }
                 Some(WrappedValue::Factor(factor)) => value_of(factor).map(level_as_written),
             },
@@ -168,7 +177,7 @@ pub(super) fn schema_of(kind: StudyKind) -> Value {
     schema.to_value()
 }
 
-/// Lets every value below `schema` be plain, `{value, why}`, `{factor, why}` or `{by, values, why}`.
+/// Lets every value below `schema` be plain, `{value, why}`, `{factor, why}` or `{by, values, otherwise, why}`.
 fn wrap_values(schema: &mut Map<String, Value>) {
     let Some(Value::Object(properties)) = schema.get_mut("properties") else { return };
     for property in properties.values_mut() {
@@ -205,6 +214,7 @@ fn wrap_values(schema: &mut Map<String, Value>) {
                     "properties": {
                         "by": { "type": "string", "description": "The factor that decides." },
                         "values": { "type": "object", "additionalProperties": plain },
+                        "otherwise": plain,
                         "why": why,
                     },
                     "required": ["by", "values"],

@@ -7,8 +7,9 @@ use super::experiment::{Assumption, Experiment, Meanings};
 use super::faults::{Faults, step};
 use super::inputs::{InputFiles, Inputs, WrittenIn, joined, normalised};
 use super::parameters::WrappedValue;
+use super::pinned::Pins;
 use super::worlds::UsedWorld;
-use super::{lint, overrides, published, schema};
+use super::{lint, overrides, published, schema, settings};
 use crate::digest::MeaningDigest;
 use crate::document::{Diagnostic, Node, Parsed, Source, parse_tree_by, read};
 use crate::geometry::Pose;
@@ -34,16 +35,20 @@ pub fn resolve(
     inputs: &dyn Inputs,
 ) -> Result<(Experiment, Vec<Diagnostic>), Vec<Diagnostic>> {
     let mut tree = read(source)?;
+    let mut files = InputFiles::new(inputs);
+    settings::underlay(&mut tree, overrides, &mut files)?;
     overrides::apply(&mut tree, overrides)?;
     // The study says which parameters there are; one that is not known is told by the schema.
     let kind = tree.root.get("study").and_then(Node::scalar_text);
     let kind = StudyKind::ALL.into_iter().find(|k| kind.as_deref() == Some(k.name()));
     let Parsed { value: doc, tree } = parse_tree_by::<ManifestDoc>(tree, &schema(kind))?;
+    let mut faults = Faults::new(&tree);
     let mut resolver = Resolver {
         doc: &doc,
         folder: &source.name,
-        faults: Faults::new(&tree),
-        files: InputFiles::new(inputs),
+        pins: Pins::read(&doc.pinned, &mut faults),
+        faults,
+        files,
         factors: Vec::new(),
         robots: BTreeMap::new(),
         worlds: BTreeMap::new(),
@@ -91,6 +96,7 @@ pub(super) struct Resolver<'a> {
     /// Name of the manifest, which relative paths are shown beside.
     folder: &'a str,
     pub(super) faults: Faults<'a>,
+    pub(super) pins: Pins,
     pub(super) files: InputFiles<'a>,
     pub(super) factors: Vec<Factor>,
     robots: BTreeMap<(String, WrittenIn), Known<Robot>>,
@@ -124,7 +130,11 @@ impl Resolver<'_> {
         for condition in conditions {
             resolved.extend(self.condition(condition));
         }
-        self.check_licenses();
+        if !self.faults.any_error() {
+            // What names a file, a map its image, may itself be what is missing.
+            self.check_licenses();
+            self.check_pins();
+        }
         let (mut cells, mut meanings, mut described) = (Vec::new(), Vec::new(), Vec::new());
         for (condition, setup, meaning, description) in resolved {
             cells.push((condition, setup));
@@ -187,14 +197,19 @@ impl Resolver<'_> {
         for wrapped in self.doc.parameters.wrapped(self.doc.study) {
             let value = match wrapped.value {
                 WrappedValue::Plain(value) => value.clone(),
-                WrappedValue::By { factor, values } => {
+                WrappedValue::By { factor, values, otherwise } => {
                     let by = format!("{}/by", wrapped.pointer);
                     let found = self.faults.check_factor(&self.factors, factor, &by, false);
                     if let Some(found) = found {
                         let place = format!("{}/values", wrapped.pointer);
-                        self.faults.check_levels(values.keys(), found, &place);
+                        let complete = otherwise.is_none();
+                        self.faults.check_levels(values.keys(), found, &place, complete);
                     }
-                    json!({ "by": factor, "values": values })
+                    let mut value = json!({ "by": factor, "values": values });
+                    if let Some(otherwise) = otherwise {
+                        value["otherwise"] = otherwise.clone();
+                    }
+                    value
                 }
                 WrappedValue::Factor(factor) => {
                     let place = format!("{}/factor", wrapped.pointer);
@@ -304,7 +319,8 @@ impl Resolver<'_> {
             Choice::By(By { by, values }) => {
                 let place = format!("{pointer}/by");
                 let factor = self.faults.check_factor(&self.factors, by, &place, false)?;
-                self.faults.check_levels(values.keys(), factor, &format!("{pointer}/values"));
+                let place = format!("{pointer}/values");
+                self.faults.check_levels(values.keys(), factor, &place, true);
                 let level = condition.value(by)?;
                 let pointer = step(&format!("{pointer}/values"), level);
                 self.choose(values.get(level)?, &pointer, condition)
@@ -316,29 +332,6 @@ impl Resolver<'_> {
     pub(super) fn bytes(&mut self, path: &str, pointer: &str) -> Option<Arc<[u8]>> {
         let written_in = self.faults.written_in(pointer);
         self.bytes_of(&normalised(path), written_in, path, pointer)
-    }
-
-    pub(super) fn bytes_of(
-        &mut self,
-        normalised: &str,
-        written_in: WrittenIn,
-        path: &str,
-        pointer: &str,
-    ) -> Option<Arc<[u8]>> {
-        match self.files.read(normalised, written_in) {
-            Ok(bytes) => Some(bytes),
-            Err(reason) => {
-                let fault = self.faults.fault(pointer, format!("cannot read `{path}`"));
-                let help = match written_in {
-                    WrittenIn::Manifest => "paths are relative to the file they are written in",
-                    WrittenIn::CommandLine | WrittenIn::Calibration => {
-                        "paths in `--set` are relative to the current directory"
-                    }
-                };
-                self.faults.push(fault.label(reason).help(help));
-                None
-            }
-        }
     }
 
     /// The text of the file `path`, written at `pointer`.
@@ -403,5 +396,15 @@ impl Resolver<'_> {
             .label("not a start of the world");
         self.faults.push(fault.help(known_or_near(name, &known)));
         None
+    }
+}
+
+/// What paths are relative to, in words.
+pub(super) fn relative_to(written_in: WrittenIn) -> &'static str {
+    match written_in {
+        WrittenIn::Manifest => "paths are relative to the file they are written in",
+        WrittenIn::CommandLine | WrittenIn::Calibration => {
+            "paths in `--set` are relative to the current directory"
+        }
     }
 }

@@ -129,6 +129,11 @@ impl Resolver<'_> {
                 return None;
             }
         };
+        if world.missing() > 0 {
+            let message = format!("`{file}` is incomplete (things missing: {})", world.missing());
+            let fault = self.faults.fault(pointer, message);
+            self.faults.push(fault.label("nothing sees or touches them").warning());
+        }
         for warning in &world.warnings {
             let fault = self.faults.fault(pointer, warning.clone()).label("in this world");
             self.faults.push(fault.warning());

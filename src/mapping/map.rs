@@ -1,7 +1,7 @@
 //! Hits and visits per cell, and the occupancy they mean.
 
 use crate::geometry::{Bounds, Point, Pose};
-use crate::grid::{Cell, Grid, GridFrame, Occupancy, OccupancyGrid, line};
+use crate::grid::{Cell, Grid, GridFrame, Occupancy, OccupancyGrid};
 use crate::robot::Scan;
 
 /// How a scan is taken into the map.
@@ -101,14 +101,7 @@ impl OccupancyMap {
         let frame = *self.grid.frame();
         let from = frame.cell_at(sensor.position());
         for (end, is_hit) in ends {
-            let to = frame.cell_at(end);
-            for cell in line(from, to) {
-                if cell != to {
-                    self.visit(cell, false);
-                } else if is_hit {
-                    self.visit(cell, true);
-                }
-            }
+            self.beam(from, frame.cell_at(end), is_hit);
         }
         // A cell may have changed back and forth within the scan: its first report tells what it held before
         // (sorting is stable), and only what is different in the end is told.
@@ -123,15 +116,56 @@ impl OccupancyMap {
         &self.changes
     }
 
-    fn visit(&mut self, cell: Cell, is_hit: bool) {
-        let Some(index) = self.grid.frame().index(cell) else { return };
+    /// Visits the cells of the line `from` .. `to`, its end only where that is a hit. Both are within the grid, and so is
+    /// what lies between; the walk is that of [`crate::grid::line`], over indices.
+    fn beam(&mut self, from: Cell, to: Cell, is_hit: bool) {
+        let frame = *self.grid.frame();
+        let (Some(mut index), Some(_)) = (frame.index(from), frame.index(to)) else { return };
+        let (dx, dy) = ((to.x - from.x).abs(), -(to.y - from.y).abs());
+        let aside = if to.x < from.x { -1 } else { 1 };
+        let width = isize::try_from(frame.width).unwrap_or(0);
+        let up = if to.y < from.y { -width } else { width };
+        let mut error = dx + dy;
+        for _ in 0..dx.max(-dy) {
+            self.pass(index);
+            let doubled = 2 * error;
+            if doubled >= dy {
+                error += dy;
+                index = index.wrapping_add_signed(aside);
+            }
+            if doubled <= dx {
+                error += dx;
+                index = index.wrapping_add_signed(up);
+            }
+        }
+        if is_hit {
+            self.visit(index, true);
+        }
+    }
+
+    /// Visits a cell without a hit.
+    fn pass(&mut self, index: usize) {
+        let count = &mut self.counts.values_mut()[index];
+        // Most cells: never hit, and known to be free since the first visit.
+        if count.hits == 0 && count.visits > 0 {
+            count.visits = count.visits.saturating_add(1);
+        } else {
+            self.visit(index, false);
+        }
+    }
+
+    fn visit(&mut self, index: usize, is_hit: bool) {
         let count = &mut self.counts.values_mut()[index];
         count.visits = count.visits.saturating_add(1);
         count.hits = count.hits.saturating_add(u16::from(is_hit));
-        let ratio = f64::from(count.hits) / f64::from(count.visits);
-        let now = if ratio > self.rule.hit_ratio { Occupancy::Occupied } else { Occupancy::Free };
-        let was = std::mem::replace(&mut self.grid.values_mut()[index], now);
+        let is_occupied =
+            count.hits > 0 && f64::from(count.hits) / f64::from(count.visits) > self.rule.hit_ratio;
+        let now = if is_occupied { Occupancy::Occupied } else { Occupancy::Free };
+        let value = &mut self.grid.values_mut()[index];
+        let was = *value;
         if was != now {
+            *value = now;
+            let cell = self.grid.frame().cell_of(index);
             let lattice = Cell::new(cell.x + self.offset.x, cell.y + self.offset.y);
             self.changes.push(Change { cell: lattice, from: was, to: now });
         }

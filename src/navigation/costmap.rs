@@ -1,39 +1,71 @@
 //! A grid of traversal costs.
 
-use crate::grid::{Cell, Grid, GridFrame};
+use crate::grid::{Cell, GridFrame};
 
 /// Cost of entering each cell: 0 free of danger, up to 100 an obstacle; unknown cells have none.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CostGrid {
-    costs: Grid<u8>,
+    frame: GridFrame,
+    /// Row by row from the lower left, with one row or column of unknown cells around, so that what spreads over cells
+    /// need not ask where the grid ends.
+    costs: Vec<u8>,
 }
 
-/// Stored for unknown cells.
-const UNKNOWN: u8 = 255;
+/// Stored for unknown cells: more than any cost, so that it is never below one.
+pub(super) const UNKNOWN: u8 = 255;
 
 impl CostGrid {
     /// A grid of unknown cells.
     pub fn unknown(frame: GridFrame) -> Self {
-        Self { costs: Grid::filled(frame, UNKNOWN) }
+        Self { frame, costs: vec![UNKNOWN; padded_len(&frame)] }
     }
 
     /// Where the grid lies.
     pub fn frame(&self) -> &GridFrame {
-        self.costs.frame()
+        &self.frame
     }
 
     /// The cost (0 to 100) of `cell`, or `None` where it is unknown or outside.
     pub fn cost(&self, cell: Cell) -> Option<u8> {
-        self.costs.get(cell).filter(|&cost| cost != UNKNOWN)
+        let index = padded_index(&self.frame, cell)?;
+        Some(self.costs[index]).filter(|&cost| cost != UNKNOWN)
     }
 
-    /// Sets the cost (0 to 100) of `cell`.
+    /// Sets the cost (0 to 100) of `cell`; outside of the grid nothing happens.
     pub fn set(&mut self, cell: Cell, cost: u8) {
-        self.costs.set(cell, cost);
+        if let Some(index) = padded_index(&self.frame, cell) {
+            self.costs[index] = cost;
+        }
     }
 
     /// Whether `cell` is known and cheaper than `lethal`.
     pub fn is_below(&self, cell: Cell, lethal: u8) -> bool {
         self.cost(cell).is_some_and(|cost| cost < lethal)
     }
+
+    /// All costs, padded.
+    pub(super) fn padded(&self) -> &[u8] {
+        &self.costs
+    }
+
+    /// All costs, padded.
+    pub(super) fn padded_mut(&mut self) -> &mut [u8] {
+        &mut self.costs
+    }
+}
+
+/// Number of cells with the padding.
+pub(super) fn padded_len(frame: &GridFrame) -> usize {
+    padded_width(frame) * (usize::try_from(frame.height).unwrap_or(0) + 2)
+}
+
+/// Cells of a row with the padding.
+pub(super) fn padded_width(frame: &GridFrame) -> usize {
+    usize::try_from(frame.width).unwrap_or(0) + 2
+}
+
+/// Index of `cell` among the padded ones, or `None` outside of the grid.
+pub(super) fn padded_index(frame: &GridFrame, cell: Cell) -> Option<usize> {
+    #[expect(clippy::cast_sign_loss, reason = "contained cells are not negative")]
+    frame.contains(cell).then(|| (cell.y as usize + 1) * padded_width(frame) + cell.x as usize + 1)
 }

@@ -1,53 +1,73 @@
 //! Obstacles inflated over the free cells around them.
 
 use super::CostGrid;
-use crate::grid::{Cell, Occupancy, OccupancyGrid};
+use super::costmap::{UNKNOWN, padded_width};
+use crate::grid::{Occupancy, OccupancyGrid};
 
 /// The map with costs that fall from 100 at obstacles to 0 at `radius` cells: trunc(100 (1 - d / radius)), d
 /// the distance in cells to the obstacle that reached the cell first over free cells. Unknown cells are
 /// neither inflated nor crossed (prior-map facts, section 4, "Inflation").
 pub fn inflate(map: &OccupancyGrid, radius: u32) -> CostGrid {
     let frame = *map.frame();
-    let mut costs = CostGrid::unknown(frame);
-    // A brushfire: every cell remembers the obstacle its fire came from.
-    let mut front: Vec<(Cell, Cell)> = Vec::new();
-    for (index, &value) in map.values().iter().enumerate() {
-        let cell = frame.cell_of(index);
-        match value {
-            Occupancy::Occupied => {
-                costs.set(cell, 100);
-                front.push((cell, cell));
-            }
-            Occupancy::Free => costs.set(cell, 0),
-            Occupancy::Unknown => {}
+    let mut grid = CostGrid::unknown(frame);
+    let width = padded_width(&frame);
+    let costs = grid.padded_mut();
+    // A brushfire: every cell of its front remembers how far it is from the obstacle its fire came from.
+    let mut front: Vec<Fire> = Vec::new();
+    for (y, row) in map.values().chunks((width - 2).max(1)).enumerate() {
+        let first = (y + 1) * width + 1;
+        for (cost, value) in costs[first..].iter_mut().zip(row) {
+            *cost = match value {
+                Occupancy::Occupied => 100,
+                Occupancy::Free => 0,
+                Occupancy::Unknown => UNKNOWN,
+            };
+        }
+        for (x, _) in row.iter().enumerate().filter(|(_, value)| **value == Occupancy::Occupied) {
+            front.push(Fire { index: first + x, dx: 0, dy: 0 });
         }
     }
     let reach = i64::from(radius) * i64::from(radius);
-    let table: Vec<u8> = (0..=reach).map(|squared| cost_at(squared, radius)).collect();
+    let table: Vec<u8> = (0..reach).map(|squared| cost_at(squared, radius)).collect();
     let mut next = Vec::new();
     while !front.is_empty() {
-        for &(cell, source) in &front {
-            for neighbour in cell.neighbours4() {
-                let squared = neighbour.distance_squared(source);
-                if squared >= reach {
-                    continue;
-                }
-                #[expect(
-                    clippy::cast_possible_truncation,
-                    clippy::cast_sign_loss,
-                    reason = "below reach"
-                )]
-                let cost = table[squared as usize];
-                if costs.cost(neighbour).is_some_and(|known| known < cost) {
-                    costs.set(neighbour, cost);
-                    next.push((neighbour, source));
+        for &Fire { index, dx, dy } in &front {
+            let neighbours = [
+                Fire { index: index + 1, dx: dx + 1, dy },
+                Fire { index: index + width, dx, dy: dy + 1 },
+                Fire { index: index - 1, dx: dx - 1, dy },
+                Fire { index: index - width, dx, dy: dy - 1 },
+            ];
+            for fire in neighbours {
+                // Beyond the table lies what is out of reach.
+                let Some(&cost) = table.get(fire.squared()) else { continue };
+                // Unknown cells hold more than any cost.
+                if costs[fire.index] < cost {
+                    costs[fire.index] = cost;
+                    next.push(fire);
                 }
             }
         }
         front.clear();
         std::mem::swap(&mut front, &mut next);
     }
-    costs
+    grid
+}
+
+/// A cell that a fire has come to: its padded index, and how many cells it is from where the fire began.
+#[derive(Debug, Clone, Copy)]
+struct Fire {
+    index: usize,
+    dx: i32,
+    dy: i32,
+}
+
+impl Fire {
+    fn squared(self) -> usize {
+        #[expect(clippy::cast_sign_loss, reason = "a sum of squares")]
+        let squared = (self.dx * self.dx + self.dy * self.dy) as usize;
+        squared
+    }
 }
 
 fn cost_at(squared_distance: i64, radius: u32) -> u8 {
@@ -62,7 +82,54 @@ fn cost_at(squared_distance: i64, radius: u32) -> u8 {
 mod tests {
     use super::*;
     use crate::geometry::Point;
-    use crate::grid::GridFrame;
+    use crate::grid::{Cell, GridFrame};
+    use proptest::prelude::*;
+
+    /// The brushfire as its description reads, cell by cell.
+    fn by_the_book(map: &OccupancyGrid, radius: u32) -> Vec<Option<u8>> {
+        let mut costs = CostGrid::unknown(*map.frame());
+        let mut front = Vec::new();
+        for cell in map.frame().cells() {
+            match map.at(cell) {
+                Occupancy::Occupied => {
+                    costs.set(cell, 100);
+                    front.push((cell, cell));
+                }
+                Occupancy::Free => costs.set(cell, 0),
+                Occupancy::Unknown => {}
+            }
+        }
+        while !front.is_empty() {
+            let mut next = Vec::new();
+            for (cell, source) in front {
+                for neighbour in cell.neighbours4() {
+                    let cost = cost_at(neighbour.distance_squared(source), radius);
+                    if costs.cost(neighbour).is_some_and(|known| known < cost) {
+                        costs.set(neighbour, cost);
+                        next.push((neighbour, source));
+                    }
+                }
+            }
+            front = next;
+        }
+        map.frame().cells().map(|cell| costs.cost(cell)).collect()
+    }
+
+    proptest! {
+        #[test]
+        fn equals_the_book(raw in prop::collection::vec(0_u8..9, 240), radius in 1_u32..12) {
+            let frame = GridFrame { resolution: 0.1, origin: Point::ZERO, width: 20, height: 12 };
+            let cells = raw.iter().map(|&v| match v {
+                0 => Occupancy::Occupied,
+                1 | 2 => Occupancy::Unknown,
+                _ => Occupancy::Free,
+            });
+            let map = OccupancyGrid::from_cells(frame, cells.collect());
+            let costs = inflate(&map, radius);
+            let found: Vec<_> = frame.cells().map(|cell| costs.cost(cell)).collect();
+            prop_assert_eq!(found, by_the_book(&map, radius));
+        }
+    }
 
     #[test]
     fn clearances_are_those_of_the_released_program() {

@@ -54,8 +54,10 @@ pub struct LocalMap {
     shifted: Vec<Seen>,
     /// Squared distance in cells to the nearest obstacle, capped.
     clearance: Vec<u16>,
-    /// Offsets of the disc an obstacle is felt in, with their squared distance.
-    disc: Vec<(i32, i32, u16)>,
+    /// Rows of the disc an obstacle is felt in: how far up, and the squared distances from left to right.
+    disc: Vec<(i32, Vec<u16>)>,
+    /// Distance (m) of a squared distance in cells, as far as the disc reaches.
+    metres: Vec<f64>,
     ends: Vec<Cell>,
     ranges: Vec<f64>,
 }
@@ -70,11 +72,14 @@ impl LocalMap {
         };
         let side = count(rule.size);
         let reach = count(rule.inflation_radius);
+        let squared = |x: i32, y: i32| u16::try_from(x * x + y * y).unwrap_or(u16::MAX);
         let disc = (-reach..=reach)
-            .flat_map(|y| (-reach..=reach).map(move |x| (x, y)))
-            .filter(|(x, y)| x * x + y * y <= reach * reach)
-            .map(|(x, y)| (x, y, u16::try_from(x * x + y * y).unwrap_or(u16::MAX)))
+            .map(|y| {
+                let half = (reach * reach - y * y).isqrt();
+                (y, (-half..=half).map(|x| squared(x, y)).collect())
+            })
             .collect();
+        let metres = (0..=squared(reach, 0)).map(|s| f64::from(s).sqrt() * rule.resolution);
         let cells =
             GridFrame { resolution: 1.0, origin: Point::ZERO, width: side, height: side }.len();
         Self {
@@ -85,6 +90,7 @@ impl LocalMap {
             shifted: Vec::new(),
             clearance: vec![u16::MAX; cells],
             disc,
+            metres: metres.collect(),
             ends: Vec::new(),
             ranges: Vec::new(),
         }
@@ -129,8 +135,10 @@ impl LocalMap {
         match self.seen[index] {
             Seen::Unknown => None,
             Seen::Obstacle => Some(0.0),
-            Seen::Free if self.clearance[index] == u16::MAX => Some(self.rule.inflation_radius),
-            Seen::Free => Some(f64::from(self.clearance[index]).sqrt() * self.rule.resolution),
+            Seen::Free => {
+                let metres = self.metres.get(usize::from(self.clearance[index]));
+                Some(metres.copied().unwrap_or(self.rule.inflation_radius))
+            }
         }
     }
 
@@ -211,10 +219,27 @@ impl LocalMap {
                 if self.seen[index] != Seen::Obstacle {
                     continue;
                 }
-                for &(dx, dy, squared) in &self.disc {
-                    let cell = Cell::new(x + dx + self.corner.x, y + dy + self.corner.y);
-                    if let Some(near) = self.index(cell) {
-                        self.clearance[near] = self.clearance[near].min(squared);
+                for (dy, squared) in &self.disc {
+                    let row = y + dy;
+                    if !(0..self.side).contains(&row) {
+                        continue;
+                    }
+                    #[expect(
+                        clippy::cast_possible_truncation,
+                        clippy::cast_possible_wrap,
+                        reason = "few cells"
+                    )]
+                    let half = (squared.len() / 2) as i32;
+                    let (from, to) = ((x - half).max(0), (x + half).min(self.side - 1));
+                    #[expect(clippy::cast_sign_loss, reason = "inside")]
+                    let (first, skipped, count) = (
+                        (row * self.side + from) as usize,
+                        (from - (x - half)) as usize,
+                        (to - from + 1) as usize,
+                    );
+                    let felt = &mut self.clearance[first..first + count];
+                    for (here, there) in felt.iter_mut().zip(&squared[skipped..]) {
+                        *here = (*here).min(*there);
                     }
                 }
             }

@@ -1,7 +1,9 @@
 //! Distances to a goal over the inflated map, and the way down.
 
 use super::CostGrid;
-use crate::grid::{Cell, Grid};
+use super::costmap::{padded_index, padded_len, padded_width};
+use crate::grid::Cell;
+use std::sync::Arc;
 
 /// Value of cells the wave did not reach.
 pub const UNREACHED: u32 = u32::MAX;
@@ -10,11 +12,26 @@ pub const UNREACHED: u32 = u32::MAX;
 const STRAIGHT: u32 = 10;
 const DIAGONAL: u32 = 14;
 
-/// Weighted distances from every cell to one goal (Dijkstra 1959, with the buckets of Dial 1969), 8-connected
-/// over known cells below a lethal cost: a step costs its length x (1 + weight x cost / 100).
+/// Weighted distances from cells to one goal (Dijkstra 1959, with the buckets of Dial 1969), 8-connected over known cells
+/// below a lethal cost: a step costs its length x (1 + weight x cost / 100).
+///
+/// The wave spreads only as far as someone asks. What it tells does not depend on that: a distance is told once it is final.
 #[derive(Debug, Clone)]
 pub struct Wavefront {
-    distances: Grid<u32>,
+    costs: Arc<CostGrid>,
+    lethal: u8,
+    /// Padded as the costs are; final where below `level`.
+    distances: Vec<u32>,
+    /// What a step into a cell of each cost takes, straight and diagonally.
+    straight: Vec<u32>,
+    diagonal: Vec<u32>,
+    /// Cells (padded indices) by their distance at the time, modulo the number of buckets.
+    buckets: Vec<Vec<u32>>,
+    /// Cells that have a distance, to be forgotten when the memory is used again.
+    reached: Vec<u32>,
+    /// Cells in all buckets.
+    waiting: usize,
+    level: u32,
     /// Wave units per metre of plain length.
     units_per_metre: f64,
 }
@@ -22,12 +39,19 @@ pub struct Wavefront {
 impl Wavefront {
     /// The wave from `goal` over `costs`, crossing cells cheaper than `lethal`. Where the goal itself is not
     /// crossable, all crossable cells in the 11-cell box around it are seeds instead.
-    pub fn from_goal(costs: &CostGrid, goal: Cell, lethal: u8, weight: f64) -> Self {
+    pub fn from_goal(costs: Arc<CostGrid>, goal: Cell, lethal: u8, weight: f64) -> Self {
+        Self::instead_of(None, costs, goal, lethal, weight)
+    }
+
+    /// The same, in the memory of an earlier wave where that has the size.
+    pub fn instead_of(
+        earlier: Option<Self>,
+        costs: Arc<CostGrid>,
+        goal: Cell,
+        lethal: u8,
+        weight: f64,
+    ) -> Self {
         let frame = *costs.frame();
-        let mut wave = Self {
-            distances: Grid::filled(frame, UNREACHED),
-            units_per_metre: f64::from(STRAIGHT) * FINE / frame.resolution,
-        };
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
@@ -36,82 +60,142 @@ impl Wavefront {
         let step = |plain: u32, cost: u8| {
             (f64::from(plain) * FINE * (1.0 + weight * f64::from(cost) / 100.0)).round() as u32
         };
-        let straight: Vec<u32> = (0..=100).map(|cost| step(STRAIGHT, cost)).collect();
         let diagonal: Vec<u32> = (0..=100).map(|cost| step(DIAGONAL, cost)).collect();
-        let mut buckets = vec![Vec::new(); diagonal[100] as usize + 1];
-        let mut waiting = 0_usize;
-        if costs.is_below(goal, lethal) {
-            wave.distances.set(goal, 0);
-            buckets[0].push(goal);
-            waiting = 1;
+        let distances = match earlier {
+            Some(mut earlier) if earlier.distances.len() == padded_len(&frame) => {
+                for index in earlier.reached {
+                    earlier.distances[index as usize] = UNREACHED;
+                }
+                earlier.distances
+            }
+            _ => vec![UNREACHED; padded_len(&frame)],
+        };
+        let mut wave = Self {
+            distances,
+            reached: Vec::new(),
+            straight: (0..=100).map(|cost| step(STRAIGHT, cost)).collect(),
+            buckets: vec![Vec::new(); diagonal[100] as usize + 1],
+            diagonal,
+            waiting: 0,
+            level: 0,
+            units_per_metre: f64::from(STRAIGHT) * FINE / frame.resolution,
+            lethal,
+            costs,
+        };
+        if wave.costs.is_below(goal, lethal) {
+            wave.seed(goal);
         } else {
             for y in goal.y - 5..=goal.y + 5 {
                 for x in goal.x - 5..=goal.x + 5 {
-                    let cell = Cell::new(x, y);
-                    if costs.is_below(cell, lethal) {
-                        wave.distances.set(cell, 0);
-                        buckets[0].push(cell);
-                        waiting += 1;
-                    }
+                    wave.seed(Cell::new(x, y));
                 }
             }
-        }
-        let mut distance = 0_u32;
-        let mut current = Vec::new();
-        while waiting > 0 {
-            let slot = distance as usize % buckets.len();
-            std::mem::swap(&mut current, &mut buckets[slot]);
-            waiting -= current.len();
-            for cell in current.drain(..) {
-                if wave.distance(cell) != distance {
-                    continue; // reached more cheaply since
-                }
-                for (i, neighbour) in cell.neighbours8().into_iter().enumerate() {
-                    let Some(cost) = costs.cost(neighbour).filter(|&cost| cost < lethal) else {
-                        continue;
-                    };
-                    let steps = if i % 2 == 0 { &straight } else { &diagonal };
-                    let through = distance + steps[usize::from(cost)];
-                    if through < wave.distance(neighbour) {
-                        wave.distances.set(neighbour, through);
-                        let slot = through as usize % buckets.len();
-                        buckets[slot].push(neighbour);
-                        waiting += 1;
-                    }
-                }
-            }
-            distance += 1;
         }
         wave
     }
 
-    /// Distance of `cell` in wave units; [`UNREACHED`] where the wave did not come.
-    pub fn distance(&self, cell: Cell) -> u32 {
-        self.distances.get(cell).unwrap_or(UNREACHED)
+    fn seed(&mut self, cell: Cell) {
+        if let Some(index) = self.crossable(cell) {
+            self.reach(index, 0);
+        }
     }
 
-    /// Weighted distance of `cell` from the goal (m), or `None` where the wave did not come.
-    pub fn metres(&self, cell: Cell) -> Option<f64> {
+    /// The padded index of `cell` where it can be crossed.
+    fn crossable(&self, cell: Cell) -> Option<usize> {
+        let index = padded_index(self.costs.frame(), cell)?;
+        (self.costs.padded()[index] < self.lethal).then_some(index)
+    }
+
+    fn reach(&mut self, index: usize, distance: u32) {
+        let number = u32::try_from(index).unwrap_or(u32::MAX);
+        if std::mem::replace(&mut self.distances[index], distance) == UNREACHED {
+            self.reached.push(number);
+        }
+        let slot = distance as usize % self.buckets.len();
+        self.buckets[slot].push(number);
+        self.waiting += 1;
+    }
+
+    /// Spreads the wave by one unit of distance.
+    fn spread(&mut self) {
+        let width = padded_width(self.costs.frame());
+        let costs = Arc::clone(&self.costs);
+        let costs = costs.padded();
+        let slot = self.level as usize % self.buckets.len();
+        let mut current = std::mem::take(&mut self.buckets[slot]);
+        self.waiting -= current.len();
+        for index in current.drain(..) {
+            let index = index as usize;
+            if self.distances[index] != self.level {
+                continue; // reached more cheaply since
+            }
+            let straight = [index + 1, index + width, index - 1, index - width];
+            for next in straight {
+                self.step(next, costs[next], false);
+            }
+            let diagonal =
+                [index + width + 1, index + width - 1, index - width - 1, index - width + 1];
+            for next in diagonal {
+                self.step(next, costs[next], true);
+            }
+        }
+        // Every step is longer than nothing, so that nothing was added to the bucket; its memory is used again.
+        self.buckets[slot] = current;
+        self.level += 1;
+    }
+
+    fn step(&mut self, next: usize, cost: u8, is_diagonal: bool) {
+        // Unknown cells, and those around the grid, cost more than anything lethal.
+        if cost < self.lethal {
+            let steps = if is_diagonal { &self.diagonal } else { &self.straight };
+            let through = self.level + steps[usize::from(cost)];
+            if through < self.distances[next] {
+                self.reach(next, through);
+            }
+        }
+    }
+
+    /// Distance of `cell` in wave units; [`UNREACHED`] where the wave does not come.
+    pub fn distance(&mut self, cell: Cell) -> u32 {
+        let Some(index) = self.crossable(cell) else { return UNREACHED };
+        while self.distances[index] >= self.level && self.waiting > 0 {
+            self.spread();
+        }
+        self.distances[index]
+    }
+
+    /// Weighted distance of `cell` from the goal (m), or `None` where the wave does not come.
+    pub fn metres(&mut self, cell: Cell) -> Option<f64> {
         match self.distance(cell) {
             UNREACHED => None,
             units => Some(f64::from(units) / self.units_per_metre),
         }
     }
 
-    /// The nearest neighbour downhill of `cell`, or `None` at the goal and where the wave did not come.
-    pub fn downhill(&self, cell: Cell) -> Option<Cell> {
+    /// Whether the wave comes to `cell`.
+    pub fn reaches(&mut self, cell: Cell) -> bool {
+        let Some(index) = self.crossable(cell) else { return false };
+        while self.distances[index] == UNREACHED && self.waiting > 0 {
+            self.spread();
+        }
+        self.distances[index] != UNREACHED
+    }
+
+    /// The nearest neighbour downhill of `cell`, or `None` at the goal and where the wave does not come.
+    pub fn downhill(&mut self, cell: Cell) -> Option<Cell> {
         let here = self.distance(cell);
+        // Whatever is nearer than a final distance is final too.
         cell.neighbours8()
             .into_iter()
-            .map(|n| (self.distance(n), n))
+            .filter_map(|n| Some((self.distances[padded_index(self.costs.frame(), n)?], n)))
             .filter(|&(distance, _)| distance < here)
             .min_by_key(|&(distance, _)| distance)
             .map(|(_, neighbour)| neighbour)
     }
 
-    /// The way from `start` down to the goal, both included; empty where the wave did not come.
-    pub fn path(&self, start: Cell) -> Vec<Cell> {
-        if self.distance(start) == UNREACHED {
+    /// The way from `start` down to the goal, both included; empty where the wave does not come.
+    pub fn path(&mut self, start: Cell) -> Vec<Cell> {
+        if !self.reaches(start) {
             return Vec::new();
         }
         std::iter::successors(Some(start), |&cell| self.downhill(cell)).collect()
@@ -139,7 +223,7 @@ mod tests {
 
     #[test]
     fn open_ground_has_plain_distances() {
-        let wave = Wavefront::from_goal(&open(20, 20), Cell::new(2, 2), 75, 10.0);
+        let mut wave = Wavefront::from_goal(Arc::new(open(20, 20)), Cell::new(2, 2), 75, 10.0);
         assert_eq!(wave.metres(Cell::new(12, 2)), Some(1.0));
         assert!((wave.metres(Cell::new(12, 12)).unwrap() - 1.4).abs() < 1e-9);
         assert_eq!(wave.path(Cell::new(5, 5)).len(), 4);
@@ -152,7 +236,8 @@ mod tests {
         for y in 2..7 {
             costs.set(Cell::new(10, y), 70);
         }
-        let wave = Wavefront::from_goal(&costs, Cell::new(18, 4), 75, 10.0);
+        let costs = Arc::new(costs);
+        let mut wave = Wavefront::from_goal(Arc::clone(&costs), Cell::new(18, 4), 75, 10.0);
         let path = wave.path(Cell::new(2, 4));
         assert!(path.iter().all(|&cell| costs.cost(cell) == Some(0)), "{path:?}");
     }
@@ -161,30 +246,80 @@ mod tests {
     fn a_blocked_goal_is_approached_and_a_walled_one_is_not_reached() {
         let mut costs = open(30, 30);
         costs.set(Cell::new(15, 15), 100);
-        let wave = Wavefront::from_goal(&costs, Cell::new(15, 15), 75, 10.0);
+        let mut wave = Wavefront::from_goal(Arc::new(costs.clone()), Cell::new(15, 15), 75, 10.0);
         assert_eq!(wave.distance(Cell::new(12, 12)), 0);
         for x in 0..30 {
             costs.set(Cell::new(x, 5), 100);
         }
-        let wave = Wavefront::from_goal(&costs, Cell::new(15, 20), 75, 10.0);
+        let mut wave = Wavefront::from_goal(Arc::new(costs), Cell::new(15, 20), 75, 10.0);
         assert_eq!(wave.metres(Cell::new(15, 2)), None);
     }
 
+    /// Distances by relaxing every step until nothing changes (Bellman 1958).
+    fn by_relaxation(costs: &CostGrid, goal: Cell, lethal: u8) -> Vec<u32> {
+        let frame = *costs.frame();
+        let mut distances = crate::grid::Grid::filled(frame, UNREACHED);
+        distances.set(goal, 0);
+        loop {
+            let before = distances.clone();
+            for cell in frame.cells().filter(|&cell| costs.is_below(cell, lethal)) {
+                let factor = 1.0 + f64::from(costs.cost(cell).unwrap_or(0)) / 10.0;
+                for (i, from) in cell.neighbours8().into_iter().enumerate() {
+                    let Some(there) = distances.get(from).filter(|&d| d != UNREACHED) else {
+                        continue;
+                    };
+                    let plain = if i % 2 == 0 { 20.0 } else { 28.0 };
+                    #[expect(
+                        clippy::cast_possible_truncation,
+                        clippy::cast_sign_loss,
+                        reason = "small"
+                    )]
+                    let through = there + (plain * factor).round() as u32;
+                    if distances.get(cell).is_some_and(|here| through < here) {
+                        distances.set(cell, through);
+                    }
+                }
+            }
+            if distances == before {
+                return distances.values().to_vec();
+            }
+        }
+    }
+
     proptest! {
-        /// Every reached cell but the goal has a way down, and each step down costs what it should.
+        /// Whatever is asked in whatever order: distances are the least, and every reached cell has a way down.
         #[test]
-        fn paths_end_at_the_goal(walls in prop::collection::vec((0..15, 0..15, 0_u8..100), 0..80)) {
+        fn distances_are_the_least_and_paths_end_at_the_goal(
+            walls in prop::collection::vec((0..15, 0..15, 0_u8..100), 0..80),
+            asked in prop::collection::vec((0..15, 0..15, 0..3), 0..20),
+        ) {
             let mut costs = open(15, 15);
             for (x, y, cost) in walls {
                 costs.set(Cell::new(x, y), cost);
             }
             let goal = Cell::new(7, 7);
             costs.set(goal, 0);
-            let wave = Wavefront::from_goal(&costs, goal, 75, 10.0);
-            for cell in costs.frame().cells() {
-                if wave.distance(cell) != UNREACHED {
-                    prop_assert_eq!(wave.path(cell).last().copied(), Some(goal));
+            let least = by_relaxation(&costs, goal, 75);
+            let costs = Arc::new(costs);
+            let mut wave = Wavefront::from_goal(Arc::clone(&costs), goal, 75, 10.0);
+            for (x, y, how) in asked {
+                let cell = Cell::new(x, y);
+                let distance = least[costs.frame().index(cell).unwrap()];
+                match how {
+                    0 => prop_assert_eq!(wave.distance(cell), distance),
+                    1 => prop_assert_eq!(wave.reaches(cell), distance != UNREACHED),
+                    _ if distance == UNREACHED => prop_assert!(wave.path(cell).is_empty()),
+                    _ => prop_assert_eq!(wave.path(cell).last().copied(), Some(goal)),
                 }
+            }
+            for (index, &distance) in least.iter().enumerate() {
+                prop_assert_eq!(wave.distance(costs.frame().cell_of(index)), distance);
+            }
+            // In the same memory, to another goal.
+            let goal = Cell::new(2, 3);
+            let mut again = Wavefront::instead_of(Some(wave), Arc::clone(&costs), goal, 101, 10.0);
+            for (index, distance) in by_relaxation(&costs, goal, 101).into_iter().enumerate() {
+                prop_assert_eq!(again.distance(costs.frame().cell_of(index)), distance);
             }
         }
     }

@@ -26,7 +26,7 @@ pub const ENGINE_VERSION: &str = "1";
 /// | `trial` | number within the condition, from 0 |
 /// | `robot`, `world`, `prior` | digests of what they mean; `prior` is `null` where there is none |
 /// | `start` | x (m), y (m), heading (rad) |
-/// | `parameters` | the study's parameters, defaults written out |
+/// | `parameters` | the study's parameters, defaults written out but for those of parameters that came later |
 /// | `maneuvers` | deadline study: the calibrated times and failure probabilities that its planner uses |
 pub fn key_content(
     kind: StudyKind,

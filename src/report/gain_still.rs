@@ -3,7 +3,7 @@
 use crate::figure::svg::{Element, document, number};
 use crate::figure::{INK, PAPER, cell_runs};
 use crate::geometry::Point;
-use crate::grid::{Cell, GridFrame, Occupancy, OccupancyGrid, visible_cells};
+use crate::grid::{Cell, CellSet, GridFrame, Occupancy, OccupancyGrid, visible_runs};
 use crate::studies::recording::{Decision, Recording};
 
 /// Width of one panel, and the space between and around them (px).
@@ -140,11 +140,15 @@ impl Scene {
 
     /// The unknown cells in sight of the candidate past what is `blocking`.
     fn gain(&self, blocking: impl Fn(Cell) -> bool) -> Vec<Cell> {
+        let side = self.map.frame().width;
+        let high = Cell::new(side - 1, side - 1);
+        let blocked = CellSet::of_words(Cell::new(0, 0), high, |x, y| {
+            (0..64).fold(0, |word, bit| word | u64::from(blocking(Cell::new(x + bit, y))) << bit)
+        });
         let mut cells = Vec::new();
-        visible_cells(self.candidate, self.range, blocking, |cell| {
-            if self.map.at(cell) == Occupancy::Unknown {
-                cells.push(cell);
-            }
+        visible_runs(self.candidate, self.range, &blocked, |run| {
+            let seen = (run.from..=run.to).map(|along| run.cell(along));
+            cells.extend(seen.filter(|&cell| self.map.at(cell) == Occupancy::Unknown));
         });
         cells
     }

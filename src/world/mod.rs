@@ -21,6 +21,9 @@ use crate::json;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
+/// How a warning of something that could not be read ends.
+const MISSING: &str = " missing";
+
 /// A building: everything a robot can see, touch or be told to reach.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -84,6 +87,11 @@ impl World {
         names.sort_unstable();
         names.dedup();
         names
+    }
+
+    /// How many things of the file could not be read and so do not stand here; each has its warning.
+    pub fn missing(&self) -> usize {
+        self.warnings.iter().filter(|warning| warning.ends_with(MISSING)).count()
     }
 
     /// Outlines of everything cut by the plane at height `z` (m): what a lidar at that height sees.

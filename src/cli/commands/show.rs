@@ -1,10 +1,12 @@
 //! `reenact show`: draw an input and say what was understood.
 
-use crate::cli::args::{FamilyArg, ShowArgs};
+use crate::cli::args::{DerivedArg, FamilyArg, ShowArgs};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::load;
 use crate::cli::terminal::Terminal;
-use crate::report::show;
+use crate::document::Diagnostic;
+use crate::geometry::Point;
+use crate::report::show::{self, Derived, Drawing, Over};
 use crate::world::generate::{self, Family};
 use std::path::{Path, PathBuf};
 
@@ -16,6 +18,54 @@ fn building(family: FamilyArg, seed: u64) -> Result<(PathBuf, Vec<u8>), Failure>
     Ok((PathBuf::from(format!("{}.yaml", doc.name)), doc.to_yaml().into_bytes()))
 }
 
+/// What is asked for of the file `name`.
+fn draw(
+    args: &ShowArgs,
+    file: &Path,
+    name: &str,
+    bytes: &[u8],
+    terminal: Terminal,
+) -> Result<Drawing, Failure> {
+    let height = args.height.unwrap_or(show::CUT_HEIGHT);
+    let beside = |file: &Path| file.parent().unwrap_or(Path::new("")).to_owned();
+    let fetch_from =
+        |folder: PathBuf| move |path: &str| load::bytes(&folder.join(path)).map_err(|f| f.message);
+    let told = |faults: Vec<Diagnostic>| {
+        terminal.diagnostics(&faults);
+        Failure::not_understood(format!("{name}: {}", Terminal::count(&faults)))
+    };
+    let world = || show::read_world(name, bytes, args.layers.as_deref()).map_err(told);
+    match (args.derive, &args.over) {
+        (Some(kind), _) => {
+            let kind = match kind {
+                DerivedArg::FloorPlan => Derived::FloorPlan,
+                DerivedArg::Footprint => Derived::Footprint,
+                DerivedArg::BoundingBox => Derived::BoundingBox,
+            };
+            show::draw_derived(&world()?, kind, height, args.resolution).map_err(told)
+        }
+        (None, Some(map)) => {
+            let start = match args.start.as_deref() {
+                None => Point::ZERO,
+                Some([x, y]) => Point::new(*x, *y),
+                Some(other) => {
+                    let message =
+                        format!("--start: expected x,y (m), found {} numbers", other.len());
+                    return Err(Failure::not_understood(message));
+                }
+            };
+            let over = load::bytes(map)?;
+            let map_name = map.display().to_string();
+            let over = Over { name: &map_name, bytes: &over, start };
+            show::draw_over(&world()?, height, over, &mut fetch_from(beside(map))).map_err(told)
+        }
+        (None, None) if args.layers.is_some() => Ok(show::draw_world(&world()?, height)),
+        (None, None) => {
+            show::draw(name, bytes, height, &mut fetch_from(beside(file))).map_err(told)
+        }
+    }
+}
+
 /// Draws one file.
 pub(in crate::cli) fn run(args: &ShowArgs, terminal: Terminal) -> Result<Exit, Failure> {
     let (file, bytes) = match (&args.file, args.generate) {
@@ -23,14 +73,8 @@ pub(in crate::cli) fn run(args: &ShowArgs, terminal: Terminal) -> Result<Exit, F
         (None, Some(family)) => building(family, args.seed)?,
         (None, None) => return Err(Failure::not_understood("show needs a file or `--generate`")),
     };
-    let folder = file.parent().unwrap_or(Path::new(""));
     let name = file.display().to_string();
-    let mut fetch = |path: &str| load::bytes(&folder.join(path)).map_err(|f| f.message);
-    let height = args.height.unwrap_or(show::CUT_HEIGHT);
-    let drawing = show::draw(&name, &bytes, height, &mut fetch).map_err(|faults| {
-        terminal.diagnostics(&faults);
-        Failure::not_understood(format!("{name}: {}", Terminal::count(&faults)))
-    })?;
+    let drawing = draw(args, &file, &name, &bytes, terminal)?;
     terminal.diagnostics(&drawing.warnings);
     let output = args.output.clone().unwrap_or_else(|| {
         let stem = file.file_stem().unwrap_or_default();

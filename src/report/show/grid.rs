@@ -20,25 +20,11 @@ pub fn grid_svg(name: &str, whole: &OccupancyGrid) -> String {
     let grid = &known_part(whole);
     let frame = grid.frame();
     let mut canvas = Canvas::new(frame.bounds(), 900.0, 760.0);
-    let (left, top) = canvas.at(Point::new(frame.origin.x, frame.bounds().max.y));
-    let side = frame.resolution * canvas.scale();
-    // Cells as runs along a row, in units of cells from the upper left corner.
-    let mut group = Element::new("g")
-        .set("transform", format!("translate({} {}) scale({side})", number(left), number(top)))
-        .set("shape-rendering", "crispEdges");
+    let mut group = cells_group(&canvas, frame);
     let ground = Element::new("rect").set("width", frame.width).set("height", frame.height);
     group.push(ground.set("fill", FILLS[0].2));
     for (value, _, fill) in &FILLS[1..] {
-        let mut data = String::new();
-        for (row, cells) in rows(grid).enumerate() {
-            let mut x = 0;
-            for run in cells.chunk_by(|a, b| a == b) {
-                if run[0] == *value {
-                    data.push_str(&format!("M{x} {row}h{}v1h-{}z", run.len(), run.len()));
-                }
-                x += run.len();
-            }
-        }
+        let data = runs(grid, *value);
         if !data.is_empty() {
             group.push(Element::new("path").set("d", data).set("fill", fill));
         }
@@ -69,6 +55,30 @@ pub fn grid_svg(name: &str, whole: &OccupancyGrid) -> String {
         .collect();
     canvas.legend(&legend);
     canvas.finish(&format!("Grid map {name}"))
+}
+
+/// A group whose unit is a cell, from the upper left corner of the grid `frame`.
+pub(super) fn cells_group(canvas: &Canvas, frame: &GridFrame) -> Element {
+    let (left, top) = canvas.at(Point::new(frame.origin.x, frame.bounds().max.y));
+    let side = frame.resolution * canvas.scale();
+    Element::new("g")
+        .set("transform", format!("translate({} {}) scale({side})", number(left), number(top)))
+        .set("shape-rendering", "crispEdges")
+}
+
+/// Path data of the cells that are `value`, as runs along rows in units of cells.
+pub(super) fn runs(grid: &OccupancyGrid, value: Occupancy) -> String {
+    let mut data = String::new();
+    for (row, cells) in rows(grid).enumerate() {
+        let mut x = 0;
+        for run in cells.chunk_by(|a, b| a == b) {
+            if run[0] == value {
+                data.push_str(&format!("M{x} {row}h{}v1h-{}z", run.len(), run.len()));
+            }
+            x += run.len();
+        }
+    }
+    data
 }
 
 /// The part of a map that holds all known cells, where that is less than half of it; else all.

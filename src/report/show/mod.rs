@@ -6,15 +6,18 @@
 mod describe;
 mod graph;
 mod grid;
+mod prior;
 mod robot;
 mod world;
 
 pub use describe::{describe_grid, describe_robot, describe_world};
 pub use grid::{grid_png, grid_svg};
+pub use prior::{Derived, Over, draw_derived, draw_over, draw_world, read_world};
 pub use robot::robot_svg;
 pub use world::world_svg;
 
 use crate::document::{Diagnostic, Source};
+use crate::grid::OccupancyGrid;
 use crate::robot::urdf;
 use crate::world::topology::{TagFault, TagScheme, Topology};
 use crate::world::{document as world_document, map_server, sdf};
@@ -65,13 +68,7 @@ pub fn draw(
         return Ok(drawn_world(&sdf::read(&source)?, height));
     }
     if text.lines().any(|line| line.starts_with("image:")) {
-        let path = map_server::image_path(&source)?;
-        let image = fetch(&path).map_err(|why| {
-            vec![Diagnostic::placeless(format!(
-                "cannot read the image `{path}` of `{name}`: {why}"
-            ))]
-        })?;
-        let map = map_server::read(&source, &path, &image, map_server::Options::default())?;
+        let map = read_map(name, &source, fetch)?;
         return Ok(Drawing {
             svg: grid_svg(name, &map),
             png: Some(grid_png(&map)),
@@ -80,6 +77,19 @@ pub fn draw(
         });
     }
     Ok(drawn_world(&world_document::read(&source, None)?, height))
+}
+
+/// The map of the descriptor `source`, which is called `name`.
+fn read_map(
+    name: &str,
+    source: &Source,
+    fetch: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
+) -> Result<OccupancyGrid, Vec<Diagnostic>> {
+    let path = map_server::image_path(source)?;
+    let image = fetch(&path).map_err(|why| {
+        vec![Diagnostic::placeless(format!("cannot read the image `{path}` of `{name}`: {why}"))]
+    })?;
+    map_server::read(source, &path, &image, map_server::Options::default())
 }
 
 fn drawn_world(world: &crate::world::World, height: f64) -> Drawing {

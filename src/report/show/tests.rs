@@ -1,5 +1,6 @@
 use super::*;
 use crate::document::mutation::{edits, mutate};
+use crate::geometry::Point;
 use proptest::prelude::*;
 
 const KOBUKI: &str = include_str!("../../../robots/kobuki.urdf");
@@ -182,6 +183,47 @@ fn what_cannot_be_drawn_is_said() {
         "error: cannot read the image `m.pgm` of `m.yaml`: no such file\n"
     );
     assert!(fault("m.png", b"\x89PNG\xff").contains("of a map image name the YAML"));
+}
+
+#[test]
+fn a_map_is_laid_over_the_world_that_it_is_to_fit() {
+    let world = read_world("w.world", WORLD.as_bytes(), None).unwrap();
+    // One occupied pixel, the upper left of four of 0.1 m: its middle is at (-0.95, 2.15) from the start.
+    let over = |start: Point| Over { name: "m.yaml", bytes: MAP.as_bytes(), start };
+    let mut image = |_: &str| Ok(b"P2 2 2 255\n0 254 254 254".to_vec());
+    let [beside, on] = [Point::ZERO, Point::new(0.5, -1.1)]
+        .map(|start| draw_over(&world, 0.1602, over(start), &mut image).unwrap());
+    let near = "agreement: 1 of 1 occupied cells lie within 0.2 m of something solid\n";
+    assert!(on.text.ends_with(near), "{}", on.text);
+    let far = near.replacen('1', "0", 1);
+    assert!(beside.text.ends_with(&far), "{}", beside.text);
+    assert!(texts(&on.svg).iter().any(|t| t == "occupied in the prior map"));
+    assert_eq!(on.svg.matches("M0 0h1v1h-1z").count(), 1, "the upper left cell alone");
+}
+
+#[test]
+fn priors_are_derived_from_the_layers_asked_for() {
+    let read = |layers: &[&str]| {
+        let layers: Vec<String> = layers.iter().map(|l| (*l).to_owned()).collect();
+        read_world("worlds/basic.yaml", BASIC.as_bytes(), Some(&layers)).unwrap()
+    };
+    let occupied = |layers: &[&str], kind: Derived| {
+        let drawing = draw_derived(&read(layers), kind, CUT_HEIGHT, 0.1).unwrap();
+        assert!(drawing.png.is_some());
+        let count = drawing.text.split("occupied: ").nth(1).and_then(|rest| rest.split(' ').next());
+        (count.unwrap().to_owned(), drawing.text.clone())
+    };
+    let [plan, footprint] =
+        [Derived::FloorPlan, Derived::Footprint].map(|kind| occupied(&[], kind).0);
+    assert_ne!(occupied(&["furniture"], Derived::FloorPlan).0, plan);
+    assert_eq!(occupied(&["furniture"], Derived::Footprint).0, footprint);
+    let bounds = occupied(&[], Derived::BoundingBox).1;
+    assert!(bounds.contains("bounding box of basic"), "{bounds}");
+    let faults = read_world("w.world", WORLD.as_bytes(), Some(&["doors".to_owned()])).unwrap_err();
+    assert_eq!(
+        faults[0].render(false),
+        "error: `w.world` has no layer `doors`\n |\n = help: all of a Gazebo world is its layer `walls`\n"
+    );
 }
 
 proptest! {

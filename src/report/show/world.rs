@@ -3,9 +3,11 @@
 
 use super::graph::{Mark, badge, graph_sheet, legend_entry, star, tag_mark};
 use super::graph_of;
+use super::grid::{cells_group, runs};
 use crate::figure::canvas::{ACCENT, Canvas, FAINT, INK};
 use crate::figure::svg::Element;
 use crate::geometry::{Bounds, Cardinal, Outline, Point};
+use crate::grid::{Cell, Occupancy, OccupancyGrid};
 use crate::math;
 use crate::world::topology::{TagScheme, Topology};
 use crate::world::{RegionKind, World};
@@ -13,10 +15,13 @@ use crate::world::{RegionKind, World};
 /// Greys of the layers, in the order walls first, then by name.
 const GREYS: [&str; 5] = ["#2b2b2b", "#8c8c8c", "#b8b8b8", "#6a6a6a", "#d2d2d2"];
 
+/// Fill of what a prior map holds to be occupied.
+const PRIOR: &str = "#d1495b";
+
 /// The world at `lidar_height` m, as an SVG file. What the plane misses is drawn as a thin outline.
 pub fn world_svg(world: &World, lidar_height: f64) -> String {
     let graph = graph_of(world).and_then(Result::ok);
-    let building = building_sheet(world, lidar_height, graph.as_ref());
+    let building = building_sheet(world, lidar_height, graph.as_ref(), None);
     let title = format!("World {}", world.name);
     match &graph {
         None => building.finish(&title),
@@ -24,7 +29,18 @@ pub fn world_svg(world: &World, lidar_height: f64) -> String {
     }
 }
 
-fn building_sheet(world: &World, lidar_height: f64, graph: Option<&Topology>) -> Canvas {
+/// The building at `lidar_height` m under the occupied cells of `prior`, in one colour.
+pub(super) fn world_under_svg(world: &World, lidar_height: f64, prior: &OccupancyGrid) -> String {
+    building_sheet(world, lidar_height, None, Some(prior))
+        .finish(&format!("World {} and prior map", world.name))
+}
+
+fn building_sheet(
+    world: &World,
+    lidar_height: f64,
+    graph: Option<&Topology>,
+    prior: Option<&OccupancyGrid>,
+) -> Canvas {
     let mut bounds = world.bounds();
     for point in
         world.starts.values().map(|pose| pose.position()).chain(world.goals.values().copied())
@@ -35,7 +51,13 @@ fn building_sheet(world: &World, lidar_height: f64, graph: Option<&Topology>) ->
         bounds = Bounds { min: Point::ZERO, max: Point::new(1.0, 1.0) };
     }
     let size = (bounds.width(), bounds.height());
-    let span = size.0.max(size.1);
+    if let Some(prior) = prior {
+        let occupied = |cell: &Cell| prior.at(*cell) == Occupancy::Occupied;
+        for cell in prior.frame().cells().filter(occupied) {
+            bounds = bounds.including(prior.frame().center(cell));
+        }
+    }
+    let span = bounds.width().max(bounds.height());
     let mut canvas = Canvas::new(bounds.grown(0.03 * span), 1000.0, 760.0);
     canvas.raster();
     for region in &world.regions {
@@ -74,6 +96,12 @@ fn building_sheet(world: &World, lidar_height: f64, graph: Option<&Topology>) ->
         };
         canvas.push(shape.set("fill", fill));
     }
+    if let Some(prior) = prior {
+        let cells = Element::new("path").set("d", runs(prior, Occupancy::Occupied));
+        let cells = cells.set("fill", PRIOR).set("fill-opacity", 0.6);
+        let group = cells_group(&canvas, prior.frame()).child(cells);
+        canvas.push(group);
+    }
     let stars = graph.map_or_else(Vec::new, |graph| goal_stars(&canvas, graph));
     let marks: Vec<Point> = world.tags.iter().map(|t| t.pose.position()).chain(stars).collect();
     for region in &world.regions {
@@ -93,6 +121,9 @@ fn building_sheet(world: &World, lidar_height: f64, graph: Option<&Topology>) ->
         layers.iter().map(|layer| ((*layer).to_owned(), grey(layer), INK)).collect();
     if missed {
         legend.push(("above or below the cut".to_owned(), "#fff", "#a8a8a8"));
+    }
+    if prior.is_some() {
+        legend.push(("occupied in the prior map".to_owned(), PRIOR, PRIOR));
     }
     for (kind, name, fill) in
         [(RegionKind::Room, "room", "#f3efe6"), (RegionKind::Corridor, "corridor", "#e6edf3")]

@@ -3,10 +3,11 @@
 //! It sees odometry and scans and answers with velocities; it never sees the world. Its map's frame is the
 //! odometry frame.
 
-use super::frontier::{Frontier, find_frontiers};
-use super::information_gain::{AlignedPrior, InformationGain};
-use super::parameters::{Parameters, Reselect, Strategy};
-use super::utility::{Appraisal, ranked, utilities};
+use super::choice::{Choice, Chooser, Sight};
+use super::frontier::Frontier;
+use super::information_gain::AlignedPrior;
+use super::parameters::{Parameters, Reselect};
+use super::utility::ranked;
 use crate::geometry::{Point, Pose};
 use crate::grid::{Cell, GridFrame, Occupancy, line};
 use crate::mapping::{Change, KeyframeMapper, KeyframeRule, OccupancyMap, ScanRule};
@@ -14,9 +15,11 @@ use crate::math;
 use crate::navigation::{
     CostGrid, LocalMap, LocalRule, Operator, OperatorRule, Steering, Wavefront, inflate,
 };
+use crate::rng::Stream;
 use crate::robot::{Lidar, Odometry, Scan, Twist};
 use crate::units::{Seconds, Tick};
 use std::f64::consts::FRAC_PI_2;
+use std::sync::Arc;
 
 /// The navigator plans at 5 Hz, the operator drives at 10 Hz, and the local map is renewed at about 3 Hz
 /// (prior-map facts, section 4).
@@ -65,30 +68,25 @@ struct Journey {
     target: Point,
     /// Lowest weighted distance so far (m), and when it was reached.
     closest: (f64, Tick),
+    /// Weighted distance (m) when last looked at.
+    remaining: f64,
     chosen_at: Tick,
 }
 
-/// A choice among frontiers, with what it was made on. Cells are those of `frame`.
-#[derive(Debug, Clone)]
-pub struct Choice {
-    /// Where the cells lie.
-    pub frame: GridFrame,
-    /// All frontiers not given up.
-    pub frontiers: Vec<Frontier>,
-    /// D and I of each.
-    pub appraisals: Vec<Appraisal>,
-    /// u of each.
-    pub utilities: Vec<f64>,
-    /// The chosen one.
-    pub chosen: Option<usize>,
+/// A choice that has yet to take effect.
+#[derive(Debug)]
+struct Decided {
+    due: Tick,
+    next: Phase,
+    /// The way to a new target.
+    wave: Option<Wavefront>,
 }
 
 /// An exploring mind.
 #[derive(Debug)]
 pub struct Explorer {
     parameters: Parameters,
-    prior: Option<AlignedPrior>,
-    range_cells: i32,
+    chooser: Chooser,
     mapper: KeyframeMapper,
     local: LocalMap,
     operator: Operator,
@@ -104,16 +102,22 @@ pub struct Explorer {
     choices: u32,
     last_choice: Option<Choice>,
     path_changed: bool,
+    /// How long choices take to have an effect.
+    delays: Stream,
+    decided: Option<Decided>,
 }
 
 impl Explorer {
-    /// A mind that has seen nothing, with the prior on the lattice of its map.
-    pub fn new(parameters: &Parameters, lidar: &Lidar, prior: Option<AlignedPrior>) -> Self {
+    /// A mind that has seen nothing, with the prior on the lattice of its map. `delays` is drawn from where choices take
+    /// time (`exploration.decision-jitter-s`).
+    pub fn new(
+        parameters: &Parameters,
+        lidar: &Lidar,
+        prior: Option<AlignedPrior>,
+        delays: Stream,
+    ) -> Self {
         let mapping = &parameters.mapping;
         let navigation = &parameters.navigation;
-        let clip_range = mapping.clip_range_m.unwrap_or(f64::INFINITY).min(lidar.max_range);
-        #[expect(clippy::cast_possible_truncation, reason = "ranges are checked to be below 200 m")]
-        let range_cells = (clip_range / mapping.resolution_m).round() as i32;
         let scan_rule = ScanRule {
             resolution: mapping.resolution_m,
             // A beam at exactly the sensor's range still hit something.
@@ -127,8 +131,7 @@ impl Explorer {
             ..LocalRule::default()
         };
         Self {
-            prior,
-            range_cells,
+            chooser: Chooser::new(parameters, lidar, prior),
             mapper: KeyframeMapper::new(keyframes, scan_rule),
             local: LocalMap::new(local_rule),
             operator: Operator::new(OperatorRule {
@@ -150,6 +153,8 @@ impl Explorer {
             choices: 0,
             last_choice: None,
             path_changed: false,
+            delays,
+            decided: None,
         }
     }
 
@@ -210,6 +215,12 @@ impl Explorer {
         self.given_up.len()
     }
 
+    /// How many frontiers there are as seen from `pose`, given up or not.
+    pub fn open_frontiers(&self, pose: Pose) -> usize {
+        let costs = self.costs(pose);
+        self.chooser.frontiers(Sight { map: self.map(), costs: &costs, pose }).len()
+    }
+
     /// The choice made since this was last asked, if any.
     pub fn take_choice(&mut self) -> Option<Choice> {
         self.last_choice.take()
@@ -220,16 +231,22 @@ impl Explorer {
         if !std::mem::take(&mut self.path_changed) {
             return None;
         }
-        let frame = self.map().grid().frame();
-        let wave = self.wave.as_ref()?;
+        let frame = *self.map().grid().frame();
+        let wave = self.wave.as_mut()?;
         let start = nearest_reached(wave, frame.cell_at(pose.position()))?;
         Some(wave.path(start).into_iter().map(|cell| frame.center(cell)).collect())
     }
 
     fn navigate(&mut self, odometry: Odometry) {
+        if let Some(decided) = self.decided.take_if(|decided| decided.due <= odometry.stamp) {
+            // Its way was planned on the map of then, whose cells may have got other numbers since.
+            self.map_changed = true;
+            self.take_up(decided);
+        }
         let tolerance = self.parameters.navigation.goal_tolerance_m;
         match self.phase.clone() {
             Phase::Done(_) => self.steering = None,
+            Phase::Choosing if self.decided.is_some() => self.steering = None,
             Phase::Choosing => self.choose(odometry),
             Phase::Facing { towards } => {
                 let off = bearing(odometry.pose, towards);
@@ -262,15 +279,10 @@ impl Explorer {
 
     fn is_time_to_reconsider(&self, journey: &Journey, odometry: Odometry) -> bool {
         let exploration = &self.parameters.exploration;
-        if exploration.reselect == Reselect::OnArrival {
+        if exploration.reselect == Reselect::OnArrival || self.decided.is_some() {
             return false;
         }
-        let remaining = self
-            .wave
-            .as_ref()
-            .and_then(|wave| wave.metres(self.cell_at(odometry.pose)))
-            .unwrap_or(f64::INFINITY);
-        let period = if remaining <= exploration.reselect_near_cost {
+        let period = if journey.remaining <= exploration.reselect_near_cost {
             exploration.reselect_near_period_s
         } else {
             exploration.reselect_period_s
@@ -281,16 +293,19 @@ impl Explorer {
     fn drive_on(&mut self, mut journey: Journey, odometry: Odometry) {
         if std::mem::take(&mut self.map_changed) || self.wave.is_none() {
             let costs = self.costs(odometry.pose);
-            self.wave = Some(self.wave_to(&costs, journey.target));
+            let earlier = self.wave.take();
+            self.wave = Some(self.wave_to(earlier, &costs, journey.target));
             self.path_changed = true;
         }
-        let Some(wave) = &self.wave else { return };
-        let Some(here) = nearest_reached(wave, self.cell_at(odometry.pose)) else {
+        let robot = self.cell_at(odometry.pose);
+        let Some(wave) = &mut self.wave else { return };
+        let Some(here) = nearest_reached(wave, robot) else {
             self.steering = None;
             self.phase = Phase::Choosing;
             return;
         };
         let remaining = wave.metres(here).unwrap_or(f64::INFINITY);
+        journey.remaining = remaining;
         if remaining < journey.closest.0 - PROGRESS {
             journey.closest = (remaining, odometry.stamp);
         } else if odometry.stamp > journey.closest.1 + Tick::at_or_after(PATIENCE) {
@@ -299,7 +314,7 @@ impl Explorer {
             self.phase = Phase::Choosing;
             return;
         }
-        let ahead = self.look_ahead(wave, here);
+        let ahead = self.mapper.map().grid().frame().center(look_ahead(wave, here));
         let off = bearing(odometry.pose, ahead);
         let speed = if remaining < 1.0 { 0.5 + remaining / 2.0 } else { 1.0 };
         self.steering = Some(Steering {
@@ -310,18 +325,6 @@ impl Explorer {
         self.phase = Phase::Driving(journey);
     }
 
-    /// The place to head for: the furthest of the next cells down the wave that there is a straight way to, so
-    /// that the robot does not cut the corners of doors.
-    fn look_ahead(&self, wave: &Wavefront, here: Cell) -> Point {
-        let path = wave.path(here);
-        let furthest = path
-            .iter()
-            .take(LOOK_AHEAD + 1)
-            .rev()
-            .find(|&&ahead| line(here, ahead).all(|cell| wave.metres(cell).is_some()));
-        self.map().grid().frame().center(furthest.copied().unwrap_or(here))
-    }
-
     /// Step (c): the most promising candidate location that there is a way to.
     fn choose(&mut self, odometry: Odometry) {
         self.choices += 1;
@@ -330,7 +333,7 @@ impl Explorer {
         let mut choice = self.appraise(&costs, odometry.pose);
         let tolerance = self.parameters.navigation.goal_tolerance_m;
         let robot = self.cell_at(odometry.pose);
-        let mut next = None;
+        let (mut next, mut way) = (None, None);
         for i in ranked(&choice.utilities) {
             let target = choice.frame.center(choice.frontiers[i].candidate);
             if odometry.pose.position().distance(target) <= tolerance {
@@ -344,19 +347,17 @@ impl Explorer {
                 self.given_up.push(target);
                 continue;
             }
-            let wave = self.wave_to(&costs, target);
-            if let Some(here) = nearest_reached(&wave, robot) {
+            let mut wave = self.wave_to(None, &costs, target);
+            if let Some(here) = nearest_reached(&mut wave, robot) {
                 choice.chosen = Some(i);
                 let distance = wave.metres(here).unwrap_or(f64::INFINITY);
                 let closest = (distance, odometry.stamp);
+                way = Some(wave);
                 next = Some(Phase::Driving(self.journey_to(target, closest, odometry.stamp)));
-                self.wave = Some(wave);
-                self.path_changed = true;
                 break;
             }
         }
-        self.phase = next.unwrap_or_else(|| {
-            self.steering = None;
+        let next = next.unwrap_or_else(|| {
             Phase::Done(if choice.frontiers.iter().all(|f| self.is_given_up(f, &choice.frame)) {
                 Ending::NoFrontierLeft
             } else {
@@ -364,46 +365,50 @@ impl Explorer {
             })
         });
         self.last_choice = Some(choice);
+        let decided = Decided { due: odometry.stamp + self.delay(), next, wave: way };
+        if decided.due <= odometry.stamp {
+            self.take_up(decided);
+        } else {
+            self.decided = Some(decided);
+        }
+    }
+
+    /// How long the present choice takes to have an effect: numbered by choice, so that no draw depends on another.
+    fn delay(&mut self) -> Tick {
+        let longest = self.parameters.exploration.decision_jitter_s;
+        let share = self.delays.at(u64::from(self.choices)).uniform();
+        Tick::at_or_after(Seconds(longest * share))
+    }
+
+    /// Acts on what was chosen.
+    fn take_up(&mut self, decided: Decided) {
+        if let Some(wave) = decided.wave {
+            self.wave = Some(wave);
+            self.path_changed = true;
+        }
+        if matches!(decided.next, Phase::Done(_)) {
+            self.steering = None;
+        }
+        self.phase = decided.next;
     }
 
     /// A new journey, or the present one gone on with where the target is still the same.
     fn journey_to(&self, target: Point, closest: (f64, Tick), now: Tick) -> Journey {
         match &self.phase {
             Phase::Driving(journey) if journey.target == target => {
-                Journey { chosen_at: now, ..journey.clone() }
+                Journey { remaining: closest.0, chosen_at: now, ..journey.clone() }
             }
-            _ => Journey { target, closest, chosen_at: now },
+            _ => Journey { target, closest, remaining: closest.0, chosen_at: now },
         }
     }
 
-    /// Step (b) and the terms of equation 1.
+    /// Step (b) and the terms of equation 1, of the frontiers not given up.
     fn appraise(&self, costs: &CostGrid, pose: Pose) -> Choice {
-        let map = self.map().grid();
-        let frame = *map.frame();
-        let exploration = &self.parameters.exploration;
-        let lethal = cost(self.parameters.navigation.frontier_lethal_cost);
-        let robot = frame.cell_at(pose.position());
-        let minimum = exploration.minimum_frontier_cells;
-        let mut frontiers = find_frontiers(map, costs, robot, lethal, minimum);
-        frontiers.retain(|frontier| !self.is_given_up(frontier, &frame));
-        let gain = InformationGain {
-            map,
-            offset: self.map().offset(),
-            prior: self.prior.as_ref(),
-            range: self.range_cells,
-            known_obstacles_occlude: exploration.known_obstacles_occlude,
-        };
-        let nearest_only = exploration.strategy == Strategy::NearestFrontier;
-        let appraisals: Vec<_> = frontiers
-            .iter()
-            .map(|f| Appraisal {
-                distance: pose.position().distance(frame.center(f.candidate)),
-                gain: if nearest_only { 0.0 } else { gain.at(f.candidate) },
-            })
-            .collect();
-        let alpha = if nearest_only { 1.0 } else { exploration.alpha };
-        let utilities = utilities(&appraisals, alpha);
-        Choice { frame, frontiers, appraisals, utilities, chosen: None }
+        let sight = Sight { map: self.map(), costs, pose };
+        let mut frontiers = self.chooser.frontiers(sight);
+        let frame = self.map().grid().frame();
+        frontiers.retain(|frontier| !self.is_given_up(frontier, frame));
+        self.chooser.appraise(sight, frontiers)
     }
 
     fn is_given_up(&self, frontier: &Frontier, frame: &GridFrame) -> bool {
@@ -427,7 +432,7 @@ impl Explorer {
     }
 
     /// The inflated map, with the place where the robot stands free (prior-map facts, section 4).
-    fn costs(&self, pose: Pose) -> CostGrid {
+    fn costs(&self, pose: Pose) -> Arc<CostGrid> {
         let mut map = self.map().grid().clone();
         let robot = map.frame().cell_at(pose.position());
         for y in -2..=1 {
@@ -435,23 +440,36 @@ impl Explorer {
                 map.set(Cell::new(robot.x + x, robot.y + y), Occupancy::Free);
             }
         }
-        inflate(&map, self.parameters.navigation.inflation_radius_cells)
+        Arc::new(inflate(&map, self.parameters.navigation.inflation_radius_cells))
     }
 
-    fn wave_to(&self, costs: &CostGrid, target: Point) -> Wavefront {
+    fn wave_to(
+        &self,
+        earlier: Option<Wavefront>,
+        costs: &Arc<CostGrid>,
+        target: Point,
+    ) -> Wavefront {
         let navigation = &self.parameters.navigation;
         let goal = costs.frame().cell_at(target);
-        Wavefront::from_goal(
-            costs,
-            goal,
-            cost(navigation.planner_lethal_cost),
-            navigation.cost_weight,
-        )
+        let lethal = cost(navigation.planner_lethal_cost);
+        let weight = navigation.cost_weight;
+        Wavefront::instead_of(earlier, Arc::clone(costs), goal, lethal, weight)
     }
 
     fn cell_at(&self, pose: Pose) -> Cell {
         self.map().grid().frame().cell_at(pose.position())
     }
+}
+
+/// The cell to head for: the furthest of the next ones down the wave that there is a straight way to, so that
+/// the robot does not cut the corners of doors.
+fn look_ahead(wave: &mut Wavefront, here: Cell) -> Cell {
+    let path: Vec<Cell> = std::iter::successors(Some(here), |&cell| wave.downhill(cell))
+        .take(LOOK_AHEAD + 1)
+        .collect();
+    let furthest =
+        path.iter().rev().find(|&&ahead| line(here, ahead).all(|cell| wave.reaches(cell)));
+    furthest.copied().unwrap_or(here)
 }
 
 /// Bearing (rad) of `point` from the robot's heading.
@@ -460,21 +478,22 @@ fn bearing(pose: Pose, point: Point) -> f64 {
     math::atan2(to.y, to.x)
 }
 
-fn cost(parameter: u32) -> u8 {
+/// An inflated cost that a parameter names.
+pub(super) fn cost(parameter: u32) -> u8 {
     u8::try_from(parameter.min(101)).unwrap_or(101)
 }
 
 /// The cell itself where the wave came, or else the cheapest reached one within 6 cells: a robot that stands
 /// too close to an obstacle first heads out.
-fn nearest_reached(wave: &Wavefront, cell: Cell) -> Option<Cell> {
-    if wave.metres(cell).is_some() {
+fn nearest_reached(wave: &mut Wavefront, cell: Cell) -> Option<Cell> {
+    if wave.reaches(cell) {
         return Some(cell);
     }
     (1..=6).find_map(|ring: i32| {
         let side = -ring..=ring;
         side.clone()
             .flat_map(|y| side.clone().map(move |x| Cell::new(cell.x + x, cell.y + y)))
-            .filter(|c| wave.metres(*c).is_some())
+            .filter(|c| wave.reaches(*c))
             .min_by_key(|c| (c.distance_squared(cell), c.y, c.x))
     })
 }

@@ -2,6 +2,7 @@
 
 use crate::grid::{Cell, Occupancy, OccupancyGrid};
 use crate::navigation::CostGrid;
+use crate::studies::prior_map::Candidate;
 use std::collections::{BTreeMap, VecDeque};
 
 /// A chain of free cells next to unknown ones.
@@ -9,7 +10,7 @@ use std::collections::{BTreeMap, VecDeque};
 pub struct Frontier {
     /// Its cells, in the order in which a flood from the robot met them.
     pub cells: Vec<Cell>,
-    /// The candidate location p: "the cell that divides a frontier into two equal segments".
+    /// The candidate location p: by default "the cell that divides a frontier into two equal segments".
     pub candidate: Cell,
 }
 
@@ -22,6 +23,7 @@ pub fn find_frontiers(
     robot: Cell,
     lethal: u8,
     minimum: u32,
+    candidate: Candidate,
 ) -> Vec<Frontier> {
     let frame = map.frame();
     let mut met = vec![false; frame.len()];
@@ -31,8 +33,19 @@ pub fn find_frontiers(
     }
     // Cells of frontiers with the order of their discovery.
     let mut order: BTreeMap<Cell, usize> = BTreeMap::new();
+    let (values, width) = (map.values(), usize::try_from(frame.width).unwrap_or(0));
+    let borders_on_unknown = |cell: Cell| match frame.index(cell) {
+        // Three cells of three rows, not one by one: most cells met are well inside.
+        Some(at) if frame.is_inside(cell) => {
+            [at - width, at, at + width]
+                .iter()
+                .any(|&middle| values[middle - 1..=middle + 1].contains(&Occupancy::Unknown))
+                && cell.neighbours8().iter().any(|&n| map.at(n) == Occupancy::Unknown)
+        }
+        _ => cell.neighbours8().iter().any(|&n| map.at(n) == Occupancy::Unknown),
+    };
     while let Some(cell) = queue.pop_front() {
-        if cell.neighbours8().iter().any(|&n| map.at(n) == Occupancy::Unknown) {
+        if borders_on_unknown(cell) {
             order.insert(cell, order.len());
         }
         for neighbour in cell.neighbours4() {
@@ -63,7 +76,10 @@ pub fn find_frontiers(
         }
         chain.extend(members.into_values());
         if chain.len() >= minimum as usize {
-            let candidate = middle_of(&chain);
+            let candidate = match candidate {
+                Candidate::Middle => middle_of(&chain),
+                Candidate::NearestToCentroid => nearest_to_centroid(&chain),
+            };
             frontiers.push(Frontier { cells: chain, candidate });
         }
     }
@@ -83,6 +99,20 @@ fn middle_of(chain: &[Cell]) -> Cell {
         way.push(cell);
     }
     way[way.len() / 2]
+}
+
+/// The cell nearest to the centroid as the released program takes it: the mean of columns and of rows cut to whole
+/// cells, distances to it cut to whole cells too, the first found among equals (prior-map facts, section 6).
+fn nearest_to_centroid(chain: &[Cell]) -> Cell {
+    let count = i64::try_from(chain.len()).unwrap_or(i64::MAX).max(1);
+    let mean = |of: fn(&Cell) -> i32| {
+        // Floored, not truncated: the same cell wherever the map's cell (0, 0) lies.
+        let sum: i64 = chain.iter().map(|cell| i64::from(of(cell))).sum();
+        i32::try_from(sum.div_euclid(count)).unwrap_or(i32::MAX)
+    };
+    let centroid = Cell::new(mean(|cell| cell.x), mean(|cell| cell.y));
+    let nearest = chain.iter().min_by_key(|cell| cell.distance_squared(centroid).isqrt());
+    nearest.copied().unwrap_or(centroid)
 }
 
 /// For every cell of the chain, the next one back to `from`; and the cell that takes the most steps.
@@ -129,7 +159,7 @@ mod tests {
     }
 
     fn find(map: &OccupancyGrid, minimum: u32) -> Vec<Frontier> {
-        find_frontiers(map, &inflate(map, 1), Cell::new(2, 2), 60, minimum)
+        find_frontiers(map, &inflate(map, 1), Cell::new(2, 2), 60, minimum, Candidate::Middle)
     }
 
     #[test]
@@ -144,7 +174,8 @@ mod tests {
             "  #.#     ",
         ]);
         // The robot is in the doorway's column; the right edge of the room and the doorway's end are open.
-        let frontiers = find_frontiers(&map, &inflate(&map, 1), Cell::new(2, 3), 60, 1);
+        let frontiers =
+            find_frontiers(&map, &inflate(&map, 1), Cell::new(2, 3), 60, 1, Candidate::Middle);
         let candidates: Vec<_> = frontiers.iter().map(|f| f.candidate).collect();
         assert_eq!(frontiers.len(), 2, "{frontiers:?}");
         let right = frontiers.iter().find(|f| f.cells.len() == 4).unwrap();
@@ -157,8 +188,26 @@ mod tests {
         let closed = map(&["######", "#....#", "#....#", "######"]);
         assert!(find(&closed, 1).is_empty());
         let leak = map(&["######", "#....#", "#.... ", "######"]);
-        assert_eq!(find_frontiers(&leak, &inflate(&leak, 1), Cell::new(2, 1), 60, 1).len(), 1);
-        assert!(find_frontiers(&leak, &inflate(&leak, 1), Cell::new(2, 1), 60, 9).is_empty());
+        assert_eq!(
+            find_frontiers(&leak, &inflate(&leak, 1), Cell::new(2, 1), 60, 1, Candidate::Middle)
+                .len(),
+            1
+        );
+        assert!(
+            find_frontiers(&leak, &inflate(&leak, 1), Cell::new(2, 1), 60, 9, Candidate::Middle)
+                .is_empty()
+        );
+    }
+
+    #[test]
+    fn the_middle_of_a_bent_chain_is_at_its_bend_and_the_centroid_may_be_nearer_to_an_arm() {
+        // An L of 5 + 4 cells, whose corner the shortest way cuts; the mean (1, 1) is one whole cell from three of them.
+        let mut chain: Vec<Cell> = (0..5).rev().map(|y| Cell::new(0, y)).collect();
+        chain.extend((1..5).map(|x| Cell::new(x, 0)));
+        assert_eq!(middle_of(&chain), Cell::new(1, 0));
+        assert_eq!(nearest_to_centroid(&chain), Cell::new(0, 2), "the first within a whole cell");
+        let moved: Vec<Cell> = chain.iter().map(|c| Cell::new(c.x - 7, c.y - 9)).collect();
+        assert_eq!(nearest_to_centroid(&moved), Cell::new(-7, -7), "wherever the map begins");
     }
 
     proptest! {

@@ -1,23 +1,51 @@
 //! I(p): "the estimate of the amount of new (unexplored) area visible from p" (section 3.2).
 
-use crate::grid::{Cell, Occupancy, OccupancyGrid, visible_cells};
+use super::field_of_view::{Headings, Sector};
+use crate::grid::{Cell, CellSet, Occupancy, OccupancyGrid, Run, visible_runs};
 
-/// What is needed to estimate I(p).
-#[derive(Debug, Clone, Copy)]
-pub struct InformationGain<'a> {
-    /// The map M_E so far.
-    pub map: &'a OccupancyGrid,
+/// What is needed to estimate I(p) on one state of the map.
+#[derive(Debug)]
+pub struct InformationGain {
     /// Lattice cell of the map's cell (0, 0).
-    pub offset: Cell,
-    /// The prior PK_E on the same lattice, if there is one.
-    pub prior: Option<&'a AlignedPrior>,
+    offset: Cell,
     /// Range of the scanner in cells.
-    pub range: i32,
-    /// Without a prior: whether known obstacles hide what lies behind them.
-    pub known_obstacles_occlude: bool,
+    range: i32,
+    /// Area of a cell (m²).
+    cell_area: f64,
+    /// Lattice cells that are unknown in the map.
+    unknown: CellSet,
+    /// Lattice cells that end lines of sight.
+    blocking: CellSet,
 }
 
-impl InformationGain<'_> {
+impl InformationGain {
+    /// For the map M_E so far, whose cell (0, 0) is the lattice cell `offset`, and the prior PK_E on the same lattice, if
+    /// there is one; for a scanner that sees `range` cells far. Without a prior, known obstacles hide what lies behind
+    /// them or not, as `known_obstacles_occlude` says.
+    pub fn new(
+        map: &OccupancyGrid,
+        offset: Cell,
+        prior: Option<&AlignedPrior>,
+        range: i32,
+        known_obstacles_occlude: bool,
+    ) -> Self {
+        let frame = map.frame();
+        // All that can be seen from any cell of the map, and a little more.
+        let beyond = range + 8;
+        let low = Cell::new(offset.x - beyond, offset.y - beyond);
+        let high = Cell::new(offset.x + frame.width + beyond, offset.y + frame.height + beyond);
+        let word =
+            |x: i32, y: i32, value: Occupancy| word_of(map, x - offset.x, y - offset.y, value);
+        let unknown = CellSet::of_words(low, high, |x, y| word(x, y, Occupancy::Unknown));
+        let blocking = CellSet::of_words(low, high, |x, y| {
+            let is_hiding = prior.is_some() || known_obstacles_occlude;
+            let obstacles = if is_hiding { word(x, y, Occupancy::Occupied) } else { 0 };
+            obstacles | prior.map_or(0, |prior| !prior.free_word(x, y))
+        });
+        let cell_area = frame.resolution * frame.resolution;
+        Self { offset, range, cell_area, unknown, blocking }
+    }
+
     /// I(p) in m², from the map cell `p`, looking all round.
     ///
     /// With a prior, the cells c of M_E that are unknown, within range, and satisfy the three conditions of
@@ -26,30 +54,75 @@ impl InformationGain<'_> {
     ///
     /// Without (Figure 2b), every unknown cell within range.
     pub fn at(&self, p: Cell) -> f64 {
-        let mut cells = 0_u32;
-        let count = |c: Cell| {
-            cells += u32::from(self.map.at(c) == Occupancy::Unknown);
-        };
-        match self.prior {
-            Some(prior) => visible_cells(
-                p,
-                self.range,
-                |c| self.map.at(c) == Occupancy::Occupied || !prior.is_free(self.lattice(c)),
-                count,
-            ),
-            None => visible_cells(
-                p,
-                self.range,
-                |c| self.known_obstacles_occlude && self.map.at(c) == Occupancy::Occupied,
-                count,
-            ),
-        }
-        f64::from(cells) * self.map.frame().resolution * self.map.frame().resolution
+        let mut cells = 0;
+        self.see(p, |run| cells += self.unknown.count(run));
+        self.area(cells)
+    }
+
+    /// The same, of what lies in `sector`.
+    pub(super) fn within(&self, p: Cell, sector: Sector) -> f64 {
+        let mut cells = 0;
+        self.each_unknown(p, |offset| cells += u32::from(sector.contains(offset)));
+        self.area(cells)
+    }
+
+    /// The same, of what is seen with the best of all headings.
+    pub(super) fn best(&self, p: Cell, headings: &Headings) -> f64 {
+        let mut cells = vec![0; headings.count()];
+        let mut here = 0;
+        self.each_unknown(p, |offset| match offset {
+            Cell { x: 0, y: 0 } => here += 1,
+            _ => cells[headings.direction(offset)] += 1,
+        });
+        self.area(here + headings.most(&cells))
+    }
+
+    fn see(&self, p: Cell, see: impl FnMut(Run)) {
+        visible_runs(self.lattice(p), self.range, &self.blocking, see);
+    }
+
+    /// Tells every cell that counts, as its offset from `p`.
+    fn each_unknown(&self, p: Cell, mut count: impl FnMut(Cell)) {
+        let origin = self.lattice(p);
+        let mut members = Vec::new();
+        self.see(p, |run| {
+            members.clear();
+            self.unknown.members(run, &mut members);
+            for cell in members.iter().map(|&along| run.cell(along)) {
+                count(Cell::new(cell.x - origin.x, cell.y - origin.y));
+            }
+        });
+    }
+
+    fn area(&self, cells: u32) -> f64 {
+        f64::from(cells) * self.cell_area
     }
 
     fn lattice(&self, cell: Cell) -> Cell {
         Cell::new(cell.x + self.offset.x, cell.y + self.offset.y)
     }
+}
+
+/// Which of the 64 cells of `map` from (`x`, `y`) on along x hold `value`; those outside are unknown.
+fn word_of(map: &OccupancyGrid, x: i32, y: i32, value: Occupancy) -> u64 {
+    let frame = map.frame();
+    let outside = if value == Occupancy::Unknown { u64::MAX } else { 0 };
+    let (first, end) = (x.max(0), (x + 64).min(frame.width));
+    if first >= end {
+        return outside;
+    }
+    let Some(index) = frame.index(Cell::new(first, y)) else { return outside };
+    #[expect(clippy::cast_sign_loss, reason = "a part of 64 cells")]
+    let (skipped, length) = ((first - x) as usize, (end - first) as usize);
+    let cells = &map.values()[index..index + length];
+    let mask = (u64::MAX >> (64 - length)) << skipped;
+    // Most words are all of one kind, which counting finds faster than going bit by bit.
+    let inside = match cells.iter().map(|&cell| u8::from(cell == value)).sum::<u8>() {
+        0 => 0,
+        all if usize::from(all) == length => mask >> skipped,
+        _ => cells.iter().rev().fold(0, |bits, &cell| bits << 1 | u64::from(cell == value)),
+    };
+    (outside & !mask) | (inside << skipped)
 }
 
 /// A prior map brought to the lattice of the robot's own map, by the start pose known in both (section 3.2).
@@ -90,6 +163,11 @@ impl AlignedPrior {
         Self { free: OccupancyGrid::from_cells(frame, cells), corner }
     }
 
+    /// Which of the 64 lattice cells from (`x`, `y`) on along x are free in the prior.
+    fn free_word(&self, x: i32, y: i32) -> u64 {
+        word_of(&self.free, x - self.corner.x, y - self.corner.y, Occupancy::Free)
+    }
+
     /// Whether the lattice `cell` is free in the prior: neither occupied nor unknown nor outside of it.
     pub fn is_free(&self, cell: Cell) -> bool {
         self.free.at(Cell::new(cell.x - self.corner.x, cell.y - self.corner.y)) == Occupancy::Free
@@ -100,7 +178,8 @@ impl AlignedPrior {
 mod tests {
     use super::*;
     use crate::geometry::{Point, Pose};
-    use crate::grid::GridFrame;
+    use crate::grid::{Axis, GridFrame};
+    use proptest::prelude::*;
 
     fn grid(origin: Point, value: Occupancy) -> OccupancyGrid {
         let frame = GridFrame { resolution: 0.1, origin, width: 40, height: 40 };
@@ -120,13 +199,7 @@ mod tests {
     fn a_wall_of_the_prior_hides_what_lies_behind_it() {
         let map = grid(Point::ZERO, Occupancy::Unknown);
         let aligned = AlignedPrior::new(&prior(), Pose::default(), 0.1);
-        let gain = |prior| InformationGain {
-            map: &map,
-            offset: Cell::new(0, 0),
-            prior,
-            range: 8,
-            known_obstacles_occlude: true,
-        };
+        let gain = |prior| InformationGain::new(&map, Cell::new(0, 0), prior, 8, true);
         let p = Cell::new(8, 20);
         let without = gain(None).at(p);
         let with = gain(Some(&aligned)).at(p);
@@ -147,19 +220,58 @@ mod tests {
             map.set(Cell::new(10, y), Occupancy::Occupied);
             map.set(Cell::new(9, y), Occupancy::Free);
         }
-        let mut gain = InformationGain {
-            map: &map,
-            offset: Cell::new(0, 0),
-            prior: None,
-            range: 3,
-            known_obstacles_occlude: true,
+        let gain = |occlude| {
+            InformationGain::new(&map, Cell::new(0, 0), None, 3, occlude).at(Cell::new(9, 20))
         };
-        let hidden = gain.at(Cell::new(9, 20));
-        gain.known_obstacles_occlude = false;
-        let open = gain.at(Cell::new(9, 20));
+        let (hidden, open) = (gain(true), gain(false));
         // Columns 6, 7 and 8 of the disc are unknown: 1 + 5 + 5 cells; behind the wall as many less the wall's.
         assert!((hidden - 0.11).abs() < 1e-9, "{hidden}");
         assert!((open - 0.17).abs() < 1e-9, "{open}");
+    }
+
+    #[test]
+    fn half_a_view_sees_half_and_the_best_half_is_the_unknown_one() {
+        use crate::studies::prior_map::field_of_view::{FieldOfView, Headings};
+        use std::f64::consts::{FRAC_PI_2, PI};
+        let mut map = grid(Point::ZERO, Occupancy::Free);
+        for cell in map.frame().cells().filter(|c| c.x > 20) {
+            map.set(cell, Occupancy::Unknown);
+        }
+        let gain = InformationGain::new(&map, Cell::new(0, 0), None, 8, true);
+        let p = Cell::new(20, 20);
+        let view = FieldOfView { min_angle: -FRAC_PI_2, max_angle: FRAC_PI_2 };
+        let all = gain.at(p);
+        assert_eq!(gain.within(p, view.facing(0.0)), all);
+        assert_eq!(gain.within(p, view.facing(PI)), 0.0);
+        assert!((gain.within(p, view.facing(FRAC_PI_2)) - all / 2.0).abs() <= 0.041);
+        assert_eq!(gain.best(p, &Headings::new(8, view.width())), all);
+    }
+
+    proptest! {
+        /// Sets of cells that are read by words hold what the map and the prior say cell by cell, wherever the map's cell
+        /// (0, 0) lies on the lattice, and beyond both.
+        #[test]
+        fn words_are_cells(
+            raw in prop::collection::vec(0_u8..3, 40 * 40), x in -70..70_i32, y in -70..70_i32, px in -3.0..3.0_f64,
+        ) {
+            let mut map = grid(Point::ZERO, Occupancy::Unknown);
+            for (cell, value) in map.values_mut().iter_mut().zip(raw) {
+                *cell = [Occupancy::Unknown, Occupancy::Free, Occupancy::Occupied][usize::from(value)];
+            }
+            let aligned = AlignedPrior::new(&prior(), Pose::new(px, 0.3, 0.2), 0.1);
+            let offset = Cell::new(x, y);
+            let gain = InformationGain::new(&map, offset, Some(&aligned), 5, true);
+            for cell in (-60..110).step_by(3).flat_map(|y| (-60..110).map(move |x| Cell::new(x, y))) {
+                let lattice = Cell::new(cell.x + x, cell.y + y);
+                let run = Run { axis: Axis::X, line: lattice.y, from: lattice.x, to: lattice.x };
+                // As far as anything can be seen from the map.
+                if (-5..45).contains(&cell.x) && (-5..45).contains(&cell.y) {
+                    prop_assert_eq!(gain.unknown.count(run) == 1, map.at(cell) == Occupancy::Unknown);
+                    let blocks = map.at(cell) == Occupancy::Occupied || !aligned.is_free(lattice);
+                    prop_assert_eq!(gain.blocking.count(run) == 1, blocks);
+                }
+            }
+        }
     }
 
     /// The same world seen from a start pose elsewhere and turned by a quarter.

@@ -6,19 +6,22 @@
 
 pub mod agreement;
 mod cell_tests;
+pub mod choice;
 pub mod explorer;
+mod field_of_view;
 pub mod frontier;
 pub mod information_gain;
 mod mission;
 mod parameters;
+mod released_gain;
 mod requests;
 pub mod results;
 pub mod utility;
 
 pub use cell_tests::{CellTests, Difference};
 pub use parameters::{
-    Coverage, Exploration, Gain, Mapping, Measurement, Mission, Navigation, Parameters, Reselect,
-    Sensing, Strategy,
+    Candidate, Coverage, Crossing, Exploration, Gain, Mapping, Measurement, Mission, Navigation,
+    Parameters, Reselect, Sensing, Strategy, View,
 };
 pub use requests::{AgreementTable, CoverageCurve, CoverageTable, Metric, PlanFigure};
 
@@ -28,7 +31,7 @@ use crate::robot::Robot;
 use crate::world::World;
 use std::sync::{Arc, OnceLock};
 
-pub use mission::{MILESTONES, Prepared, plan_figure, run};
+pub use mission::{FURTHER_AT_MILESTONES, MILESTONES, Prepared, plan_figure, run};
 
 /// Everything a trial of this study needs.
 #[derive(Debug)]

@@ -118,6 +118,20 @@ parameters!(
         alpha: f64 = 0.5,
         /// How I(p) is computed.
         gain: Gain = Gain::Paper,
+        /// Where the scanner at p looks under `gain: paper`.
+        #[serde(skip_serializing_if = "is_default")]
+        view: View = View::AllRound,
+        /// Under `gain: released` with a prior, rays stop where the inflated cost (0 to 100) is at least this.
+        #[serde(skip_serializing_if = "is::<80>")]
+        #[schemars(range(min = 0, max = 100))]
+        prior_ray_stop_cost: u32 = 80,
+        /// Under `gain: released` without a prior, rays stop where the inflated cost (0 to 100) is above this.
+        #[serde(skip_serializing_if = "is::<50>")]
+        #[schemars(range(min = 0, max = 100))]
+        baseline_ray_stop_cost: u32 = 50,
+        /// Which cell of a frontier is its candidate location.
+        #[serde(skip_serializing_if = "is_default")]
+        candidate: Candidate = Candidate::Middle,
         /// When the next location is chosen anew.
         reselect: Reselect = Reselect::OnArrival,
         /// Under `reselect: continuous`, the time between choices (s), above 0.
@@ -133,6 +147,11 @@ parameters!(
         minimum_frontier_cells: u32 = 1,
         /// Whether known obstacles hide what lies behind them when there is no prior (Figure 2b leaves it open).
         known_obstacles_occlude: bool = true,
+        /// A choice takes effect after a delay (s) uniform between 0 and this, 0 or more: what a robot's own computing
+        /// and message passing would take.
+        #[serde(skip_serializing_if = "is_default")]
+        #[schemars(range(min = 0.0))]
+        decision_jitter_s: f64 = 0.0,
     }
 );
 
@@ -153,6 +172,33 @@ pub enum Gain {
     /// As section 3.2 defines it: every unknown cell within range that is free and visible in the prior and
     /// visible in the map.
     Paper,
+    /// As the released program computed it: the distinct unknown cells that 361 rays meet before something stops them.
+    Released,
+}
+
+/// Where the scanner at a candidate location looks; the paper speaks of "the perceivable area within the field of view"
+/// and leaves the heading there open.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum View {
+    /// In all directions.
+    #[default]
+    AllRound,
+    /// As the robot would arrive: the scanner's field of view about the straight direction from the robot to p.
+    OnArrival,
+    /// The scanner's field of view turned to where it promises most.
+    Best,
+}
+
+/// Which cell of a frontier is its candidate location.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Candidate {
+    /// "The cell that divides a frontier into two equal segments" (section 3.1).
+    #[default]
+    Middle,
+    /// The cell nearest to the centroid of the frontier's cells, as the released program did.
+    NearestToCentroid,
 }
 
 /// When the next location is chosen anew.
@@ -170,6 +216,12 @@ parameters!(
     Measurement {
         /// What coverage counts.
         coverage: Coverage = Coverage::Paper,
+        /// When a coverage counts as reached; time runs from the trial's start.
+        #[serde(skip_serializing_if = "is_default")]
+        crossing: Crossing = Crossing::Keyframe,
+        /// Whether further measures are recorded: decisions and open frontiers at levels of coverage, turning per metre.
+        #[serde(skip_serializing_if = "is_default")]
+        further: bool = false,
     }
 );
 
@@ -183,8 +235,21 @@ pub enum Coverage {
     Released,
 }
 
+/// When a coverage counts as reached. The map changes at keyframes only, so coverage rises in steps.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Crossing {
+    /// At the keyframe that brought it.
+    #[default]
+    Keyframe,
+    /// In between that keyframe and the one before, as if coverage had risen linearly.
+    Interpolated,
+    /// At the first choice of a location after it: the released program logged at its choices only.
+    Decision,
+}
+
 parameters!(
-    /// When a trial ends, besides running out of frontiers.
+    /// Where a trial begins exactly, and when it ends besides running out of frontiers.
     Mission {
         /// Simulated time after which a trial is ended (s), above 0.
         #[schemars(extend("exclusiveMinimum" = 0))]
@@ -195,5 +260,27 @@ parameters!(
         /// See `stuck-after-s` (m), above 0.
         #[schemars(extend("exclusiveMinimum" = 0))]
         stuck_distance_m: f64 = 0.5,
+        /// The robot starts off the manifest's start by up to this (m) in x and in y, uniform, 0 or more.
+        #[serde(skip_serializing_if = "is_default")]
+        #[schemars(range(min = 0.0))]
+        start_jitter_m: f64 = 0.0,
+        /// ... and turned by up to this (degrees) to either side, uniform, 0 to 180.
+        #[serde(skip_serializing_if = "is_default")]
+        #[schemars(range(min = 0.0, max = 180.0))]
+        start_jitter_deg: f64 = 0.0,
     }
 );
+
+// Parameters that came later are written out only where they are not at their default, so that the trials of manifests
+// from before them keep their keys. Nothing is lost: a key means what this version's defaults say, and a default that
+// changes raises the engine version.
+
+/// Whether a parameter is at its type's default.
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}
+
+/// Whether a parameter is `N`.
+fn is<const N: u32>(value: &u32) -> bool {
+    *value == N
+}

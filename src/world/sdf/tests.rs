@@ -79,6 +79,7 @@ fn the_state_places_and_scales_and_the_plane_cuts() {
             "worlds/tiny.world:23:54: collision `table/top/c` is a mesh `model://table.dae`, which cannot be read: it is missing",
         ]
     );
+    assert_eq!(world.missing(), 2, "what stands still is not missing");
 }
 
 #[test]

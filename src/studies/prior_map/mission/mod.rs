@@ -3,6 +3,7 @@
 mod plan_figure;
 mod recorder;
 mod reference;
+mod start;
 #[cfg(test)]
 mod tests;
 mod trace;
@@ -10,18 +11,22 @@ mod trace;
 pub use plan_figure::plan_figure;
 pub use trace::MILESTONES;
 
-use super::Setup;
 use super::explorer::{CONTROL_PERIOD, Ending, Explorer};
 use super::information_gain::AlignedPrior;
+use super::{Parameters, Setup};
 use crate::geometry::{Outline, Pose};
-use crate::robot::{Lidar, Scan};
+use crate::robot::{Lidar, Odometry, Scan};
 use crate::sim::{Distribution, DriveNoise, OdometryNoise, Scene, Simulator, Stepping};
 use crate::studies::recording::Recording;
 use crate::studies::{Outcome, Stopwatch, TrialRecord, TrialSpec};
 use crate::units::{Seconds, Tick};
 use recorder::Recorder;
 use reference::Reference;
+use std::collections::BTreeMap;
 use trace::Trace;
+
+/// Recorded at every milestone where a manifest asks for further measures.
+pub const FURTHER_AT_MILESTONES: [&str; 2] = ["decisions", "open-frontiers"];
 
 /// What all trials of a setup share: computed once, from the setup alone.
 #[derive(Debug)]
@@ -68,7 +73,8 @@ pub fn run(
         Ok(prepared) => prepared,
         Err(cause) => return TrialRecord::panicked(spec, cause),
     };
-    let sensing = &setup.parameters.sensing;
+    let Parameters { sensing, measurement, .. } = &setup.parameters;
+    let start = start::draw(setup, &prepared.solid, &spec.seeds);
     let scene = Scene {
         visible: &prepared.visible,
         solid: &prepared.solid,
@@ -76,7 +82,7 @@ pub fn run(
         lidar: prepared.lidar.clone(),
         camera: None,
         compass: None,
-        start: setup.start,
+        start: start.unwrap_or(setup.start),
         stepping: Stepping::Always,
         drive_noise: DriveNoise {
             distribution: Distribution::Gaussian,
@@ -95,10 +101,17 @@ pub fn run(
         prepared,
         scan: sim.blank_scan(),
         sim,
-        mind: Explorer::new(&setup.parameters, &prepared.lidar, prepared.prior.clone()),
-        trace: Trace::new(prepared.reference.total()),
+        mind: Explorer::new(
+            &setup.parameters,
+            &prepared.lidar,
+            prepared.prior.clone(),
+            spec.seeds.stream("decision-delay"),
+        ),
+        trace: Trace::new(prepared.reference.total(), measurement.crossing),
+        further: BTreeMap::new(),
         recorder: recording.map(|recording| Recorder::new(recording, setup, &prepared.visible)),
-        moved: (setup.start, Tick(0)),
+        moved: (start.unwrap_or(setup.start), Tick(0)),
+        known_start: start.map(|start| setup.start.relative(start)),
         watch,
     };
     mission.run(spec)
@@ -112,6 +125,11 @@ struct Mission<'a> {
     mind: Explorer,
     trace: Trace,
     recorder: Option<Recorder<'a>>,
+    /// Further measures taken on the way.
+    further: BTreeMap<String, f64>,
+    /// Where the robot starts in the frame of the manifest's start, where that is not the origin. The mind knows it: its
+    /// map, its prior and what coverage is measured against share that one frame.
+    known_start: Option<Pose>,
     /// Where the robot was when it last had moved on, and when.
     moved: (Pose, Tick),
     watch: &'a mut dyn Stopwatch,
@@ -127,9 +145,10 @@ impl Mission<'_> {
                 next_control = next_control + CONTROL_PERIOD;
                 let choices = self.mind.choices();
                 self.watch.asked();
-                let twist = self.mind.control(self.sim.odometry());
+                let twist = self.mind.control(self.known(self.sim.odometry()));
                 if self.mind.choices() > choices {
                     self.watch.chose();
+                    self.trace.note_choice(self.sim.now(), self.sim.travelled());
                 }
                 self.sim.command(twist);
                 self.note_state();
@@ -153,12 +172,24 @@ impl Mission<'_> {
         #[expect(clippy::cast_precision_loss, reason = "few")]
         measure("frontiers-given-up", self.mind.given_up() as f64);
         measure("contacts", f64::from(self.sim.contacts()));
+        if self.setup.parameters.measurement.further {
+            let distance = self.sim.travelled();
+            let per_metre = (distance > 0.0).then(|| self.sim.turned() / distance);
+            record.measures.insert("turning-rad-per-m".to_owned(), per_metre);
+            for name in FURTHER_AT_MILESTONES {
+                for percent in MILESTONES {
+                    let name = format!("{name}-at-{percent}");
+                    let value = self.further.get(&name).copied();
+                    record.measures.insert(name, value);
+                }
+            }
+        }
         record
     }
 
     /// Step (a): shows the mind the scan just taken, where it wants it.
     fn perceive(&mut self) {
-        let odometry = self.sim.odometry_at_scan();
+        let odometry = self.known(self.sim.odometry_at_scan());
         if !self.mind.wants_scan(odometry) {
             return;
         }
@@ -176,16 +207,39 @@ impl Mission<'_> {
         if let Some(recorder) = &mut self.recorder {
             recorder.map_changed(changes, &self.scan, self.sim.true_pose());
         }
-        self.trace.note_coverage(self.sim.now(), self.sim.travelled());
+        let crossed = self.trace.note_coverage(self.sim.now(), self.sim.travelled());
+        if self.setup.parameters.measurement.further {
+            for percent in MILESTONES.into_iter().filter(|percent| crossed.contains(percent)) {
+                self.note_milestone(percent, odometry.pose);
+            }
+        }
+    }
+
+    /// Further measures at the keyframe that brought `percent`, with the robot at `pose` in its own frame.
+    fn note_milestone(&mut self, percent: u32, pose: Pose) {
+        #[expect(clippy::cast_precision_loss, reason = "few")]
+        let open = self.mind.open_frontiers(pose) as f64;
+        let decisions = f64::from(self.mind.choices());
+        self.further.insert(format!("decisions-at-{percent}"), decisions);
+        self.further.insert(format!("open-frontiers-at-{percent}"), open);
+    }
+
+    /// Odometry as the mind is told it, in the frame of the manifest's start.
+    fn known(&self, odometry: Odometry) -> Odometry {
+        match self.known_start {
+            Some(start) => Odometry { pose: start.compose(odometry.pose), ..odometry },
+            None => odometry,
+        }
     }
 
     fn note_state(&mut self) {
         let now = self.sim.now();
         let pose = self.sim.true_pose();
         self.trace.note_time(now, self.sim.travelled(), pose, self.mind.choices());
+        let here = self.known(self.sim.odometry()).pose;
         if let Some(recorder) = &mut self.recorder {
             let choice = self.mind.take_choice();
-            let path = self.mind.take_path(self.sim.odometry().pose);
+            let path = self.mind.take_path(here);
             recorder.note(
                 now,
                 pose,

@@ -6,7 +6,7 @@ use crate::mapping::Change;
 use crate::math;
 use crate::robot::Scan;
 use crate::studies::prior_map::Setup;
-use crate::studies::prior_map::explorer::Choice;
+use crate::studies::prior_map::choice::Choice;
 use crate::studies::recording::{Decision, Frame, FrontierView, Recording};
 use crate::units::Tick;
 

@@ -6,7 +6,9 @@ use crate::geometry::Point;
 use crate::grid::{GridFrame, Occupancy, OccupancyGrid};
 use crate::rng::Seeds;
 use crate::robot::{Drive, DriveKind, Robot};
-use crate::studies::prior_map::{Parameters, Reselect};
+use crate::studies::prior_map::{
+    Candidate, Coverage, Crossing, Gain, Parameters, Reselect, Strategy, View,
+};
 use crate::studies::{self, Condition};
 use crate::world::{Body, Solid, World};
 use std::collections::BTreeMap;
@@ -86,10 +88,15 @@ fn footprint() -> OccupancyGrid {
     OccupancyGrid::from_cells(frame, cells.collect())
 }
 
-fn spec(trial: u32, prior: bool, parameters: Parameters) -> TrialSpec {
-    let prior = prior.then(|| Arc::new(footprint()));
+/// The flat with the robot in its left room.
+pub(super) fn setup(prior: Option<OccupancyGrid>) -> Setup {
     let start = Pose::new(-2.5, 0.5, 0.0);
-    let setup = Setup::new(Arc::new(flat()), Arc::new(robot()), prior, start, parameters);
+    let (world, robot) = (Arc::new(flat()), Arc::new(robot()));
+    Setup::new(world, robot, prior.map(Arc::new), start, Parameters::default())
+}
+
+fn spec(trial: u32, prior: bool, parameters: Parameters) -> TrialSpec {
+    let setup = Setup { parameters, ..setup(prior.then(footprint)) };
     TrialSpec {
         key: TrialKey(Sha256Digest::of("test")),
         condition: Condition(vec![("prior".into(), "none".into())]),
@@ -115,6 +122,121 @@ fn every_kind_of_run_explores_the_flat_without_touching_it() {
         let (half, most) = (measure("distance-m-at-50"), measure("distance-m-at-95"));
         assert!(half <= most && most <= measure("distance-m"), "{what}: {half} {most}");
     }
+}
+
+/// Every option of choosing, measuring and starting, each at a value that is not its default.
+fn unusual() -> Vec<(&'static str, Parameters)> {
+    let with = |change: fn(&mut Parameters)| {
+        let mut parameters = Parameters::default();
+        change(&mut parameters);
+        parameters
+    };
+    vec![
+        ("released gain", with(|p| p.exploration.gain = Gain::Released)),
+        ("view on arrival", with(|p| p.exploration.view = View::OnArrival)),
+        ("best view", with(|p| p.exploration.view = View::Best)),
+        ("centroid", with(|p| p.exploration.candidate = Candidate::NearestToCentroid)),
+        ("nearest", with(|p| p.exploration.strategy = Strategy::NearestFrontier)),
+        ("long frontiers", with(|p| p.exploration.minimum_frontier_cells = 3)),
+        ("slow mind", with(|p| p.exploration.decision_jitter_s = 1.5)),
+        (
+            "slow mind, continuous",
+            with(|p| {
+                p.exploration.decision_jitter_s = 1.5;
+                p.exploration.reselect = Reselect::Continuous;
+            }),
+        ),
+        (
+            "all as released",
+            with(|p| {
+                p.exploration.gain = Gain::Released;
+                p.exploration.candidate = Candidate::NearestToCentroid;
+                p.exploration.reselect = Reselect::Continuous;
+                p.measurement.coverage = Coverage::Released;
+                p.measurement.crossing = Crossing::Decision;
+            }),
+        ),
+        (
+            "another start",
+            with(|p| {
+                p.mission.start_jitter_m = 0.8;
+                p.mission.start_jitter_deg = 40.0;
+            }),
+        ),
+    ]
+}
+
+#[test]
+fn every_option_explores_the_flat_and_no_robot_comes_nearer_to_a_wall_than_its_radius() {
+    for (what, parameters) in unusual() {
+        for prior in [false, true] {
+            let spec = spec(3, prior, parameters.clone());
+            let (record, recording) = studies::reenact(&spec);
+            let what = format!("{what}, prior {prior}: {:?} {}", record.outcome, record.cause);
+            assert_eq!(record.outcome, Outcome::Explored, "{what}");
+            let covered = record.measures["coverage-percent"].unwrap();
+            assert!(covered > 95.0, "{what}: {covered} %");
+            let solid = flat().contact(0.01, 0.43);
+            // Between frames, 0.1 s apart, the body moves 0.1 m: half that at most from a pose that is looked at.
+            for pair in recording.frames.windows(2) {
+                let (a, b) = (pair[0].pose.position(), pair[1].pose.position());
+                for at in [a, (a + b) * 0.5] {
+                    let near = solid.iter().map(|o| o.distance(at)).fold(f64::INFINITY, f64::min);
+                    assert!(near >= 0.177, "{what}: {near} m from a wall at {at:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_trial_that_starts_elsewhere_is_measured_in_the_same_frame() {
+    let mut parameters = Parameters::default();
+    parameters.mission.start_jitter_m = 0.8;
+    parameters.mission.start_jitter_deg = 40.0;
+    let trials: Vec<_> =
+        (0..2).map(|trial| studies::reenact(&spec(trial, true, parameters.clone()))).collect();
+    let first = |i: usize| trials[i].1.frames[0].pose;
+    assert!(first(0).position().distance(first(1).position()) > 0.05);
+    for (_, recording) in &trials {
+        assert!(first(0).position().distance(Point::new(-2.5, 0.5)) < 0.8 * 1.5);
+        // The wall x = -4 lies where it is in the world, wherever the robot started.
+        let mut map = OccupancyGrid::filled(recording.map_frame, Occupancy::Unknown);
+        for (cell, value) in recording.frames.iter().flat_map(|f| &f.map_changes) {
+            map.set(*cell, *value);
+        }
+        let at = |x: f64| {
+            let p = recording.map_pose.inverse_transform(Point::new(x, 0.5));
+            map.at(map.frame().cell_at(p))
+        };
+        assert_eq!((at(-3.7), at(-4.05)), (Occupancy::Free, Occupancy::Occupied));
+    }
+}
+
+#[test]
+fn later_choices_and_further_measures_are_written_down_when_asked_for() {
+    let usual = studies::execute(&spec(0, true, Parameters::default()));
+    let mut parameters = Parameters::default();
+    parameters.measurement.further = true;
+    let further = studies::execute(&spec(0, true, parameters.clone()));
+    let measure = |record: &TrialRecord, name: &str| record.measures[name].unwrap();
+    for (name, value) in &usual.measures {
+        assert_eq!(further.measures[name], *value, "{name}");
+    }
+    assert_eq!(further.chain, usual.chain, "looking changes nothing");
+    let (early, late) =
+        (measure(&further, "decisions-at-50"), measure(&further, "decisions-at-95"));
+    assert!(early <= late && late <= measure(&further, "decisions"), "{early} {late}");
+    assert!(measure(&further, "open-frontiers-at-50") >= 1.0);
+    let per_metre = measure(&further, "turning-rad") / measure(&further, "distance-m");
+    assert_eq!(measure(&further, "turning-rad-per-m"), per_metre);
+    assert!(!usual.measures.contains_key("turning-rad-per-m"));
+    parameters.measurement.crossing = Crossing::Decision;
+    let decided = studies::execute(&spec(0, true, parameters.clone()));
+    parameters.measurement.crossing = Crossing::Interpolated;
+    let interpolated = studies::execute(&spec(0, true, parameters));
+    let at = |record: &TrialRecord| measure(record, "time-s-at-80");
+    assert!(at(&interpolated) < at(&usual) && at(&usual) <= at(&decided));
 }
 
 #[test]

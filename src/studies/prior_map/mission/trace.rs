@@ -1,6 +1,7 @@
 //! What is written down while a trial runs: coverage over time and distance, and the state-hash chain.
 
 use crate::geometry::Pose;
+use crate::studies::prior_map::Crossing;
 use crate::studies::state_chain::StateChain;
 use crate::studies::{Outcome, SeriesPoint, TrialRecord, TrialSpec};
 use crate::units::Tick;
@@ -16,19 +17,27 @@ pub(super) struct Trace {
     covered: i64,
     next_percent: u32,
     series: Vec<SeriesPoint>,
+    when: Crossing,
     crossings: BTreeMap<u32, (f64, f64)>,
+    /// Crossed at a keyframe, but a choice decides when.
+    undecided: Vec<u32>,
+    /// Time (s), distance (m) and coverage (percent) at the last keyframe that changed the map.
+    before: (f64, f64, f64),
     chain: StateChain,
 }
 
 impl Trace {
-    /// The trace of a trial in a world of `total` cells to cover.
-    pub(super) fn new(total: u32) -> Self {
+    /// The trace of a trial in a world of `total` cells to cover, coverages counting as reached as `when` says.
+    pub(super) fn new(total: u32, when: Crossing) -> Self {
         Self {
             total,
             covered: 0,
             next_percent: 1,
             series: Vec::new(),
+            when,
             crossings: BTreeMap::new(),
+            undecided: Vec::new(),
+            before: (0.0, 0.0, 0.0),
             chain: StateChain::default(),
         }
     }
@@ -45,18 +54,44 @@ impl Trace {
         100.0 * covered / f64::from(self.total.max(1))
     }
 
-    /// Notes the first crossing of every whole percent: at the keyframe that brought it, not interpolated.
-    pub(super) fn note_coverage(&mut self, now: Tick, distance_m: f64) {
+    /// Notes the first crossing of every whole percent, at a keyframe that changed the map, and tells those crossed.
+    pub(super) fn note_coverage(&mut self, now: Tick, distance_m: f64) -> std::ops::Range<u32> {
         let percent = self.coverage_percent();
-        if percent < f64::from(self.next_percent) {
-            return;
-        }
         let time_s = now.seconds().get();
+        let first = self.next_percent;
         while self.next_percent <= 100 && percent >= f64::from(self.next_percent) {
-            self.crossings.insert(self.next_percent, (time_s, distance_m));
+            let level = self.next_percent;
+            match self.when {
+                Crossing::Keyframe => {
+                    self.crossings.insert(level, (time_s, distance_m));
+                }
+                Crossing::Interpolated => {
+                    let crossing = self.in_between(f64::from(level), (time_s, distance_m, percent));
+                    self.crossings.insert(level, crossing);
+                }
+                Crossing::Decision => self.undecided.push(level),
+            }
             self.next_percent += 1;
         }
-        self.series.push(SeriesPoint { time_s, distance_m, coverage_percent: percent });
+        self.before = (time_s, distance_m, percent);
+        if first < self.next_percent {
+            self.series.push(SeriesPoint { time_s, distance_m, coverage_percent: percent });
+        }
+        first..self.next_percent
+    }
+
+    /// Time and distance at which `level` percent were reached on a straight line from the keyframe before to `after`.
+    fn in_between(&self, level: f64, after: (f64, f64, f64)) -> (f64, f64) {
+        let before = self.before;
+        let share = (level - before.2) / (after.2 - before.2);
+        (before.0 + share * (after.0 - before.0), before.1 + share * (after.1 - before.1))
+    }
+
+    /// Notes that a location was chosen.
+    pub(super) fn note_choice(&mut self, now: Tick, distance_m: f64) {
+        for level in self.undecided.drain(..) {
+            self.crossings.insert(level, (now.seconds().get(), distance_m));
+        }
     }
 
     /// Every 10 s, notes a point of the curve and a state hash.
@@ -104,5 +139,34 @@ impl Trace {
             sim_seconds: now.seconds().get(),
             chain: self.chain.to_hex(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Keyframes at 2 s and 4 s bring 50 and 60 of 100 cells; a choice follows at 5 s.
+    fn trace(when: Crossing) -> Trace {
+        let mut trace = Trace::new(100, when);
+        trace.cover(50);
+        assert_eq!(trace.note_coverage(Tick(6000), 1.0), 1..51);
+        trace.cover(10);
+        assert_eq!(trace.note_coverage(Tick(12_000), 3.0), 51..61);
+        trace.note_choice(Tick(15_000), 3.5);
+        trace.cover(10);
+        trace.note_coverage(Tick(18_000), 4.0);
+        trace
+    }
+
+    #[test]
+    fn a_coverage_is_reached_at_a_keyframe_in_between_or_at_a_choice() {
+        let at = |when, percent| trace(when).crossings.get(&percent).copied();
+        assert_eq!(at(Crossing::Keyframe, 55), Some((4.0, 3.0)));
+        assert_eq!(at(Crossing::Interpolated, 55), Some((3.0, 2.0)));
+        assert_eq!(at(Crossing::Interpolated, 60), Some((4.0, 3.0)));
+        assert_eq!(at(Crossing::Decision, 55), Some((5.0, 3.5)));
+        assert_eq!(at(Crossing::Decision, 65), None, "no choice came after it");
+        assert_eq!(at(Crossing::Keyframe, 71), None);
     }
 }

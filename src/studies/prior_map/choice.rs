@@ -1,0 +1,145 @@
+//! Steps (b) and (c): frontiers, and what they are judged by (section 3.1).
+
+use super::explorer::cost;
+use super::field_of_view::{FieldOfView, Headings};
+use super::frontier::{Frontier, find_frontiers};
+use super::information_gain::{AlignedPrior, InformationGain};
+use super::parameters::{Exploration, Gain, Parameters, Strategy, View};
+use super::released_gain::{Rays, ReleasedGain};
+use super::utility::{Appraisal, utilities};
+use crate::geometry::Pose;
+use crate::grid::{Cell, GridFrame};
+use crate::mapping::OccupancyMap;
+use crate::math;
+use crate::navigation::CostGrid;
+use crate::robot::Lidar;
+use std::f64::consts::TAU;
+
+/// A choice among frontiers, with what it was made on. Cells are those of `frame`.
+#[derive(Debug, Clone)]
+pub struct Choice {
+    /// Where the cells lie.
+    pub frame: GridFrame,
+    /// All frontiers not given up.
+    pub frontiers: Vec<Frontier>,
+    /// D and I of each.
+    pub appraisals: Vec<Appraisal>,
+    /// u of each.
+    pub utilities: Vec<f64>,
+    /// The chosen one.
+    pub chosen: Option<usize>,
+}
+
+/// What a choice is made on.
+#[derive(Debug, Clone, Copy)]
+pub struct Sight<'a> {
+    /// The map M_E so far.
+    pub map: &'a OccupancyMap,
+    /// The same map inflated, the place where the robot stands free.
+    pub costs: &'a CostGrid,
+    /// Where the robot is, in the map's frame.
+    pub pose: Pose,
+}
+
+/// Finds and judges frontiers in one way.
+#[derive(Debug)]
+pub struct Chooser {
+    exploration: Exploration,
+    frontier_lethal: u8,
+    prior: Option<AlignedPrior>,
+    /// Range of the scanner in cells.
+    range: i32,
+    /// `None` where the scanner looks all round, or is taken to.
+    view: Option<FieldOfView>,
+    /// Only for the best of all headings.
+    headings: Option<Headings>,
+    /// Only for the released program's gain.
+    rays: Option<Rays>,
+}
+
+impl Chooser {
+    /// One that chooses as `parameters` say, with the prior on the lattice of the robot's map.
+    pub fn new(parameters: &Parameters, lidar: &Lidar, prior: Option<AlignedPrior>) -> Self {
+        let exploration = parameters.exploration.clone();
+        let clip_range = parameters.mapping.clip_range_m.unwrap_or(f64::INFINITY);
+        let reach = clip_range.min(lidar.max_range) / parameters.mapping.resolution_m;
+        #[expect(clippy::cast_possible_truncation, reason = "ranges are checked to be below 200 m")]
+        let range = reach.round() as i32;
+        let view = FieldOfView { min_angle: lidar.min_angle, max_angle: lidar.max_angle };
+        let is_turned = exploration.view != View::AllRound && view.width() < TAU;
+        let view = (is_turned && exploration.gain == Gain::Paper).then_some(view);
+        Self {
+            headings: view
+                .filter(|_| exploration.view == View::Best)
+                .map(|view| Headings::new(range, view.width())),
+            rays: (exploration.gain == Gain::Released).then(|| Rays::new(range)),
+            frontier_lethal: cost(parameters.navigation.frontier_lethal_cost),
+            exploration,
+            prior,
+            range,
+            view,
+        }
+    }
+
+    /// Step (b): the frontiers that the robot can go to.
+    pub fn frontiers(&self, sight: Sight<'_>) -> Vec<Frontier> {
+        let map = sight.map.grid();
+        let robot = map.frame().cell_at(sight.pose.position());
+        let Exploration { minimum_frontier_cells, candidate, .. } = self.exploration;
+        let lethal = self.frontier_lethal;
+        find_frontiers(map, sight.costs, robot, lethal, minimum_frontier_cells, candidate)
+    }
+
+    /// The terms of equation 1 for `frontiers`; none is chosen yet.
+    pub fn appraise(&self, sight: Sight<'_>, frontiers: Vec<Frontier>) -> Choice {
+        let frame = *sight.map.grid().frame();
+        let nearest_only = self.exploration.strategy == Strategy::NearestFrontier;
+        let gains = if nearest_only {
+            vec![0.0; frontiers.len()]
+        } else {
+            let candidates: Vec<Cell> = frontiers.iter().map(|f| f.candidate).collect();
+            self.gains(sight, &candidates)
+        };
+        let distance = |f: &Frontier| sight.pose.position().distance(frame.center(f.candidate));
+        let appraisals: Vec<_> = frontiers
+            .iter()
+            .zip(gains)
+            .map(|(f, gain)| Appraisal { distance: distance(f), gain })
+            .collect();
+        let alpha = if nearest_only { 1.0 } else { self.exploration.alpha };
+        let utilities = utilities(&appraisals, alpha);
+        Choice { frame, frontiers, appraisals, utilities, chosen: None }
+    }
+
+    /// I(p) of every candidate location.
+    fn gains(&self, sight: Sight<'_>, candidates: &[Cell]) -> Vec<f64> {
+        let (map, offset, prior) = (sight.map.grid(), sight.map.offset(), self.prior.as_ref());
+        let exploration = &self.exploration;
+        if let Some(rays) = &self.rays {
+            let released = ReleasedGain {
+                rays,
+                map,
+                costs: sight.costs,
+                offset,
+                prior,
+                prior_stop: cost(exploration.prior_ray_stop_cost),
+                baseline_stop: cost(exploration.baseline_ray_stop_cost),
+            };
+            return candidates.iter().map(|&p| released.at(p)).collect();
+        }
+        let occlude = exploration.known_obstacles_occlude;
+        let gain = InformationGain::new(map, offset, prior, self.range, occlude);
+        let one = |&p: &Cell| match (self.view, &self.headings) {
+            (None, _) => gain.at(p),
+            (Some(_), Some(headings)) => gain.best(p, headings),
+            (Some(view), None) => {
+                let way = map.frame().center(p) - sight.pose.position();
+                // Where it already stands there is no direction of arrival: it looks as it does.
+                let is_there = way.norm() < map.frame().resolution;
+                let heading = if is_there { sight.pose.heading } else { math::atan2(way.y, way.x) };
+                gain.within(p, view.facing(heading))
+            }
+        };
+        candidates.iter().map(one).collect()
+    }
+}

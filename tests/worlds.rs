@@ -1,0 +1,220 @@
+//! The worlds of this repository: that they can be driven through as described, and, where the prior-knowledge study's
+//! own worlds are at hand, how well ours agree with them: set `REENACT_ORIGINAL_WORLDS` to the folder that holds
+//! `worlds/` and `priors/`. They are never part of this repository. `cargo test --test worlds -- --nocapture` prints the
+//! measurements.
+#![expect(
+    clippy::print_stdout,
+    reason = "a skipped test says so, and measurements are for reading"
+)]
+
+#[path = "worlds/floor.rs"]
+mod floor;
+
+use floor::{Floor, Passage};
+use reenact::document::Source;
+use reenact::geometry::{Outline, Point};
+use reenact::grid::Occupancy;
+use reenact::provenance::Environment;
+use reenact::world::map_server::{self, Options};
+use reenact::world::{World, document, sdf};
+use std::path::{Path, PathBuf};
+
+/// Our world `name` with its walls and `layers`.
+fn ours(name: &str, layers: &[&str]) -> World {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("worlds/{name}.yaml"));
+    let layers: Vec<String> = layers.iter().map(|layer| (*layer).to_owned()).collect();
+    let source = Source::new(name, std::fs::read_to_string(path).unwrap());
+    document::read(&source, Some(&layers)).unwrap_or_else(|faults| {
+        panic!("{}", faults.iter().map(|f| f.render(false)).collect::<String>())
+    })
+}
+
+fn start(world: &World) -> Point {
+    world.starts["default"].position()
+}
+
+fn parts(world: &World) -> Vec<(String, Outline)> {
+    let region = |r: &reenact::world::Region| (r.name.clone(), Outline::Polygon(r.polygon.clone()));
+    world.regions.iter().map(region).collect()
+}
+
+/// The folder of the study's own worlds; without it the test says that it is skipped.
+fn originals(test: &str) -> Option<PathBuf> {
+    let folder = Environment::read().unwrap().original_worlds;
+    if folder.is_none() {
+        println!("skipped: {test} needs REENACT_ORIGINAL_WORLDS");
+    }
+    folder
+}
+
+fn text(path: &Path) -> Source {
+    Source::new(path.display().to_string(), std::fs::read_to_string(path).unwrap())
+}
+
+#[test]
+fn every_region_of_our_worlds_can_be_reached_also_between_the_furniture() {
+    // A robot that keeps 0.25 m from everything, as the study's operator does.
+    for name in ["basic", "basic-furnished", "office", "open"] {
+        for layers in [&[][..], &["furniture"]] {
+            let world = ours(name, layers);
+            let floor = Floor::with_radius(&world, start(&world), 0.25);
+            for (region, outline) in parts(&world) {
+                assert!(floor.reaches_into(&outline), "{name} {layers:?}: {region}");
+            }
+        }
+    }
+}
+
+/// The paper says 11, 2 and 3 % (section 4); the free areas of the authors' maps differ by 14, 5.2 and 4.1 %.
+#[test]
+fn furniture_covers_as_much_of_the_floor_as_is_said() {
+    let expected =
+        [("basic-furnished", [0.10, 0.15]), ("office", [0.01, 0.03]), ("open", [0.03, 0.05])];
+    for (name, [least, most]) in expected {
+        let world = ours(name, &[]);
+        // A point reaches all of the floor.
+        let floor = Floor::with_radius(&world, start(&world), 0.0);
+        let mut furniture = ours(name, &["furniture"]);
+        furniture.solids.retain(|solid| solid.layer == "furniture");
+        let share = floor.share_covered(&furniture.contact(0.0, 0.43));
+        println!("{name}: furniture covers {:.1} % of {:.0} m2", 100.0 * share, floor.area());
+        assert!((least..=most).contains(&share), "{name}: {share}");
+    }
+}
+
+/// Section 4.2.3: with 12 of 32 doors closed about 25 % of the office cannot be explored.
+#[test]
+fn twelve_closed_doors_take_a_quarter_of_the_office_away() {
+    let open = ours("office", &[]);
+    let closed = ours("office", &["closed-doors"]);
+    let (open, closed) = (Floor::of(&open, start(&open)), Floor::of(&closed, start(&closed)));
+    let lost = 1.0 - closed.area() / open.area();
+    println!("office: {:.1} % behind closed doors", 100.0 * lost);
+    assert!((0.22..=0.28).contains(&lost), "{lost}");
+}
+
+#[test]
+fn our_worlds_have_the_walls_rooms_and_doors_of_the_originals() {
+    let Some(folder) = originals("our_worlds_have_the_walls_rooms_and_doors_of_the_originals")
+    else {
+        return;
+    };
+    // Half the width of a door and a bit more; of the open environment also of a gate.
+    let half_doors: [(&str, usize, &[f64]); 3] =
+        [("basic", 7, &[0.5]), ("office", 32, &[0.8]), ("open", 6, &[0.8, 2.4])];
+    for (name, doors, half_doors) in half_doors {
+        let (our, original) = (
+            ours(name, &[]),
+            sdf::read(&text(&folder.join(format!("worlds/{name}_no_furniture.world")))).unwrap(),
+        );
+        let from = start(&our);
+        let floors = [Floor::of(&our, from), Floor::of(&original, from)];
+
+        let (ours, theirs) = (floors[0].walls(&our), floors[1].walls(&original));
+        let (precision, recall) = (agreeing(&ours, &theirs), agreeing(&theirs, &ours));
+        let f1 = 2.0 * precision * recall / (precision + recall);
+        let areas = [floors[0].area(), floors[1].area()];
+        println!(
+            "{name}: walls F1 {f1:.4} (precision {precision:.4}, recall {recall:.4}), reachable {:.1} m2 of {:.1} m2",
+            areas[0], areas[1]
+        );
+        assert!(f1 >= 0.95, "{name}: F1 {f1}, precision {precision}, recall {recall}");
+        assert!((areas[0] / areas[1] - 1.0).abs() <= 0.02, "{name}: {areas:?} m2");
+
+        for &half_door in half_doors {
+            let [(rooms, passages), (their_rooms, their_passages)] =
+                [floors[0].rooms(half_door), floors[1].rooms(half_door)];
+            println!(
+                "{name}: {} and {} rooms, {} and {} passages at {half_door} m",
+                rooms.len(),
+                their_rooms.len(),
+                passages.len(),
+                their_passages.len()
+            );
+            assert_eq!(rooms.len(), their_rooms.len(), "{name} at {half_door} m");
+            // Ours by the numbers of theirs.
+            let same = |room: &Point| {
+                let near = |other: &Point| other.distance(*room) < 0.5;
+                their_rooms.iter().position(near).unwrap_or_else(|| panic!("{name}: {room:?}"))
+            };
+            let numbers: Vec<usize> = rooms.iter().map(same).collect();
+            let renumbered = passages.iter().map(|passage| Passage {
+                between: passage.between.iter().map(|room| numbers[*room]).collect(),
+                middle: passage.middle,
+            });
+            same_passages(name, renumbered.collect(), their_passages);
+        }
+
+        let named = parts(&our);
+        let [our_doors, their_doors] = [floors[0].doors(&named), floors[1].doors(&named)];
+        assert_eq!(our_doors.len(), doors, "{name}: {our_doors:#?}");
+        same_passages(name, our_doors, their_doors);
+    }
+}
+
+/// Share of `cells` that have one of `others` within 0.2 m.
+fn agreeing(cells: &[Point], others: &[Point]) -> f64 {
+    let agree = |cell: &&Point| others.iter().any(|other| other.distance(**cell) <= 0.2 + 1e-9);
+    let count = |n: usize| f64::from(u32::try_from(n).unwrap());
+    count(cells.iter().filter(agree).count()) / count(cells.len())
+}
+
+/// The same parts are joined by as many passages, which are where the others are.
+fn same_passages<Name: Ord + Clone + std::fmt::Debug>(
+    name: &str,
+    ours: Vec<Passage<Name>>,
+    mut theirs: Vec<Passage<Name>>,
+) {
+    for passage in ours {
+        let same = |other: &Passage<Name>| {
+            other.between == passage.between && other.middle.distance(passage.middle) <= 0.2
+        };
+        match theirs.iter().position(same) {
+            Some(at) => drop(theirs.remove(at)),
+            None => panic!("{name}: theirs has no {passage:?}, but {theirs:#?}"),
+        }
+    }
+    assert!(theirs.is_empty(), "{name}: ours lacks {theirs:#?}");
+}
+
+/// The furniture of two of them is all meshes.
+#[test]
+fn the_furnished_originals_say_how_much_they_lack() {
+    let Some(folder) = originals("the_furnished_originals_say_how_much_they_lack") else { return };
+    for (name, missing) in [("basic", 4), ("office", 44)] {
+        let world = sdf::read(&text(&folder.join(format!("worlds/{name}.world")))).unwrap();
+        assert_eq!(world.missing(), missing, "{name}: {:?}", world.warnings);
+    }
+}
+
+#[test]
+fn the_released_priors_are_read_as_map_server_reads_them() {
+    let Some(folder) = originals("the_released_priors_are_read_as_map_server_reads_them") else {
+        return;
+    };
+    let mut names: Vec<PathBuf> = std::fs::read_dir(folder.join("priors"))
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|e| e == "yaml"))
+        .collect();
+    names.sort();
+    assert!(names.len() >= 14, "{names:?}");
+    for path in names {
+        let source = text(&path);
+        let image = map_server::image_path(&source).unwrap();
+        let bytes = std::fs::read(path.parent().unwrap().join(&image)).unwrap();
+        let counts = |average_alpha: bool| {
+            let map = map_server::read(&source, &image, &bytes, Options { average_alpha })
+                .unwrap_or_else(|faults| panic!("{path:?}: {faults:?}"));
+            [Occupancy::Occupied, Occupancy::Free, Occupancy::Unknown].map(|o| map.count(o))
+        };
+        let (averaged, plain) = (counts(true), counts(false));
+        println!("{}: {averaged:?}, colours alone {plain:?}", path.display());
+        assert!(averaged[0] > 100 && averaged[1] > 1000, "{path:?}: {averaged:?}");
+        if path.ends_with("blueprint_map_server_sequential_t1_map.yaml") {
+            // The grey of the unknown is free once the alpha channel is averaged with it.
+            assert_eq!(averaged, [1868, 17322, 0]);
+            assert!(plain[2] > 1000, "{plain:?}");
+        }
+    }
+}
