@@ -258,8 +258,10 @@ fn check_table(
         faults.check_level(factors, &table.by, baseline, &format!("{pointer}/baseline"));
     }
     check_columns(&table.by, &table.rows, pointer, factors, faults);
+    check_readings(table, pointer, factors, published, faults);
+    let in_rows = table.row_factors();
     for factor in factors.iter().filter(|f| {
-        by.is_some() && f.values.len() > 1 && f.name != table.by && !table.rows.contains(&f.name)
+        by.is_some() && f.values.len() > 1 && f.name != table.by && !in_rows.contains(&f.name)
     }) {
         let message = format!("the table pools all values of the factor `{}`", factor.name);
         let fault = faults.key_fault(pointer, message).label("it is neither in `by` nor in `rows`");
@@ -274,6 +276,28 @@ fn check_table(
         published,
         faults,
     );
+}
+
+/// Readings are rows that the paper does not have.
+fn check_readings(
+    table: &CoverageTable,
+    pointer: &str,
+    factors: &[Factor],
+    published: &BTreeMap<String, Table>,
+    faults: &mut Faults<'_>,
+) {
+    let numbers = table.published.as_ref().and_then(|name| published.get(name));
+    for (i, name) in table.readings.iter().enumerate() {
+        let place = format!("{pointer}/readings/{i}");
+        faults.check_factor(factors, name, &place, false);
+        if *name == table.by || table.rows.contains(name) || table.readings[..i].contains(name) {
+            faults.at(&place, format!("`{name}` is asked for twice"), "remove it");
+        } else if numbers.is_some_and(|numbers| numbers.column(name).is_some()) {
+            let message = format!("the published numbers tell the values of `{name}` apart");
+            let fault = faults.fault(&place, message).label("a reading is what they leave open");
+            faults.push(fault.help(format!("move `{name}` to `rows`")));
+        }
+    }
 }
 
 fn check_milestones(at: &[u32], pointer: &str, faults: &mut Faults<'_>) {

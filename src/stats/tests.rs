@@ -351,6 +351,7 @@ fn matched_means_are_compared_pair_by_pair() {
     assert_close(test.df, 4.0 / (0.5625 + 1.5625 / 2.0), FINE);
     let alone = [(Summary::of(&[12.0]), Summary::of(&[10.0, 14.0]))];
     assert_eq!(welch_matched(&alone), None, "one run has no spread");
+    assert_eq!(welch_matched(&pairs[..1]), Some(welch(pairs[0].0, pairs[0].1)));
 }
 
 proptest! {

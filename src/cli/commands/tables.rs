@@ -13,6 +13,11 @@ pub(super) fn table(
     all: &[TableRequest],
 ) -> String {
     let body = match &request.layout {
+        // Hundreds of lines, which agreement and effects sum up.
+        TableLayout::CoverageTable(wanted) if !wanted.readings.is_empty() => {
+            let cells = findings.coverage_cells(wanted).iter().filter(|c| c.trials > 0).count();
+            format!("  {cells} cells, by {}, in {}.csv\n", wanted.readings.join(", "), request.id)
+        }
         TableLayout::CoverageTable(wanted) => coverage_table(findings, wanted),
         TableLayout::AgreementTable(wanted) => {
             aligned(&findings.agreement_table_in_print(wanted, &coverage_tables(all)))

@@ -21,15 +21,18 @@ const CONFIDENCE: f64 = 0.95;
 pub struct TableAgreement {
     /// Id of the coverage table.
     pub table: String,
-    /// `all`, or the factor value that the part has.
+    /// `all`, or the factor value that the part has; all values of a combination of readings.
     pub scope: String,
+    /// The same as people read it: the table's id where it is the whole, a combination's values alone.
+    pub name: String,
     /// Cells with a log ratio to their baseline on both sides.
     pub ratios: u64,
     /// Printed cells that have none of ours: no run got there.
     pub missing: u64,
     /// Cells with runs that never reached the coverage; their means are of those that did.
     pub censored: u64,
-    /// Sets of cells with no run in common: those of one combination of the rows' factors share their baseline.
+    /// Sets of cells with no run in common: those of one combination of the rows' factors share their baseline, and those
+    /// that differ in readings alone the paper's.
     pub blocks: u64,
     /// Our log ratios on the paper's: 1 and 0 agree, a slope below 1 is a gain smaller than printed. Intervals by the
     /// jackknife over blocks.
@@ -79,15 +82,24 @@ impl Findings<'_> {
         let mut found = Vec::new();
         for (id, table) in tables.iter().filter(|(id, _)| wanted.tables.iter().any(|t| t == id)) {
             let cells = self.coverage_cells(table);
-            found.push(agreement(id, "all", &cells, table));
-            for factor in &table.rows {
+            found.push(agreement(id, ("all", id), &cells, table));
+            for factor in &table.row_factors() {
                 for value in self.values_of(factor) {
                     let level = (factor.clone(), value);
                     let part: Vec<CoverageCell> =
                         cells.iter().filter(|cell| cell.rows.contains(&level)).cloned().collect();
                     let scope = format!("{factor}={}", level.1);
-                    found.push(agreement(id, &scope, &part, table));
+                    found.push(agreement(id, (&scope, &scope), &part, table));
                 }
+            }
+            // One factor's levels have been told.
+            for reading in self.ran(&table.readings).iter().filter(|reading| reading.len() > 1) {
+                let has = |cell: &&CoverageCell| reading.iter().all(|v| cell.rows.contains(v));
+                let part: Vec<CoverageCell> = cells.iter().filter(has).cloned().collect();
+                let pairs: Vec<String> = reading.iter().map(|(f, v)| format!("{f}={v}")).collect();
+                let values: Vec<&str> = reading.iter().map(|(_, v)| v.as_str()).collect();
+                let names = (pairs.join(", "), values.join(", "));
+                found.push(agreement(id, (&names.0, &names.1), &part, table));
             }
             let baseline = table.baseline.as_ref().map(|b| b.0.clone());
             let others = self.values_of(&table.by);
@@ -97,7 +109,8 @@ impl Findings<'_> {
                     .filter(|cell| cell.by == value || Some(&cell.by) == baseline.as_ref())
                     .cloned()
                     .collect();
-                found.push(agreement(id, &format!("{}={value}", table.by), &part, table));
+                let scope = format!("{}={value}", table.by);
+                found.push(agreement(id, (&scope, &scope), &part, table));
             }
         }
         found.retain(|part| part.ratios > 0 || part.scope == "all");
@@ -186,14 +199,12 @@ impl Findings<'_> {
                 None => "-".to_owned(),
             };
             let of = |(inside, known): (u64, u64)| Value::from(format!("{inside}/{known}"));
-            let whole = part.scope == "all";
-            let name = if whole { part.table.clone() } else { part.scope.clone() };
             let ratios = match part.missing {
                 0 => part.ratios.to_string(),
                 missing => format!("{} (-{missing})", part.ratios),
             };
             table.push(vec![
-                name.into(),
+                part.name.into(),
                 ratios.into(),
                 slope.into(),
                 number(part.pearson),
@@ -209,7 +220,7 @@ impl Findings<'_> {
 
 fn agreement(
     id: &str,
-    scope: &str,
+    (scope, name): (&str, &str),
     cells: &[CoverageCell],
     table: &CoverageTable,
 ) -> TableAgreement {
@@ -233,7 +244,9 @@ fn agreement(
             let (above, below) = ((above.printed, above.ours.n), (below.printed, below.ours.n));
             (ours - published).abs() <= log_ratio_half_width(above, below, CONFIDENCE)
         });
-        ratios.push(Ratio { block: above.cell.rows.clone(), ours, published, inside });
+        // Readings share the paper's numbers.
+        let block = above.cell.rows[..table.rows.len()].to_vec();
+        ratios.push(Ratio { block, ours, published, inside });
     }
     let mut blocks: Vec<&[(String, String)]> = Vec::new();
     let mut places: Vec<Vec<usize>> = Vec::new();
@@ -262,6 +275,7 @@ fn agreement(
     TableAgreement {
         table: id.to_owned(),
         scope: scope.to_owned(),
+        name: name.to_owned(),
         ratios: ratios.len() as u64,
         missing: printed.filter(|cell| cell.ours.is_none()).count() as u64,
         censored: both.iter().filter(|both| both.ours.n < both.cell.trials).count() as u64,

@@ -55,7 +55,12 @@ impl Findings<'_> {
     /// The cells of a table in the paper's order: rows, then coverage, then side by side.
     pub fn coverage_cells(&self, request: &CoverageTable) -> Vec<CoverageCell> {
         let mut cells = Vec::new();
-        for rows in self.crossed(&request.rows) {
+        // A reading that the design does not have is no row of cells that nobody reached.
+        let readings = self.ran(&request.readings);
+        let is_read = |rows: &Vec<(String, String)>| {
+            readings.iter().any(|reading| rows[request.rows.len()..] == reading[..])
+        };
+        for rows in self.crossed(&request.row_factors()).into_iter().filter(is_read) {
             for &percent in &request.at {
                 let first = cells.len();
                 for by in self.values_of(&request.by) {
@@ -105,7 +110,7 @@ impl Findings<'_> {
 
     /// A requested table, tidy: one row a cell.
     pub fn coverage_table(&self, wanted: &CoverageTable) -> Table {
-        let mut columns = wanted.rows.clone();
+        let mut columns = wanted.row_factors();
         columns.extend(["coverage-percent".to_owned(), wanted.by.clone()]);
         columns.extend(
             [
@@ -151,7 +156,7 @@ impl Findings<'_> {
     pub fn coverage_table_in_print(&self, wanted: &CoverageTable) -> Table {
         let cells = self.coverage_cells(wanted);
         let side_by_side = self.values_of(&wanted.by);
-        let mut columns = wanted.rows.clone();
+        let mut columns = wanted.row_factors();
         columns.push("coverage".to_owned());
         for value in &side_by_side {
             columns.push(value.clone());
