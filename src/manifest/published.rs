@@ -328,13 +328,15 @@ fn check_effects(
             } else if key == "factors" && factor.values.len() < 2 {
                 let message = format!("the factor `{name}` has one level");
                 faults.at(&place, message, "expected a factor with levels to compare");
-            } else if key == "factors" && doc.shared_noise.contains(name) {
-                let message = format!("trials that differ in `{name}` alone see the same noise");
-                let fault = faults.fault(&place, message);
-                let help = format!("remove `{name}` from `shared-noise`");
-                faults.push(fault.label("intervals of effects need independent trials").help(help));
             }
         }
+    }
+    // Sharing matters between conditions that one effect is made from, whichever factor they differ in.
+    for name in doc.shared_noise.iter().filter(|name| !wanted.within.contains(name)) {
+        let message = format!("trials that differ in `{name}` alone see the same noise");
+        let fault = faults.fault(&format!("{pointer}/factors"), message);
+        let help = format!("remove `{name}` from `shared-noise`");
+        faults.push(fault.label("intervals of effects need independent trials").help(help));
     }
     let place = format!("{pointer}/published");
     let Some(numbers) = check_known(wanted.published.as_ref(), &place, doc, published, faults)
