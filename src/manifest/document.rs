@@ -353,6 +353,9 @@ pub enum PublishedDoc {
 pub struct PublishedFile {
     /// Columns: factors, `coverage-percent`, `value`, `sd`, `n`.
     pub file: String,
+    /// Factors that the paper did not vary: its numbers stand beside all their values.
+    #[serde(default)]
+    pub for_all: Vec<String>,
 }
 
 impl PublishedDoc {
@@ -361,6 +364,14 @@ impl PublishedDoc {
         match self {
             Self::Path(path) => path,
             Self::File(file) => &file.file,
+        }
+    }
+
+    /// Factors that the paper did not vary.
+    pub fn for_all(&self) -> &[String] {
+        match self {
+            Self::Path(_) => &[],
+            Self::File(file) => &file.for_all,
         }
     }
 }

@@ -258,10 +258,8 @@ fn check_table(
         faults.check_level(factors, &table.by, baseline, &format!("{pointer}/baseline"));
     }
     check_columns(&table.by, &table.rows, pointer, factors, faults);
-    check_readings(table, pointer, factors, published, faults);
-    let in_rows = table.row_factors();
     for factor in factors.iter().filter(|f| {
-        by.is_some() && f.values.len() > 1 && f.name != table.by && !in_rows.contains(&f.name)
+        by.is_some() && f.values.len() > 1 && f.name != table.by && !table.rows.contains(&f.name)
     }) {
         let message = format!("the table pools all values of the factor `{}`", factor.name);
         let fault = faults.key_fault(pointer, message).label("it is neither in `by` nor in `rows`");
@@ -276,28 +274,6 @@ fn check_table(
         published,
         faults,
     );
-}
-
-/// Readings are rows that the paper does not have.
-fn check_readings(
-    table: &CoverageTable,
-    pointer: &str,
-    factors: &[Factor],
-    published: &BTreeMap<String, Table>,
-    faults: &mut Faults<'_>,
-) {
-    let numbers = table.published.as_ref().and_then(|name| published.get(name));
-    for (i, name) in table.readings.iter().enumerate() {
-        let place = format!("{pointer}/readings/{i}");
-        faults.check_factor(factors, name, &place, false);
-        if *name == table.by || table.rows.contains(name) || table.readings[..i].contains(name) {
-            faults.at(&place, format!("`{name}` is asked for twice"), "remove it");
-        } else if numbers.is_some_and(|numbers| numbers.column(name).is_some()) {
-            let message = format!("the published numbers tell the values of `{name}` apart");
-            let fault = faults.fault(&place, message).label("a reading is what they leave open");
-            faults.push(fault.help(format!("move `{name}` to `rows`")));
-        }
-    }
 }
 
 fn check_milestones(at: &[u32], pointer: &str, faults: &mut Faults<'_>) {
@@ -411,11 +387,16 @@ fn check_published(
 ) {
     let place = format!("{pointer}/published");
     let Some(numbers) = check_known(name, &place, doc, published, faults) else { return };
+    let name = name.map_or("", String::as_str);
+    let for_all = doc.published.get(name).map_or(&[][..], |numbers| numbers.for_all());
     for factor in std::iter::once(by).chain(rows.iter().map(String::as_str)) {
-        if numbers.column(factor).is_none() {
-            let name = name.map_or("", String::as_str);
+        if numbers.column(factor).is_none() && !for_all.iter().any(|name| name == factor) {
             let message = format!("the published numbers `{name}` have no column `{factor}`");
-            faults.at(&place, message, "asked for by this table");
+            let fault = faults.fault(&place, message).label("asked for by this table");
+            let help = format!(
+                "where the paper did not vary it: `{name}: {{file: FILE, for-all: [{factor}]}}`"
+            );
+            faults.push(fault.help(help));
         }
     }
 }

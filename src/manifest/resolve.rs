@@ -230,6 +230,10 @@ impl Resolver<'_> {
         let mut tables = BTreeMap::new();
         for (name, file) in &self.doc.published {
             let pointer = step("/published", name);
+            for (i, factor) in file.for_all().iter().enumerate() {
+                let pointer = format!("{pointer}/for-all/{i}");
+                self.faults.check_factor(&self.factors, factor, &pointer, false);
+            }
             if let Some(source) = self.text(file.path(), &pointer)
                 && let Some(table) =
                     published::read(&source, self.doc.study, &self.factors, &mut self.faults)

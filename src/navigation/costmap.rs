@@ -43,6 +43,14 @@ impl CostGrid {
         self.cost(cell).is_some_and(|cost| cost < lethal)
     }
 
+    /// Takes `length` costs of a row of `other` from the cell `from` on, to `to` and the cells after it. Both rows hold them.
+    pub(super) fn copy_row(&mut self, to: Cell, other: &Self, from: Cell, length: usize) {
+        let (to, from) = (padded_index(&self.frame, to), padded_index(&other.frame, from));
+        if let (Some(to), Some(from)) = (to, from) {
+            self.costs[to..to + length].copy_from_slice(&other.costs[from..from + length]);
+        }
+    }
+
     /// All costs, padded.
     pub(super) fn padded(&self) -> &[u8] {
         &self.costs

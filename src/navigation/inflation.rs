@@ -1,13 +1,18 @@
 //! Obstacles inflated over the free cells around them.
 
 use super::CostGrid;
-use super::costmap::{UNKNOWN, padded_width};
+use super::costmap::padded_width;
 use crate::grid::{Occupancy, OccupancyGrid};
 
 /// The map with costs that fall from 100 at obstacles to 0 at `radius` cells: trunc(100 (1 - d / radius)), d
 /// the distance in cells to the obstacle that reached the cell first over free cells. Unknown cells are
 /// neither inflated nor crossed (prior-map facts, section 4, "Inflation").
 pub fn inflate(map: &OccupancyGrid, radius: u32) -> CostGrid {
+    inflate_in_steps(map, radius).0
+}
+
+/// [`inflate`], and how many steps the fires took until all were out.
+pub(super) fn inflate_in_steps(map: &OccupancyGrid, radius: u32) -> (CostGrid, u32) {
     let frame = *map.frame();
     let mut grid = CostGrid::unknown(frame);
     let width = padded_width(&frame);
@@ -16,21 +21,23 @@ pub fn inflate(map: &OccupancyGrid, radius: u32) -> CostGrid {
     let mut front: Vec<Fire> = Vec::new();
     for (y, row) in map.values().chunks((width - 2).max(1)).enumerate() {
         let first = (y + 1) * width + 1;
-        for (cost, value) in costs[first..].iter_mut().zip(row) {
-            *cost = match value {
-                Occupancy::Occupied => 100,
-                Occupancy::Free => 0,
-                Occupancy::Unknown => UNKNOWN,
-            };
-        }
-        for (x, _) in row.iter().enumerate().filter(|(_, value)| **value == Occupancy::Occupied) {
-            front.push(Fire { index: first + x, dx: 0, dy: 0 });
+        for (x, &value) in row.iter().enumerate() {
+            match value {
+                Occupancy::Occupied => {
+                    costs[first + x] = 100;
+                    front.push(Fire { index: first + x, dx: 0, dy: 0 });
+                }
+                Occupancy::Free => costs[first + x] = 0,
+                Occupancy::Unknown => {}
+            }
         }
     }
     let reach = i64::from(radius) * i64::from(radius);
     let table: Vec<u8> = (0..reach).map(|squared| cost_at(squared, radius)).collect();
     let mut next = Vec::new();
+    let mut steps = 0;
     while !front.is_empty() {
+        steps += 1;
         for &Fire { index, dx, dy } in &front {
             let neighbours = [
                 Fire { index: index + 1, dx: dx + 1, dy },
@@ -51,7 +58,7 @@ pub fn inflate(map: &OccupancyGrid, radius: u32) -> CostGrid {
         front.clear();
         std::mem::swap(&mut front, &mut next);
     }
-    grid
+    (grid, steps)
 }
 
 /// A cell that a fire has come to: its padded index, and how many cells it is from where the fire began.

@@ -7,6 +7,7 @@
 
 mod arcs;
 mod costmap;
+mod inflated_map;
 mod inflation;
 mod local;
 pub mod maneuver;
@@ -14,6 +15,7 @@ mod wavefront;
 
 pub use arcs::{Operator, OperatorRule, Steering};
 pub use costmap::CostGrid;
+pub use inflated_map::InflatedMap;
 pub use inflation::inflate;
 pub use local::{LocalMap, LocalRule};
 pub use wavefront::{UNREACHED, Wavefront};

@@ -14,9 +14,10 @@ pub(super) fn table(
 ) -> String {
     let body = match &request.layout {
         // Hundreds of lines, which agreement and effects sum up.
-        TableLayout::CoverageTable(wanted) if !wanted.readings.is_empty() => {
+        TableLayout::CoverageTable(wanted) if findings.readings(wanted).len() > 1 => {
             let cells = findings.coverage_cells(wanted).iter().filter(|c| c.trials > 0).count();
-            format!("  {cells} cells, by {}, in {}.csv\n", wanted.readings.join(", "), request.id)
+            let readings = findings.readings(wanted).join(", ");
+            format!("  {cells} cells, by {readings}, in {}.csv\n", request.id)
         }
         TableLayout::CoverageTable(wanted) => coverage_table(findings, wanted),
         TableLayout::AgreementTable(wanted) => {

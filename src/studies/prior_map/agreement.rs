@@ -81,25 +81,34 @@ impl Findings<'_> {
     ) -> Vec<TableAgreement> {
         let mut found = Vec::new();
         for (id, table) in tables.iter().filter(|(id, _)| wanted.tables.iter().any(|t| t == id)) {
-            let cells = self.coverage_cells(table);
-            found.push(agreement(id, ("all", id), &cells, table));
-            for factor in &table.row_factors() {
+            let (cells, readings) = (self.coverage_cells(table), self.readings(table));
+            let agreement = |id: &str, names: (&str, &str), cells: &[CoverageCell]| {
+                agreement(
+                    id,
+                    names,
+                    cells,
+                    table.baseline.as_ref().map(|b| b.0.as_str()),
+                    &readings,
+                )
+            };
+            found.push(agreement(id, ("all", id), &cells));
+            for factor in &table.rows {
                 for value in self.values_of(factor) {
                     let level = (factor.clone(), value);
                     let part: Vec<CoverageCell> =
                         cells.iter().filter(|cell| cell.rows.contains(&level)).cloned().collect();
                     let scope = format!("{factor}={}", level.1);
-                    found.push(agreement(id, (&scope, &scope), &part, table));
+                    found.push(agreement(id, (&scope, &scope), &part));
                 }
             }
             // One factor's levels have been told.
-            for reading in self.ran(&table.readings).iter().filter(|reading| reading.len() > 1) {
+            for reading in self.ran(&readings).iter().filter(|reading| reading.len() > 1) {
                 let has = |cell: &&CoverageCell| reading.iter().all(|v| cell.rows.contains(v));
                 let part: Vec<CoverageCell> = cells.iter().filter(has).cloned().collect();
                 let pairs: Vec<String> = reading.iter().map(|(f, v)| format!("{f}={v}")).collect();
                 let values: Vec<&str> = reading.iter().map(|(_, v)| v.as_str()).collect();
                 let names = (pairs.join(", "), values.join(", "));
-                found.push(agreement(id, (&names.0, &names.1), &part, table));
+                found.push(agreement(id, (&names.0, &names.1), &part));
             }
             let baseline = table.baseline.as_ref().map(|b| b.0.clone());
             let others = self.values_of(&table.by);
@@ -110,7 +119,7 @@ impl Findings<'_> {
                     .cloned()
                     .collect();
                 let scope = format!("{}={value}", table.by);
-                found.push(agreement(id, (&scope, &scope), &part, table));
+                found.push(agreement(id, (&scope, &scope), &part));
             }
         }
         found.retain(|part| part.ratios > 0 || part.scope == "all");
@@ -222,10 +231,10 @@ fn agreement(
     id: &str,
     (scope, name): (&str, &str),
     cells: &[CoverageCell],
-    table: &CoverageTable,
+    baseline: Option<&str>,
+    readings: &[String],
 ) -> TableAgreement {
     let both: Vec<Both<'_>> = cells.iter().filter_map(on_both_sides).collect();
-    let baseline = table.baseline.as_ref().map(|b| b.0.as_str());
     let mut ratios: Vec<Ratio> = Vec::new();
     for above in both.iter().filter(|both| Some(both.cell.by.as_str()) != baseline) {
         let base = both.iter().find(|below| {
@@ -245,7 +254,8 @@ fn agreement(
             (ours - published).abs() <= log_ratio_half_width(above, below, CONFIDENCE)
         });
         // Readings share the paper's numbers.
-        let block = above.cell.rows[..table.rows.len()].to_vec();
+        let mut block = above.cell.rows.clone();
+        block.retain(|(factor, _)| !readings.contains(factor));
         ratios.push(Ratio { block, ours, published, inside });
     }
     let mut blocks: Vec<&[(String, String)]> = Vec::new();

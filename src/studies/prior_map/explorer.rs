@@ -9,11 +9,12 @@ use super::information_gain::AlignedPrior;
 use super::parameters::{Parameters, Reselect};
 use super::utility::ranked;
 use crate::geometry::{Point, Pose};
-use crate::grid::{Cell, GridFrame, Occupancy, line};
+use crate::grid::{Cell, GridFrame, Occupancy, OccupancyGrid, line};
 use crate::mapping::{Change, KeyframeMapper, KeyframeRule, OccupancyMap, ScanRule};
 use crate::math;
 use crate::navigation::{
-    CostGrid, LocalMap, LocalRule, Operator, OperatorRule, Steering, Wavefront, inflate,
+    CostGrid, InflatedMap, LocalMap, LocalRule, Operator, OperatorRule, Steering, Wavefront,
+    inflate,
 };
 use crate::rng::Stream;
 use crate::robot::{Lidar, Odometry, Scan, Twist};
@@ -91,6 +92,7 @@ pub struct Explorer {
     local: LocalMap,
     operator: Operator,
     phase: Phase,
+    inflated: InflatedMap,
     wave: Option<Wavefront>,
     steering: Option<Steering>,
     keyframe_wanted: bool,
@@ -142,6 +144,7 @@ impl Explorer {
             }),
             parameters: parameters.clone(),
             phase: Phase::Choosing,
+            inflated: InflatedMap::new(navigation.inflation_radius_cells),
             wave: None,
             steering: None,
             keyframe_wanted: false,
@@ -217,7 +220,8 @@ impl Explorer {
 
     /// How many frontiers there are as seen from `pose`, given up or not.
     pub fn open_frontiers(&self, pose: Pose) -> usize {
-        let costs = self.costs(pose);
+        let radius = self.parameters.navigation.inflation_radius_cells;
+        let costs = inflate(&self.map_with_place(pose), radius);
         self.chooser.frontiers(Sight { map: self.map(), costs: &costs, pose }).len()
     }
 
@@ -431,8 +435,14 @@ impl Explorer {
         unknown.iter().fold(Point::ZERO, |sum, &point| sum + point * share)
     }
 
-    /// The inflated map, with the place where the robot stands free (prior-map facts, section 4).
-    fn costs(&self, pose: Pose) -> Arc<CostGrid> {
+    /// The map inflated, with the place where the robot stands free.
+    fn costs(&mut self, pose: Pose) -> Arc<CostGrid> {
+        let map = self.map_with_place(pose);
+        self.inflated.update(map)
+    }
+
+    /// The map with the place where the robot stands free (prior-map facts, section 4).
+    fn map_with_place(&self, pose: Pose) -> OccupancyGrid {
         let mut map = self.map().grid().clone();
         let robot = map.frame().cell_at(pose.position());
         for y in -2..=1 {
@@ -440,7 +450,7 @@ impl Explorer {
                 map.set(Cell::new(robot.x + x, robot.y + y), Occupancy::Free);
             }
         }
-        Arc::new(inflate(&map, self.parameters.navigation.inflation_radius_cells))
+        map
     }
 
     fn wave_to(

@@ -22,23 +22,12 @@ pub struct CoverageTable {
     /// Factors whose values get rows of their own.
     #[serde(default)]
     pub rows: Vec<String>,
-    /// Factors with rows of their own that the paper does not tell apart, choices that it leaves open: its numbers stand
-    /// beside each of their values, and agreement is told of each of their combinations.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub readings: Vec<String>,
     /// A key of `published`: the paper's own numbers, to stand beside.
     #[serde(default)]
     pub published: Option<String>,
     /// Whether each cell tells how it differs from its baseline: effect, and p at all runs and at the paper's number.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub tests: bool,
-}
-
-impl CoverageTable {
-    /// All factors whose values get rows of their own.
-    pub fn row_factors(&self) -> Vec<String> {
-        self.rows.iter().chain(&self.readings).cloned().collect()
-    }
 }
 
 /// How coverage tables agree with the paper's.

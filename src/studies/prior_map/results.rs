@@ -52,15 +52,24 @@ impl Findings<'_> {
         table
     }
 
+    /// The factors in the rows of a table that its published numbers do not tell apart, choices that the paper leaves open.
+    pub fn readings(&self, request: &CoverageTable) -> Vec<String> {
+        let published = request.published.as_ref().and_then(|name| self.published.get(name));
+        let open = |factor: &&String| published.is_some_and(|table| table.column(factor).is_none());
+        request.rows.iter().filter(open).cloned().collect()
+    }
+
     /// The cells of a table in the paper's order: rows, then coverage, then side by side.
     pub fn coverage_cells(&self, request: &CoverageTable) -> Vec<CoverageCell> {
         let mut cells = Vec::new();
         // A reading that the design does not have is no row of cells that nobody reached.
-        let readings = self.ran(&request.readings);
+        let readings = self.readings(request);
+        let ran = self.ran(&readings);
         let is_read = |rows: &Vec<(String, String)>| {
-            readings.iter().any(|reading| rows[request.rows.len()..] == reading[..])
+            readings.is_empty()
+                || ran.iter().any(|reading| reading.iter().all(|value| rows.contains(value)))
         };
-        for rows in self.crossed(&request.row_factors()).into_iter().filter(is_read) {
+        for rows in self.crossed(&request.rows).into_iter().filter(is_read) {
             for &percent in &request.at {
                 let first = cells.len();
                 for by in self.values_of(&request.by) {
@@ -110,7 +119,7 @@ impl Findings<'_> {
 
     /// A requested table, tidy: one row a cell.
     pub fn coverage_table(&self, wanted: &CoverageTable) -> Table {
-        let mut columns = wanted.row_factors();
+        let mut columns = wanted.rows.clone();
         columns.extend(["coverage-percent".to_owned(), wanted.by.clone()]);
         columns.extend(
             [
@@ -156,7 +165,7 @@ impl Findings<'_> {
     pub fn coverage_table_in_print(&self, wanted: &CoverageTable) -> Table {
         let cells = self.coverage_cells(wanted);
         let side_by_side = self.values_of(&wanted.by);
-        let mut columns = wanted.row_factors();
+        let mut columns = wanted.rows.clone();
         columns.push("coverage".to_owned());
         for value in &side_by_side {
             columns.push(value.clone());

@@ -71,7 +71,6 @@ fn request(tests: bool) -> CoverageTable {
         by: "prior".to_owned(),
         baseline: Some(serde_json::from_str("\"none\"").unwrap()),
         rows: vec!["environment".to_owned()],
-        readings: Vec::new(),
         published: Some("distance-m".to_owned()),
         tests,
     }
@@ -192,7 +191,7 @@ fn every_reading_that_was_run_has_its_own_score() {
     let findings =
         Findings { factors: &factors, records: &all, published: &published, calibration: None };
     let mut table = request(false);
-    table.readings = vec!["gain".to_owned(), "stop".to_owned()];
+    table.rows.extend(["gain".to_owned(), "stop".to_owned()]);
     let wanted = AgreementTable { tables: vec!["distance".to_owned()] };
     let parts = findings.agreement(&wanted, &[("distance", &table)]);
     let part = |scope: &str| parts.iter().find(|part| part.scope == scope).unwrap();
