@@ -147,6 +147,7 @@ fn results(plan: &Plan, records: &[TrialRecord]) -> Result<Vec<(String, Vec<u8>)
     }
     for request in &experiment.tables {
         let path = |extension| format!("tables/{}.{extension}", request.id);
+        let mut note = String::new();
         let (tidy, print) = match &request.layout {
             TableLayout::CoverageTable(wanted) => {
                 (findings.coverage_table(wanted), findings.coverage_table_in_print(wanted))
@@ -155,6 +156,13 @@ fn results(plan: &Plan, records: &[TrialRecord]) -> Result<Vec<(String, Vec<u8>)
                 let tables = coverage_tables(&experiment.tables);
                 let print = findings.agreement_table_in_print(wanted, &tables);
                 (findings.agreement_table(wanted, &tables), print)
+            }
+            TableLayout::EffectsTable(wanted) => {
+                let (print, more) = findings.effects_table_in_print(wanted);
+                if more > 0 {
+                    note = format!("\n{more} more in {}.csv\n", request.id);
+                }
+                (findings.effects_table(wanted), print)
             }
             TableLayout::OutcomeTable(wanted) => {
                 (findings.outcome_table(wanted), findings.outcome_table_in_print(wanted))
@@ -165,7 +173,7 @@ fn results(plan: &Plan, records: &[TrialRecord]) -> Result<Vec<(String, Vec<u8>)
             }
         };
         files.push((path("csv"), tidy.to_csv().into_bytes()));
-        let print = format!("# {}\n\n{}", request.title, print.to_markdown());
+        let print = format!("# {}\n\n{}{note}", request.title, print.to_markdown());
         files.push((path("md"), print.into_bytes()));
     }
     for request in &experiment.figures {

@@ -6,7 +6,7 @@ use super::document::ManifestDoc;
 use super::faults::{Faults, step};
 use crate::document::{Diagnostic, Source, suggestion};
 use crate::studies::deadline::OutcomeTable;
-use crate::studies::prior_map::{AgreementTable, CoverageTable, MILESTONES};
+use crate::studies::prior_map::{AgreementTable, CoverageTable, EffectsTable, MILESTONES};
 use crate::studies::{FactorValue, FigureLayout, StudyKind, TableLayout, coverage_tables};
 use crate::table::{Table, Value};
 use std::collections::{BTreeMap, BTreeSet};
@@ -148,6 +148,11 @@ pub(super) fn check_requests(
                 foreign(StudyKind::PriorMap, &pointer, faults);
                 check_agreement(wanted, &pointer, doc, faults);
             }
+            TableLayout::EffectsTable(wanted) => {
+                let pointer = format!("/tables/{i}/effects-table");
+                foreign(StudyKind::PriorMap, &pointer, faults);
+                check_effects(wanted, &pointer, doc, factors, published, faults);
+            }
             TableLayout::OutcomeTable(table) => {
                 let pointer = format!("/tables/{i}/outcome-table");
                 foreign(StudyKind::Deadline, &pointer, faults);
@@ -247,10 +252,7 @@ fn check_table(
     published: &BTreeMap<String, Table>,
     faults: &mut Faults<'_>,
 ) {
-    for (i, level) in table.at.iter().enumerate().filter(|(_, l)| !MILESTONES.contains(l)) {
-        let message = format!("trials are not measured at {level} % of coverage");
-        faults.at(&format!("{pointer}/at/{i}"), message, "expected a multiple of 5 from 50 to 95");
-    }
+    check_milestones(&table.at, pointer, faults);
     let by = factors.iter().find(|factor| factor.name == table.by);
     if let (Some(_), Some(baseline)) = (by, &table.baseline) {
         faults.check_level(factors, &table.by, baseline, &format!("{pointer}/baseline"));
@@ -272,6 +274,59 @@ fn check_table(
         published,
         faults,
     );
+}
+
+fn check_milestones(at: &[u32], pointer: &str, faults: &mut Faults<'_>) {
+    for (i, level) in at.iter().enumerate().filter(|(_, l)| !MILESTONES.contains(l)) {
+        let message = format!("trials are not measured at {level} % of coverage");
+        faults.at(&format!("{pointer}/at/{i}"), message, "expected a multiple of 5 from 50 to 95");
+    }
+}
+
+/// Effects are of factors that have something to compare, in runs that share no noise.
+fn check_effects(
+    wanted: &EffectsTable,
+    pointer: &str,
+    doc: &ManifestDoc,
+    factors: &[Factor],
+    published: &BTreeMap<String, Table>,
+    faults: &mut Faults<'_>,
+) {
+    check_milestones(&wanted.at, pointer, faults);
+    let mut seen = BTreeSet::new();
+    for (key, names) in [("factors", &wanted.factors), ("within", &wanted.within)] {
+        for (i, name) in names.iter().enumerate() {
+            let place = format!("{pointer}/{key}/{i}");
+            let Some(factor) = faults.check_factor(factors, name, &place, false) else { continue };
+            if !seen.insert(name) {
+                let label = "a factor is either compared or told apart, once";
+                faults.at(&place, format!("`{name}` is asked for twice"), label);
+            } else if key == "factors" && factor.values.len() < 2 {
+                let message = format!("the factor `{name}` has one level");
+                faults.at(&place, message, "expected a factor with levels to compare");
+            }
+        }
+    }
+    // Sharing matters between conditions that one effect is made from, whichever factor they differ in.
+    for name in doc.shared_noise.iter().filter(|name| !wanted.within.contains(name)) {
+        let message = format!("trials that differ in `{name}` alone see the same noise");
+        let fault = faults.fault(&format!("{pointer}/factors"), message);
+        let help = format!("remove `{name}` from `shared-noise`");
+        faults.push(fault.label("intervals of effects need independent trials").help(help));
+    }
+    let place = format!("{pointer}/published");
+    let Some(numbers) = check_known(wanted.published.as_ref(), &place, doc, published, faults)
+    else {
+        return;
+    };
+    for factor in factors {
+        let names_a_cell = wanted.within.contains(&factor.name) || factor.values.len() == 1;
+        if numbers.column(&factor.name).is_some() && !names_a_cell {
+            let message = format!("the published numbers have a column `{}`", factor.name);
+            let fault = faults.fault(&place, message).label("which names no cell of this table");
+            faults.push(fault.help(format!("add `{}` to `within`", factor.name)));
+        }
+    }
 }
 
 /// Agreement is of coverage tables that have something to agree with.
@@ -330,25 +385,37 @@ fn check_published(
     published: &BTreeMap<String, Table>,
     faults: &mut Faults<'_>,
 ) {
-    let Some(name) = name else { return };
     let place = format!("{pointer}/published");
+    let Some(numbers) = check_known(name, &place, doc, published, faults) else { return };
+    let name = name.map_or("", String::as_str);
+    let for_all = doc.published.get(name).map_or(&[][..], |numbers| numbers.for_all());
+    for factor in std::iter::once(by).chain(rows.iter().map(String::as_str)) {
+        if numbers.column(factor).is_none() && !for_all.iter().any(|name| name == factor) {
+            let message = format!("the published numbers `{name}` have no column `{factor}`");
+            let fault = faults.fault(&place, message).label("asked for by this table");
+            let help = format!(
+                "where the paper did not vary it: `{name}: {{file: FILE, for-all: [{factor}]}}`"
+            );
+            faults.push(fault.help(help));
+        }
+    }
+}
+
+/// The published numbers `name`, where they are named, known and could be read.
+fn check_known<'p>(
+    name: Option<&String>,
+    place: &str,
+    doc: &ManifestDoc,
+    published: &'p BTreeMap<String, Table>,
+    faults: &mut Faults<'_>,
+) -> Option<&'p Table> {
+    let name = name?;
     if !doc.published.contains_key(name) {
         let known: Vec<&str> = doc.published.keys().map(String::as_str).collect();
         let fault = faults
-            .fault(&place, format!("unknown published numbers `{name}`"))
+            .fault(place, format!("unknown published numbers `{name}`"))
             .label("not a key of `published`");
         faults.push(fault.help(known_or_near(name, &known)));
-    } else if let Some(numbers) = published.get(name) {
-        let for_all = doc.published[name].for_all();
-        for factor in std::iter::once(by).chain(rows.iter().map(String::as_str)) {
-            if numbers.column(factor).is_none() && !for_all.iter().any(|name| name == factor) {
-                let message = format!("the published numbers `{name}` have no column `{factor}`");
-                let fault = faults.fault(&place, message).label("asked for by this table");
-                let help = format!(
-                    "where the paper did not vary it: `{name}: {{file: FILE, for-all: [{factor}]}}`"
-                );
-                faults.push(fault.help(help));
-            }
-        }
     }
+    published.get(name)
 }

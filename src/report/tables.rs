@@ -5,8 +5,9 @@ use super::content::{Measured, ReportCell, ReportRow, ReportTable};
 use crate::plan::Plan;
 use crate::studies::deadline::results::OutcomeCell;
 use crate::studies::deadline::{ManeuverTable, OutcomeTable, Quantity};
+use crate::studies::prior_map::effects::Effect;
 use crate::studies::prior_map::results::CoverageCell;
-use crate::studies::prior_map::{AgreementTable, CoverageTable, Metric};
+use crate::studies::prior_map::{AgreementTable, CoverageTable, EffectsTable, Metric};
 use crate::studies::{Findings, TableLayout, TableRequest, coverage_tables};
 
 /// What the page shows of a requested table.
@@ -14,6 +15,7 @@ pub(super) fn table(findings: &Findings<'_>, request: &TableRequest, plan: &Plan
     match &request.layout {
         TableLayout::CoverageTable(wanted) => coverage_table(findings, request, wanted, plan),
         TableLayout::AgreementTable(wanted) => agreement_table(findings, request, wanted, plan),
+        TableLayout::EffectsTable(wanted) => effects_table(findings, request, wanted, plan),
         TableLayout::OutcomeTable(wanted) => outcome_table(findings, request, wanted, plan),
         TableLayout::ManeuverTable(wanted) => maneuver_table(findings, request, wanted),
     }
@@ -141,6 +143,46 @@ fn agreement_table(
         ]
         .map(str::to_owned)
         .to_vec(),
+    }
+}
+
+/// One line a level of a factor in a cell of the design; the coverages stand side by side. Beside each effect stands what
+/// lies between the first level and the paper.
+fn effects_table(
+    findings: &Findings<'_>,
+    request: &TableRequest,
+    wanted: &EffectsTable,
+    plan: &Plan,
+) -> ReportTable {
+    let effects = findings.effects(wanted);
+    let rows = effects.chunks(wanted.at.len().max(1)).map(|line| {
+        let label = line.first().map_or_else(String::new, |effect| {
+            let choice = format!("{} {} for {}", effect.factor, effect.level, effect.against);
+            let within = effect.within.iter().map(|(_, value)| value.clone());
+            std::iter::once(choice).chain(within).collect::<Vec<_>>().join(", ")
+        });
+        let cell = |effect: &Effect| {
+            let measured = |mean: f64, n: Option<u64>| Measured { mean, sd: None, n };
+            ReportCell {
+                ours: effect.percent_moved().map(|x| measured(x, Some(effect.runs.reached))),
+                published: effect.gap_percent().map(|x| measured(x, None)),
+                ..ReportCell::default()
+            }
+        };
+        ReportRow { label, cells: line.iter().map(cell).collect() }
+    });
+    ReportTable {
+        id: request.id.clone(),
+        title: request.title.clone(),
+        source: source(plan, wanted.published.as_ref()),
+        quantity: format!(
+            "effect on {} (%); in the paper's place, what lies between the first level and the paper (%)",
+            wanted.metric.name()
+        ),
+        decimals: 0,
+        row_header: "level, in".to_owned(),
+        rows: rows.collect(),
+        columns: wanted.at.iter().map(|percent| format!("{percent} %")).collect(),
     }
 }
 

@@ -60,6 +60,34 @@ pub fn welch_shifted(a: Summary, b: Summary, shift: f64) -> TTest {
     TTest::new(a.mean - b.mean, variance.sqrt(), df, shift)
 }
 
+/// Welch's test of matched groups: the difference, first less second, is the mean of each pair's own, so that what moves
+/// both groups of a pair alike is no part of it; the variance of either side is that within its groups, pooled over pairs.
+/// One pair gives [`welch`].
+///
+/// Each group has at least one value. `None` where a side has no group of two, which leaves its variance unknown.
+pub fn welch_matched(pairs: &[(Summary, Summary)]) -> Option<TTest> {
+    let count = real(pairs.len() as u64);
+    let (firsts, seconds): (Vec<Summary>, Vec<Summary>) = pairs.iter().copied().unzip();
+    // Variance of the mean of one side's means, and its degrees of freedom.
+    let side = |groups: &[Summary]| {
+        let df: f64 = groups.iter().map(|g| real(g.n) - 1.0).sum();
+        let squares: f64 =
+            groups.iter().filter(|g| g.n > 1).map(|g| (real(g.n) - 1.0) * g.sd * g.sd).sum();
+        let weight: f64 = groups.iter().map(|g| 1.0 / real(g.n)).sum();
+        (df > 0.0).then(|| (squares / df * weight / (count * count), df))
+    };
+    let ((va, da), (vb, db)) = (side(&firsts)?, side(&seconds)?);
+    let variance = va + vb;
+    let df = if variance > 0.0 {
+        let (sa, sb) = (va / variance, vb / variance);
+        1.0 / (sa * sa / da + sb * sb / db)
+    } else {
+        da + db
+    };
+    let difference = pairs.iter().map(|(a, b)| a.mean - b.mean).sum::<f64>() / count;
+    Some(TTest::new(difference, variance.sqrt(), df, 0.0))
+}
+
 /// Student's t test of two means with one common variance: the square root of two-group ANOVA.
 pub fn student(a: Summary, b: Summary) -> TTest {
     let (na, nb) = (real(a.n), real(b.n));

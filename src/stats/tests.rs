@@ -337,6 +337,23 @@ fn the_bootstrap_takes_numpys_quantiles_of_its_resamples() {
     assert_close(found.estimate, 5.758_333_333_333_333, FINE);
 }
 
+/// Pairs (5, 7 and 1, 3), (12 and 10, 14): differences 4 and 0. Variances within are 2 and (2 + 8) / 2 = 5, of the sides'
+/// means 2 (1/2 + 1) / 4 = 0.75 and 5 (1/2 + 1/2) / 4 = 1.25, with 1 and 2 degrees of freedom.
+#[test]
+fn matched_means_are_compared_pair_by_pair() {
+    let pairs = [
+        (Summary::of(&[5.0, 7.0]), Summary::of(&[1.0, 3.0])),
+        (Summary::of(&[12.0]), Summary::of(&[10.0, 14.0])),
+    ];
+    let test = welch_matched(&pairs).unwrap();
+    assert_close(test.difference, 2.0, FINE);
+    assert_close(test.standard_error, 2.0_f64.sqrt(), FINE);
+    assert_close(test.df, 4.0 / (0.5625 + 1.5625 / 2.0), FINE);
+    let alone = [(Summary::of(&[12.0]), Summary::of(&[10.0, 14.0]))];
+    assert_eq!(welch_matched(&alone), None, "one run has no spread");
+    assert_eq!(welch_matched(&pairs[..1]), Some(welch(pairs[0].0, pairs[0].1)));
+}
+
 proptest! {
     #[test]
     fn fisher_sums_to_one_and_is_symmetric(k1 in 0_u64..30, k2 in 0_u64..30, more1 in 1_u64..30, more2 in 1_u64..30) {

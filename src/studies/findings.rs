@@ -70,6 +70,15 @@ impl<'a> Findings<'a> {
         crossed
     }
 
+    /// Those combinations of values of `factors` that were run, in the order of [`Self::crossed`].
+    pub(super) fn ran(&self, factors: &[String]) -> Vec<Vec<(String, String)>> {
+        let mut crossed = self.crossed(factors);
+        crossed.retain(|cell| {
+            self.records.iter().any(|r| cell.iter().all(|value| r.condition.contains(value)))
+        });
+        crossed
+    }
+
     /// The records whose condition has all values of `fixed`.
     pub(super) fn matching(&self, fixed: &[(String, String)]) -> Vec<&'a TrialRecord> {
         self.records

@@ -26,6 +26,8 @@ pub enum TableLayout {
     CoverageTable(prior_map::CoverageTable),
     /// Prior map: slope, correlation and distance of log ratios to the baseline, ours against the paper's.
     AgreementTable(prior_map::AgreementTable),
+    /// Prior map: how much each level of a factor moves a metric, over matched conditions.
+    EffectsTable(prior_map::EffectsTable),
     /// Deadline: shares of outcomes, means and ratios by condition, as in Tables 1 and 2.
     OutcomeTable(deadline::OutcomeTable),
     /// Deadline: the six maneuvers as calibrated and as they went in the study's own trials.
@@ -39,6 +41,7 @@ pub fn coverage_tables(tables: &[TableRequest]) -> Vec<(&str, &prior_map::Covera
         .filter_map(|request| match &request.layout {
             TableLayout::CoverageTable(table) => Some((request.id.as_str(), table)),
             TableLayout::AgreementTable(_)
+            | TableLayout::EffectsTable(_)
             | TableLayout::OutcomeTable(_)
             | TableLayout::ManeuverTable(_) => None,
         })

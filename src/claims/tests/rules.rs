@@ -150,7 +150,7 @@ fn faults_are_named_with_their_place_and_the_nearest_name() {
         ),
         [
             "claim `X`: expect.rmse-with-published.published: unknown published table `succes`; did you mean \
-             `success-percent`? (known: success-percent)",
+             `success-percent`? (known: success-percent, distance-m)",
             "claim `X`: expect.rmse-with-published.at-most: expected a positive number, found 0",
             "claim `X`: expect.rmse-with-published.baseline: unknown factor `x` (known: start, strategy, \
              deadline-s, prior, furnished, environment)",

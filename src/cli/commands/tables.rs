@@ -13,10 +13,24 @@ pub(super) fn table(
     all: &[TableRequest],
 ) -> String {
     let body = match &request.layout {
+        // Hundreds of lines, which agreement and effects sum up.
+        TableLayout::CoverageTable(wanted) if findings.readings(wanted).len() > 1 => {
+            let cells = findings.coverage_cells(wanted).iter().filter(|c| c.trials > 0).count();
+            let readings = findings.readings(wanted).join(", ");
+            format!("  {cells} cells, by {readings}, in {}.csv\n", request.id)
+        }
         TableLayout::CoverageTable(wanted) => coverage_table(findings, wanted),
         TableLayout::AgreementTable(wanted) => {
             aligned(&findings.agreement_table_in_print(wanted, &coverage_tables(all)))
                 + "  (log ratios to the baseline, ours on the paper's; rmse is the score, skill is over the\n  paper's mean ratio; in: inside the paper's 95 % prediction interval)\n"
+        }
+        TableLayout::EffectsTable(wanted) => {
+            let (table, more) = findings.effects_table_in_print(wanted);
+            let mut text = aligned(&table);
+            if more > 0 {
+                text.push_str(&format!("  {more} more in {}.csv\n", request.id));
+            }
+            text + "  (largest first; means of ln over matched conditions; runs that got there of all, of either level;\n  paper: from our mean at the first level to the paper's)\n"
         }
         TableLayout::OutcomeTable(wanted) => outcome_table(findings, wanted),
         TableLayout::ManeuverTable(wanted) => aligned(&findings.maneuver_table(wanted)),

@@ -21,15 +21,18 @@ const CONFIDENCE: f64 = 0.95;
 pub struct TableAgreement {
     /// Id of the coverage table.
     pub table: String,
-    /// `all`, or the factor value that the part has.
+    /// `all`, or the factor value that the part has; all values of a combination of readings.
     pub scope: String,
+    /// The same as people read it: the table's id where it is the whole, a combination's values alone.
+    pub name: String,
     /// Cells with a log ratio to their baseline on both sides.
     pub ratios: u64,
     /// Printed cells that have none of ours: no run got there.
     pub missing: u64,
     /// Cells with runs that never reached the coverage; their means are of those that did.
     pub censored: u64,
-    /// Sets of cells with no run in common: those of one combination of the rows' factors share their baseline.
+    /// Sets of cells with no run in common: those of one combination of the rows' factors share their baseline, and those
+    /// that differ in readings alone the paper's.
     pub blocks: u64,
     /// Our log ratios on the paper's: 1 and 0 agree, a slope below 1 is a gain smaller than printed. Intervals by the
     /// jackknife over blocks.
@@ -78,16 +81,34 @@ impl Findings<'_> {
     ) -> Vec<TableAgreement> {
         let mut found = Vec::new();
         for (id, table) in tables.iter().filter(|(id, _)| wanted.tables.iter().any(|t| t == id)) {
-            let cells = self.coverage_cells(table);
-            found.push(agreement(id, "all", &cells, table));
+            let (cells, readings) = (self.coverage_cells(table), self.readings(table));
+            let agreement = |id: &str, names: (&str, &str), cells: &[CoverageCell]| {
+                agreement(
+                    id,
+                    names,
+                    cells,
+                    table.baseline.as_ref().map(|b| b.0.as_str()),
+                    &readings,
+                )
+            };
+            found.push(agreement(id, ("all", id), &cells));
             for factor in &table.rows {
                 for value in self.values_of(factor) {
                     let level = (factor.clone(), value);
                     let part: Vec<CoverageCell> =
                         cells.iter().filter(|cell| cell.rows.contains(&level)).cloned().collect();
                     let scope = format!("{factor}={}", level.1);
-                    found.push(agreement(id, &scope, &part, table));
+                    found.push(agreement(id, (&scope, &scope), &part));
                 }
+            }
+            // One factor's levels have been told.
+            for reading in self.ran(&readings).iter().filter(|reading| reading.len() > 1) {
+                let has = |cell: &&CoverageCell| reading.iter().all(|v| cell.rows.contains(v));
+                let part: Vec<CoverageCell> = cells.iter().filter(has).cloned().collect();
+                let pairs: Vec<String> = reading.iter().map(|(f, v)| format!("{f}={v}")).collect();
+                let values: Vec<&str> = reading.iter().map(|(_, v)| v.as_str()).collect();
+                let names = (pairs.join(", "), values.join(", "));
+                found.push(agreement(id, (&names.0, &names.1), &part));
             }
             let baseline = table.baseline.as_ref().map(|b| b.0.clone());
             let others = self.values_of(&table.by);
@@ -97,7 +118,8 @@ impl Findings<'_> {
                     .filter(|cell| cell.by == value || Some(&cell.by) == baseline.as_ref())
                     .cloned()
                     .collect();
-                found.push(agreement(id, &format!("{}={value}", table.by), &part, table));
+                let scope = format!("{}={value}", table.by);
+                found.push(agreement(id, (&scope, &scope), &part));
             }
         }
         found.retain(|part| part.ratios > 0 || part.scope == "all");
@@ -186,14 +208,12 @@ impl Findings<'_> {
                 None => "-".to_owned(),
             };
             let of = |(inside, known): (u64, u64)| Value::from(format!("{inside}/{known}"));
-            let whole = part.scope == "all";
-            let name = if whole { part.table.clone() } else { part.scope.clone() };
             let ratios = match part.missing {
                 0 => part.ratios.to_string(),
                 missing => format!("{} (-{missing})", part.ratios),
             };
             table.push(vec![
-                name.into(),
+                part.name.into(),
                 ratios.into(),
                 slope.into(),
                 number(part.pearson),
@@ -209,12 +229,12 @@ impl Findings<'_> {
 
 fn agreement(
     id: &str,
-    scope: &str,
+    (scope, name): (&str, &str),
     cells: &[CoverageCell],
-    table: &CoverageTable,
+    baseline: Option<&str>,
+    readings: &[String],
 ) -> TableAgreement {
     let both: Vec<Both<'_>> = cells.iter().filter_map(on_both_sides).collect();
-    let baseline = table.baseline.as_ref().map(|b| b.0.as_str());
     let mut ratios: Vec<Ratio> = Vec::new();
     for above in both.iter().filter(|both| Some(both.cell.by.as_str()) != baseline) {
         let base = both.iter().find(|below| {
@@ -233,7 +253,10 @@ fn agreement(
             let (above, below) = ((above.printed, above.ours.n), (below.printed, below.ours.n));
             (ours - published).abs() <= log_ratio_half_width(above, below, CONFIDENCE)
         });
-        ratios.push(Ratio { block: above.cell.rows.clone(), ours, published, inside });
+        // Readings share the paper's numbers.
+        let mut block = above.cell.rows.clone();
+        block.retain(|(factor, _)| !readings.contains(factor));
+        ratios.push(Ratio { block, ours, published, inside });
     }
     let mut blocks: Vec<&[(String, String)]> = Vec::new();
     let mut places: Vec<Vec<usize>> = Vec::new();
@@ -262,6 +285,7 @@ fn agreement(
     TableAgreement {
         table: id.to_owned(),
         scope: scope.to_owned(),
+        name: name.to_owned(),
         ratios: ratios.len() as u64,
         missing: printed.filter(|cell| cell.ours.is_none()).count() as u64,
         censored: both.iter().filter(|both| both.ours.n < both.cell.trials).count() as u64,

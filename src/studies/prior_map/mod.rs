@@ -7,6 +7,7 @@
 pub mod agreement;
 mod cell_tests;
 pub mod choice;
+pub mod effects;
 pub mod explorer;
 mod field_of_view;
 pub mod frontier;
@@ -23,7 +24,9 @@ pub use parameters::{
     Candidate, Coverage, Crossing, Exploration, Gain, Mapping, Measurement, Mission, Navigation,
     Parameters, Reselect, Sensing, Strategy, View,
 };
-pub use requests::{AgreementTable, CoverageCurve, CoverageTable, Metric, PlanFigure};
+pub use requests::{
+    AgreementTable, CoverageCurve, CoverageTable, EffectsTable, Metric, PlanFigure,
+};
 
 use crate::geometry::Pose;
 use crate::grid::OccupancyGrid;

@@ -39,6 +39,26 @@ pub struct AgreementTable {
     pub tables: Vec<String>,
 }
 
+/// What each choice moves: effects of factors' levels on a metric, over matched conditions.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct EffectsTable {
+    /// What is moved.
+    pub metric: Metric,
+    /// Levels of coverage (percent): multiples of 5 from 50 to 95.
+    #[schemars(length(min = 1))]
+    pub at: Vec<u32>,
+    /// The factors whose levels are compared, each with the factor's first level.
+    #[schemars(length(min = 1))]
+    pub factors: Vec<String>,
+    /// Factors for each combination of whose values effects are told apart.
+    #[serde(default)]
+    pub within: Vec<String>,
+    /// A key of `published`: the paper's own numbers, to tell how far the first level is from them.
+    #[serde(default)]
+    pub published: Option<String>,
+}
+
 /// What a trial's progress is measured in.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,

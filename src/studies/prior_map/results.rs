@@ -52,10 +52,24 @@ impl Findings<'_> {
         table
     }
 
+    /// The factors in the rows of a table that its published numbers do not tell apart, choices that the paper leaves open.
+    pub fn readings(&self, request: &CoverageTable) -> Vec<String> {
+        let published = request.published.as_ref().and_then(|name| self.published.get(name));
+        let open = |factor: &&String| published.is_some_and(|table| table.column(factor).is_none());
+        request.rows.iter().filter(open).cloned().collect()
+    }
+
     /// The cells of a table in the paper's order: rows, then coverage, then side by side.
     pub fn coverage_cells(&self, request: &CoverageTable) -> Vec<CoverageCell> {
         let mut cells = Vec::new();
-        for rows in self.crossed(&request.rows) {
+        // A reading that the design does not have is no row of cells that nobody reached.
+        let readings = self.readings(request);
+        let ran = self.ran(&readings);
+        let is_read = |rows: &Vec<(String, String)>| {
+            readings.is_empty()
+                || ran.iter().any(|reading| reading.iter().all(|value| rows.contains(value)))
+        };
+        for rows in self.crossed(&request.rows).into_iter().filter(is_read) {
             for &percent in &request.at {
                 let first = cells.len();
                 for by in self.values_of(&request.by) {

@@ -168,3 +168,41 @@ fn cells_are_tested_at_all_runs_and_at_the_papers_number() {
     let basic = &print.rows[0];
     assert_eq!(*print.value(basic, "bounding-box"), Value::Text(String::new()));
 }
+
+/// Two choices that the paper leaves open, one of which exists only under the other: three readings, each with its score.
+#[test]
+fn every_reading_that_was_run_has_its_own_score() {
+    let mut factors = factors();
+    for (name, values) in [("gain", ["paper", "released"]), ("stop", ["uneven", "even"])] {
+        factors.push((name.to_owned(), values.map(str::to_owned).to_vec()));
+    }
+    let readings =
+        [("paper", "uneven", 1.0), ("released", "uneven", 0.8), ("released", "even", 0.5)];
+    let mut all = Vec::new();
+    for (gain, stop, share) in readings {
+        // What lies with the floor plan below 30 m is less by that share; the baseline stays.
+        for mut record in records(|x| if [16.0, 28.0].contains(&x) { share * x } else { x }, 0..0) {
+            record.condition.push(("gain".to_owned(), gain.to_owned()));
+            record.condition.push(("stop".to_owned(), stop.to_owned()));
+            all.push(record);
+        }
+    }
+    let published = published(|_| true);
+    let findings =
+        Findings { factors: &factors, records: &all, published: &published, calibration: None };
+    let mut table = request(false);
+    table.rows.extend(["gain".to_owned(), "stop".to_owned()]);
+    let wanted = AgreementTable { tables: vec!["distance".to_owned()] };
+    let parts = findings.agreement(&wanted, &[("distance", &table)]);
+    let part = |scope: &str| parts.iter().find(|part| part.scope == scope).unwrap();
+    assert_eq!((part("all").ratios, part("all").missing, part("all").blocks), (30, 0, 3));
+    assert_eq!(parts.iter().filter(|part| part.scope.contains(", ")).count(), 3);
+    let score = |reading: &str| part(reading).rmse;
+    assert!(score("gain=paper, stop=uneven") < 1e-9);
+    // Two of ten ratios are off by ln 0.8, and by ln 0.5.
+    let off = |share: f64| (2.0 * ln(share) * ln(share) / 10.0).sqrt();
+    assert!((score("gain=released, stop=uneven") - off(0.8)).abs() < 1e-9);
+    assert!((score("gain=released, stop=even") - off(0.5)).abs() < 1e-9);
+    assert_eq!(part("gain=released, stop=even").name, "released, even");
+    assert_eq!(findings.coverage_table(&table).columns[..3], ["environment", "gain", "stop"]);
+}
