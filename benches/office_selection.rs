@@ -17,6 +17,7 @@ use reenact::units::{Seconds, Tick};
 use std::hint::black_box;
 use std::time::Instant;
 
+#[expect(clippy::print_stdout, reason = "what was measured")]
 fn main() {
     let plan = shipped::plan("prior-tables-1-6.yaml");
     println!("selection in the office      choices  frontiers  median ms    p95 ms  longest ms");
@@ -38,6 +39,7 @@ fn main() {
 }
 
 /// Milliseconds and frontiers of every selection of a trial.
+#[expect(clippy::disallowed_methods, reason = "the time is what is measured")]
 fn selections(spec: &TrialSpec) -> (Vec<f64>, Vec<f64>) {
     let Setup::PriorMap(setup) = &spec.setup else { panic!("a study of another kind") };
     let own = setup.robot.lidar.clone().expect("it has a scanner");

@@ -281,6 +281,7 @@ fn is_default<T: Default + PartialEq>(value: &T) -> bool {
 }
 
 /// Whether a parameter is `N`.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over references")]
 fn is<const N: u32>(value: &u32) -> bool {
     *value == N
 }

@@ -133,11 +133,11 @@ mod tests {
             for x in 0..40 {
                 map.set(Cell::new(x, y), Occupancy::Free);
             }
-            if !(36..44).contains(&y) {
-                map.set(Cell::new(40, y), Occupancy::Occupied);
-            } else {
+            if (36..44).contains(&y) {
                 map.set(Cell::new(40, y), Occupancy::Free);
                 map.set(Cell::new(41, y), Occupancy::Free);
+            } else {
+                map.set(Cell::new(40, y), Occupancy::Occupied);
             }
         }
         let costs = inflate(&map, 9);
@@ -176,7 +176,7 @@ mod tests {
                 prop_assert_eq!(ray[0].0, Cell::new(0, 0));
                 prop_assert!(ray.windows(2).all(|w| w[0].0.neighbours8().contains(&w[1].0)));
                 let end = ray.last().unwrap().0;
-                let length = f64::from(end.x).hypot(f64::from(end.y));
+                let length = math::hypot(f64::from(end.x), f64::from(end.y));
                 prop_assert!((length - f64::from(range)).abs() <= std::f64::consts::FRAC_1_SQRT_2);
                 ends.insert(end);
             }
