@@ -50,8 +50,7 @@ fn selections(spec: &TrialSpec) -> (Vec<f64>, Vec<f64>) {
     let visible = setup.world.slice(lidar.height);
     let solid = setup.world.contact(setup.robot.body_z[0], setup.robot.body_z[1]);
     let resolution = setup.parameters.mapping.resolution_m;
-    let prior =
-        setup.prior.as_ref().map(|prior| AlignedPrior::new(prior, setup.start, resolution));
+    let prior = setup.prior.as_ref().map(|prior| AlignedPrior::new(prior, setup.start, resolution));
     let mut sim = Simulator::new(
         Scene {
             visible: &visible,

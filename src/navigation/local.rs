@@ -1,9 +1,10 @@
 //! What the robot saw lately close around it: a rolling window for the operator.
 
 use crate::geometry::{Point, Pose};
-use crate::grid::{Cell, GridFrame, line};
+use crate::grid::{Cell, GridFrame};
 use crate::math;
 use crate::robot::Scan;
+use std::cmp::Ordering;
 
 /// Size and reach of the window (prior-map facts, section 4, `costmap.yaml`).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -109,12 +110,7 @@ impl LocalMap {
             let angle = sensor.heading + scan.angle(i);
             let (sin, cos) = math::sin_cos(angle);
             let to = self.lattice(sensor.position() + Point::new(cos, sin) * reach);
-            for cell in line(from, to) {
-                let Some(index) = self.index(cell) else { break };
-                if cell != to {
-                    self.seen[index] = Seen::Free;
-                }
-            }
+            self.clear_way(from, to);
             if range < self.rule.obstacle_range.min(self.rule.size) {
                 self.ends.push(to);
             }
@@ -149,14 +145,48 @@ impl LocalMap {
             self.ranges.extend_from_slice(ranges);
             return;
         }
-        let mut window = Vec::with_capacity(2 * half + 1);
+        // The window's ranges in order, kept so while it moves on by one.
+        let mut window: Vec<f64> = Vec::with_capacity(2 * half + 2);
+        let place = |window: &[f64], range: f64| {
+            window.partition_point(|other| other.total_cmp(&range) == Ordering::Less)
+        };
+        for &range in ranges.iter().take(half) {
+            window.insert(place(&window, range), range);
+        }
         for i in 0..ranges.len() {
-            window.clear();
-            window.extend_from_slice(
-                &ranges[i.saturating_sub(half)..(i + half + 1).min(ranges.len())],
-            );
-            window.sort_unstable_by(f64::total_cmp);
+            if let Some(&range) = ranges.get(i + half) {
+                window.insert(place(&window, range), range);
+            }
+            if let Some(&range) = i.checked_sub(half + 1).and_then(|i| ranges.get(i)) {
+                window.remove(place(&window, range));
+            }
             self.ranges.push(window[window.len() / 2]);
+        }
+    }
+
+    /// What lies between the cells `from` and `to` is free, as far as it is within the window: the walk of
+    /// [`crate::grid::line`], over indices.
+    fn clear_way(&mut self, from: Cell, to: Cell) {
+        let (dx, dy) = ((to.x - from.x).abs(), -(to.y - from.y).abs());
+        let (step_x, step_y) = ((to.x - from.x).signum(), (to.y - from.y).signum());
+        let (mut x, mut y) = (from.x - self.corner.x, from.y - self.corner.y);
+        let mut error = dx + dy;
+        for _ in 0..dx.max(-dy) {
+            if !((0..self.side).contains(&x) && (0..self.side).contains(&y)) {
+                return;
+            }
+            #[expect(clippy::cast_sign_loss, reason = "checked to be inside")]
+            let index = (y * self.side + x) as usize;
+            self.seen[index] = Seen::Free;
+            let doubled = 2 * error;
+            if doubled >= dy {
+                error += dy;
+                x += step_x;
+            }
+            if doubled <= dx {
+                error += dx;
+                y += step_y;
+            }
         }
     }
 
@@ -250,7 +280,43 @@ impl LocalMap {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::grid::line;
     use crate::units::Tick;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn medians_are_those_of_sorted_windows(
+            ranges in prop::collection::vec(prop_oneof![0.0..9.0, Just(f64::INFINITY), Just(1.0)], 0..60),
+            half in 1_usize..6,
+        ) {
+            let rule = LocalRule { median_beams: 2 * half + 1, ..LocalRule::default() };
+            let mut map = LocalMap::new(rule);
+            map.smooth(&ranges);
+            let median = |i: usize| {
+                let mut window = ranges[i.saturating_sub(half)..(i + half + 1).min(ranges.len())].to_vec();
+                window.sort_unstable_by(f64::total_cmp);
+                window[window.len() / 2]
+            };
+            let expected: Vec<f64> = (0..ranges.len()).map(median).collect();
+            prop_assert_eq!(map.ranges, expected);
+        }
+
+        #[test]
+        fn ways_are_cleared_up_to_their_end_or_the_windows(x in -90..90_i32, y in -90..90_i32) {
+            let mut map = LocalMap::new(LocalRule::default());
+            let to = Cell::new(x, y);
+            map.clear_way(Cell::new(0, 0), to);
+            let mut expected = LocalMap::new(LocalRule::default());
+            for cell in line(Cell::new(0, 0), to) {
+                let Some(index) = expected.index(cell) else { break };
+                if cell != to {
+                    expected.seen[index] = Seen::Free;
+                }
+            }
+            prop_assert_eq!(map.seen, expected.seen);
+        }
+    }
 
     fn scan(range: f64) -> Scan {
         Scan {
