@@ -7,6 +7,7 @@
 
 mod arcs;
 mod costmap;
+mod following;
 mod inflated_map;
 mod inflation;
 mod local;
@@ -15,6 +16,7 @@ mod wavefront;
 
 pub use arcs::{Operator, OperatorRule, Steering};
 pub use costmap::CostGrid;
+pub use following::{look_ahead, nearest_reached};
 pub use inflated_map::InflatedMap;
 pub use inflation::inflate;
 pub use local::{LocalMap, LocalRule};

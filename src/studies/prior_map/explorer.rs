@@ -9,12 +9,12 @@ use super::information_gain::AlignedPrior;
 use super::parameters::{Parameters, Reselect};
 use super::utility::ranked;
 use crate::geometry::{Point, Pose};
-use crate::grid::{Cell, GridFrame, Occupancy, OccupancyGrid, line};
+use crate::grid::{Cell, GridFrame, Occupancy, OccupancyGrid};
 use crate::mapping::{Change, KeyframeMapper, KeyframeRule, OccupancyMap, ScanRule};
 use crate::math;
 use crate::navigation::{
     CostGrid, InflatedMap, LocalMap, LocalRule, Operator, OperatorRule, Steering, Wavefront,
-    inflate,
+    inflate, look_ahead, nearest_reached,
 };
 use crate::rng::Stream;
 use crate::robot::{Lidar, Odometry, Scan, Twist};
@@ -28,8 +28,6 @@ pub const CONTROL_PERIOD: Tick = Tick(300);
 const NAVIGATION_PERIOD: Tick = Tick(600);
 const LOCAL_MAP_PERIOD: Tick = Tick(900);
 
-/// The navigator heads for the cell this many steps down the wave.
-const LOOK_AHEAD: usize = 9;
 /// A location the robot comes no closer to for this long is given up.
 const PATIENCE: Seconds = Seconds(15.0);
 /// Coming closer means by this much (m).
@@ -471,17 +469,6 @@ impl Explorer {
     }
 }
 
-/// The cell to head for: the furthest of the next ones down the wave that there is a straight way to, so that
-/// the robot does not cut the corners of doors.
-fn look_ahead(wave: &mut Wavefront, here: Cell) -> Cell {
-    let path: Vec<Cell> = std::iter::successors(Some(here), |&cell| wave.downhill(cell))
-        .take(LOOK_AHEAD + 1)
-        .collect();
-    let furthest =
-        path.iter().rev().find(|&&ahead| line(here, ahead).all(|cell| wave.reaches(cell)));
-    furthest.copied().unwrap_or(here)
-}
-
 /// Bearing (rad) of `point` from the robot's heading.
 fn bearing(pose: Pose, point: Point) -> f64 {
     let to = pose.inverse_transform(point);
@@ -491,19 +478,4 @@ fn bearing(pose: Pose, point: Point) -> f64 {
 /// An inflated cost that a parameter names.
 pub(super) fn cost(parameter: u32) -> u8 {
     u8::try_from(parameter.min(101)).unwrap_or(101)
-}
-
-/// The cell itself where the wave came, or else the cheapest reached one within 6 cells: a robot that stands
-/// too close to an obstacle first heads out.
-fn nearest_reached(wave: &mut Wavefront, cell: Cell) -> Option<Cell> {
-    if wave.reaches(cell) {
-        return Some(cell);
-    }
-    (1..=6).find_map(|ring: i32| {
-        let side = -ring..=ring;
-        side.clone()
-            .flat_map(|y| side.clone().map(move |x| Cell::new(cell.x + x, cell.y + y)))
-            .filter(|c| wave.reaches(*c))
-            .min_by_key(|c| (c.distance_squared(cell), c.y, c.x))
-    })
 }
