@@ -61,6 +61,8 @@ fn every_region_of_our_worlds_can_be_reached_also_between_the_furniture() {
         ("office", &with_and_without),
         ("open", &with_and_without),
         ("department", &[&["closed-doors"][..]]),
+        ("department-south", &[&["furniture", "clutter"][..]]),
+        ("house", &[&["furniture", "clutter"][..]]),
     ] {
         for &layers in choices {
             let world = ours(name, layers);
@@ -86,6 +88,21 @@ fn furniture_covers_as_much_of_the_floor_as_is_said() {
         let share = floor.share_covered(&furniture.contact(0.0, 0.43));
         println!("{name}: furniture covers {:.1} % of {:.0} m2", 100.0 * share, floor.area());
         assert!((least..=most).contains(&share), "{name}: {share}");
+    }
+}
+
+/// Section 4.6: of 30 m2, 9 m2 are static furniture and 2 m2 chairs and the like.
+#[test]
+fn the_house_is_as_full_as_is_said() {
+    let empty = ours("house", &[]);
+    let floor = Floor::with_radius(&empty, start(&empty), 0.0);
+    assert!((floor.area() - 30.0).abs() < 1.0, "{} m2", floor.area());
+    for (layer, expected) in [("furniture", 9.0), ("clutter", 2.0)] {
+        let mut world = ours("house", &[layer]);
+        world.solids.retain(|solid| solid.layer == layer);
+        let covered = floor.share_covered(&world.contact(0.0, 0.4)) * floor.area();
+        println!("house: {layer} covers {covered:.2} m2 of {:.1} m2", floor.area());
+        assert!((covered - expected).abs() < 0.2, "{layer}: {covered} m2");
     }
 }
 
