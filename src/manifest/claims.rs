@@ -55,6 +55,7 @@ fn prior_map_measures() -> Vec<String> {
         "frontiers-given-up",
         "contacts",
         "turning-rad-per-m",
+        "mean-speed-m-s",
     ]
     .map(str::to_owned)
     .to_vec();

@@ -75,6 +75,13 @@ impl Floor {
         f64::from(u32::try_from(both).unwrap()) * CELL * CELL / self.area()
     }
 
+    /// What of `polygon` the centre reaches (m2).
+    pub(crate) fn area_in(&self, polygon: &Outline) -> f64 {
+        let frame = *self.reached.frame();
+        let inside = self.cells().filter(|cell| polygon.contains(frame.center(*cell))).count();
+        f64::from(u32::try_from(inside).unwrap()) * CELL * CELL
+    }
+
     pub(crate) fn reaches_into(&self, polygon: &Outline) -> bool {
         self.cells().any(|cell| polygon.contains(self.reached.frame().center(cell)))
     }

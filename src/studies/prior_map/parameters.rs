@@ -222,6 +222,9 @@ parameters!(
         /// Whether further measures are recorded: decisions and open frontiers at levels of coverage, turning per metre.
         #[serde(skip_serializing_if = "is_default")]
         further: bool = false,
+        /// Whether the mean speed of the whole trial is recorded.
+        #[serde(skip_serializing_if = "is_default")]
+        mean_speed: bool = false,
     }
 );
 

@@ -172,6 +172,12 @@ impl Mission<'_> {
         #[expect(clippy::cast_precision_loss, reason = "few")]
         measure("frontiers-given-up", self.mind.given_up() as f64);
         measure("contacts", f64::from(self.sim.contacts()));
+        if self.setup.parameters.measurement.mean_speed {
+            let (distance, time) = (self.sim.travelled(), self.sim.now().seconds().get());
+            record
+                .measures
+                .insert("mean-speed-m-s".to_owned(), (time > 0.0).then(|| distance / time));
+        }
         if self.setup.parameters.measurement.further {
             let distance = self.sim.travelled();
             let per_metre = (distance > 0.0).then(|| self.sim.turned() / distance);

@@ -218,6 +218,7 @@ fn later_choices_and_further_measures_are_written_down_when_asked_for() {
     let usual = studies::execute(&spec(0, true, Parameters::default()));
     let mut parameters = Parameters::default();
     parameters.measurement.further = true;
+    parameters.measurement.mean_speed = true;
     let further = studies::execute(&spec(0, true, parameters.clone()));
     let measure = |record: &TrialRecord, name: &str| record.measures[name].unwrap();
     for (name, value) in &usual.measures {
@@ -231,6 +232,9 @@ fn later_choices_and_further_measures_are_written_down_when_asked_for() {
     let per_metre = measure(&further, "turning-rad") / measure(&further, "distance-m");
     assert_eq!(measure(&further, "turning-rad-per-m"), per_metre);
     assert!(!usual.measures.contains_key("turning-rad-per-m"));
+    let mean_speed = measure(&further, "distance-m") / measure(&further, "time-s");
+    assert_eq!(measure(&further, "mean-speed-m-s"), mean_speed);
+    assert!(!usual.measures.contains_key("mean-speed-m-s"));
     parameters.measurement.crossing = Crossing::Decision;
     let decided = studies::execute(&spec(0, true, parameters.clone()));
     parameters.measurement.crossing = Crossing::Interpolated;
