@@ -361,7 +361,7 @@ pub enum PublishedDoc {
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub struct PublishedFile {
-    /// Columns: factors, `coverage-percent`, `value`, `sd`, `n`.
+    /// Columns: factors, `coverage-percent` or `measure`, `value`, `sd`, `n`.
     pub file: String,
     /// Factors that the paper did not vary: its numbers stand beside all their values.
     #[serde(default)]

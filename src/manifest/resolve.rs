@@ -132,6 +132,7 @@ impl Resolver<'_> {
             resolved.extend(self.condition(condition));
         }
         if !self.faults.any_error() {
+            published::check_recorded(doc, &resolved, &mut self.faults);
             // What names a file, a map its image, may itself be what is missing.
             self.check_licenses();
             self.check_pins();

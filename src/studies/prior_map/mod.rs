@@ -12,6 +12,7 @@ pub mod explorer;
 mod field_of_view;
 pub mod frontier;
 pub mod information_gain;
+pub mod measures;
 mod mission;
 mod parameters;
 mod released_gain;
@@ -26,7 +27,7 @@ pub use parameters::{
     Parameters, Reselect, Sensing, Strategy, View,
 };
 pub use requests::{
-    AgreementTable, CoverageCurve, CoverageTable, EffectsTable, Metric, PlanFigure,
+    AgreementTable, CoverageCurve, CoverageTable, EffectsTable, MeasuresTable, Metric, PlanFigure,
 };
 
 use crate::geometry::Pose;
