@@ -167,7 +167,7 @@ mod tests {
 
     /// Keyframes at 2 s and 4 s bring 50 and 60 of 100 cells; a choice follows at 5 s.
     fn trace(when: Crossing) -> Trace {
-        let mut trace = Trace::new(100, when, &[2, 3, 9]);
+        let mut trace = Trace::new(100, when, &[]);
         trace.cover(50);
         assert_eq!(trace.note_coverage(Tick(6000), 1.0), 1..51);
         trace.cover(10);
@@ -176,6 +176,19 @@ mod tests {
         trace.cover(10);
         trace.note_coverage(Tick(18_000), 4.0);
         trace
+    }
+
+    #[test]
+    fn coverage_is_told_where_the_robot_first_is_that_far() {
+        let mut trace = Trace::new(100, Crossing::Keyframe, &[2, 5]);
+        for (seconds, distance, cells) in [(1, 1.0, 10), (2, 2.1, 20), (3, 2.5, 30)] {
+            trace.cover(cells);
+            trace.note_time(Tick(seconds * 3000), distance, Pose::default(), 0);
+        }
+        let spec = crate::studies::prior_map::mission::tests::spec_of_the_flat();
+        let record = trace.finish(&spec, Outcome::Explored, String::new(), Tick(9000));
+        assert_eq!(record.measures[&coverage_at_distance(2)], Some(30.0));
+        assert_eq!(record.measures[&coverage_at_distance(5)], Some(60.0), "it ended before");
     }
 
     #[test]

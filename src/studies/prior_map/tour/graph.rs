@@ -29,6 +29,11 @@ impl TopoMetricMap {
         self.nodes.iter().map(|node| node.at).collect()
     }
 
+    /// Between which places (m) there are direct ways.
+    pub fn edges(&self) -> Vec<(Point, Point)> {
+        self.edges.iter().map(|&(a, b)| (self.nodes[a].at, self.nodes[b].at)).collect()
+    }
+
     /// Digest of what the graph means.
     pub fn meaning(&self) -> MeaningDigest {
         MeaningDigest(Sha256Digest::of(json::canonical_of(self)))
