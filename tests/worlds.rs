@@ -207,7 +207,9 @@ fn the_maps_of_the_comparison_have_the_walls_of_the_originals() {
     let walls = [floors[0].walls(&our), floors[1].walls(&original)];
     let [ours_in, theirs_in] = [agreeing(&walls[0], &walls[1]), agreeing(&walls[1], &walls[0])];
     let areas = floors.each_ref().map(Floor::area);
-    println!("map-2: walls precision {ours_in:.4}, recall {theirs_in:.4}, reachable {areas:.1?} m2");
+    println!(
+        "map-2: walls precision {ours_in:.4}, recall {theirs_in:.4}, reachable {areas:.1?} m2"
+    );
     assert!(ours_in.min(theirs_in) >= 0.95, "{ours_in} {theirs_in}");
     assert!((areas[0] / areas[1] - 1.0).abs() <= 0.01, "{areas:?} m2");
     let named = parts(&our);
@@ -220,8 +222,7 @@ fn the_maps_of_the_comparison_have_the_walls_of_the_originals() {
     let source = text(&path);
     let image = map_server::image_path(&source).unwrap();
     let bytes = std::fs::read(path.parent().unwrap().join(&image)).unwrap();
-    let map =
-        map_server::read(&source, &image, &bytes, Options { average_alpha: true }).unwrap();
+    let map = map_server::read(&source, &image, &bytes, Options { average_alpha: true }).unwrap();
     // As published it is set to the start (16, 8).
     let at = |cell| map.frame().center(cell) + Point::new(16.0, 8.0);
     let cells = |value| map.frame().cells().filter(move |cell| map.at(*cell) == value);

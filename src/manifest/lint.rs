@@ -123,7 +123,9 @@ fn tour(setup: &Setup, faults: &mut Faults<'_>) {
     } else if !is_toured && setup.topo_metric_map.is_some() {
         let message = "the prior is a graph, which this strategy cannot use";
         let fault = faults.fault(pointer, message).label("expected `topo-metric-tour`");
-        faults.push(fault.help("set `exploration.strategy: topo-metric-tour` where this is the prior"));
+        faults.push(
+            fault.help("set `exploration.strategy: topo-metric-tour` where this is the prior"),
+        );
     }
     if !is_toured && exploration.node_noise_sd_m > 0.0 {
         let pointer = "/parameters/exploration/node-noise-sd-m";

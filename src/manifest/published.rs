@@ -4,9 +4,9 @@ use super::claims::measures;
 use super::crossing::{Factor, is_kebab, kebab, known_or_near};
 use super::document::ManifestDoc;
 use super::faults::{Faults, step};
+use super::resolve::Resolved;
 use crate::document::{Diagnostic, Source, suggestion};
 use crate::studies::deadline::OutcomeTable;
-use super::resolve::Resolved;
 use crate::studies::prior_map::{
     AgreementTable, CoverageTable, EffectsTable, MILESTONES, MeasuresTable, coverage_at_distance,
 };
@@ -297,7 +297,9 @@ pub(super) fn check_recorded(doc: &ManifestDoc, resolved: &[Resolved], faults: &
     for (_, setup, ..) in resolved {
         if let Setup::PriorMap(setup) = setup {
             let asked_for = &setup.parameters.measurement.coverage_at_distance_m;
-            known.extend(asked_for.iter().map(|&distance| coverage_at_distance(distance)));
+            let names = asked_for.iter().map(|&distance| coverage_at_distance(distance));
+            let new: Vec<String> = names.filter(|name| !known.contains(name)).collect();
+            known.extend(new);
         }
     }
     for (i, table) in doc.tables.iter().enumerate() {

@@ -6,8 +6,8 @@ use crate::plan::Plan;
 use crate::studies::deadline::results::OutcomeCell;
 use crate::studies::deadline::{ManeuverTable, OutcomeTable, Quantity};
 use crate::studies::prior_map::effects::Effect;
-use crate::studies::prior_map::results::CoverageCell;
 use crate::studies::prior_map::measures::MeasureCell;
+use crate::studies::prior_map::results::CoverageCell;
 use crate::studies::prior_map::{
     AgreementTable, CoverageTable, EffectsTable, MeasuresTable, Metric,
 };

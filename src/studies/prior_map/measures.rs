@@ -124,8 +124,8 @@ mod tests {
 
     #[test]
     fn a_row_is_a_cell_that_was_run_with_the_papers_number_beside_it() {
-        let factors = [("prior", &["none", "graph"][..]), ("noise", &["0", "4"])]
-            .map(|(name, values)| {
+        let factors =
+            [("prior", &["none", "graph"][..]), ("noise", &["0", "4"])].map(|(name, values)| {
                 (name.to_owned(), values.iter().map(|v| (*v).to_owned()).collect())
             });
         let records = [
@@ -136,8 +136,7 @@ mod tests {
             record("graph", "4", 0, Some(390.0)),
         ];
         let csv = "prior,noise,measure,value,sd\ngraph,0,distance-m,239,\ngraph,0,time-s,1,\n";
-        let published =
-            BTreeMap::from([("section".to_owned(), Table::from_csv(csv).unwrap())]);
+        let published = BTreeMap::from([("section".to_owned(), Table::from_csv(csv).unwrap())]);
         let findings = Findings {
             factors: &factors,
             records: &records,

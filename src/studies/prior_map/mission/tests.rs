@@ -132,7 +132,8 @@ fn a_tour_explores_the_flat_whether_or_not_its_nodes_stand_free() {
         parameters.measurement.coverage_at_distance_m = vec![1, 500];
         let map = Some(Arc::new(graph(door)));
         let setup = Setup { parameters, ..setup(None) }.with_topo_metric_map(map);
-        let spec = TrialSpec { setup: studies::Setup::PriorMap(Arc::new(setup)), ..spec_of_the_flat() };
+        let spec =
+            TrialSpec { setup: studies::Setup::PriorMap(Arc::new(setup)), ..spec_of_the_flat() };
         let record = studies::execute(&spec);
         assert_eq!(record.outcome, Outcome::Explored, "{door} {noise}: {}", record.cause);
         let measure = |name: &str| record.measures[name].unwrap();

@@ -93,8 +93,10 @@ fn index(
     let found = names.iter().position(|known| *known == name);
     if found.is_none() {
         let fault = parsed.fault(&format!("/edges/{i}/{end}"), format!("unknown node `{name}`"));
-        let help = suggestion(name, names.iter().copied())
-            .map_or_else(|| "name it under `nodes`".to_owned(), |near| format!("did you mean `{near}`?"));
+        let help = suggestion(name, names.iter().copied()).map_or_else(
+            || "name it under `nodes`".to_owned(),
+            |near| format!("did you mean `{near}`?"),
+        );
         faults.push(fault.label("not a key of `nodes`").help(help));
     }
     found
@@ -116,7 +118,9 @@ mod tests {
     #[test]
     fn nodes_are_ordered_by_name_and_edges_have_no_direction() {
         let text = |edges: &str| {
-            format!("{HEAD}nodes:\n  b: {{at-m: [1, 2]}}\n  a: {{at-m: [0, 0.5]}}\nedges: {edges}\n")
+            format!(
+                "{HEAD}nodes:\n  b: {{at-m: [1, 2]}}\n  a: {{at-m: [0, 0.5]}}\nedges: {edges}\n"
+            )
         };
         let read = |edges| read(&Source::new("flat.yaml", text(edges))).unwrap();
         let map = read("[[b, a]]");
@@ -129,7 +133,13 @@ mod tests {
     fn every_fault_says_where_and_what_next() {
         let nodes = "nodes:\n  door: {at-m: [0, 0]}\n  hall: {at-m: [1, 0]}\n";
         let slip = told(&format!("{nodes}edges: [[door, hal], [door, door], [hall, nowhere]]\n"));
-        for part in ["unknown node `hal`", "did you mean `hall`?", "flat.yaml:7", "to itself", "name it under"] {
+        for part in [
+            "unknown node `hal`",
+            "did you mean `hall`?",
+            "flat.yaml:7",
+            "to itself",
+            "name it under",
+        ] {
             assert!(slip.contains(part), "{part}: {slip}");
         }
         let twice = told(&format!("{nodes}edges: [[door, hall], [hall, door]]\n"));

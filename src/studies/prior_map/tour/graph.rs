@@ -124,8 +124,8 @@ pub(super) mod tests {
 
     #[test]
     fn the_start_is_the_origin_and_faces_along_x() {
-        let seen = graph(&[(3.0, 2.0), (3.0, 5.0)], &[(0, 1)])
-            .seen_from(Pose::new(3.0, 2.0, FRAC_PI_2));
+        let seen =
+            graph(&[(3.0, 2.0), (3.0, 5.0)], &[(0, 1)]).seen_from(Pose::new(3.0, 2.0, FRAC_PI_2));
         assert!(seen.positions()[0].distance(Point::ZERO) < 1e-12);
         assert!(seen.positions()[1].distance(Point::new(3.0, 0.0)) < 1e-12);
     }
