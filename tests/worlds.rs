@@ -15,6 +15,7 @@ use reenact::document::Source;
 use reenact::geometry::{Outline, Point};
 use reenact::grid::Occupancy;
 use reenact::provenance::Environment;
+use reenact::studies::prior_map::tour;
 use reenact::world::map_server::{self, Options};
 use reenact::world::{World, document, sdf};
 use std::path::{Path, PathBuf};
@@ -29,8 +30,9 @@ fn ours(name: &str, layers: &[&str]) -> World {
     })
 }
 
+/// Where robots begin: at `default`, or at the first of ten starts.
 fn start(world: &World) -> Point {
-    world.starts["default"].position()
+    world.starts.get("default").unwrap_or_else(|| &world.starts["s1"]).position()
 }
 
 fn parts(world: &World) -> Vec<(String, Outline)> {
@@ -70,6 +72,46 @@ fn every_region_of_our_worlds_can_be_reached_also_between_the_furniture() {
             for (region, outline) in parts(&world) {
                 assert!(floor.reaches_into(&outline), "{name} {layers:?}: {region}");
             }
+        }
+    }
+}
+
+/// Section 4.5: ten starts in each, none of them nearer than 0.98 m to a wall.
+#[test]
+fn the_maps_of_the_comparison_have_ten_starts_and_one_floor() {
+    for name in ["map-2", "map-4"] {
+        let world = ours(name, &[]);
+        assert_eq!(world.starts.len(), 10, "{name}");
+        let solids = world.contact(0.0, 0.43);
+        let floor = Floor::with_radius(&world, start(&world), 0.25);
+        for (start, pose) in &world.starts {
+            let at = pose.position();
+            let room = solids.iter().map(|solid| solid.distance(at)).fold(9.0, f64::min);
+            assert!(room >= 0.9, "{name} {start}: {room} m");
+            let around = Outline::Circle { center: at, radius: 0.1 };
+            assert!(floor.reaches_into(&around), "{name} {start}");
+        }
+        for (region, outline) in parts(&world) {
+            assert!(floor.reaches_into(&outline), "{name}: {region}");
+        }
+    }
+}
+
+/// A user's graph is rough, but its edges are to be ways: no edge of ours crosses a wall, and no node stands in one.
+#[test]
+fn our_topo_metric_maps_lie_in_their_worlds() {
+    for name in ["map-2", "map-4"] {
+        let solids = ours(name, &[]).contact(0.0, 0.43);
+        let path = format!("{}/worlds/topo-metric/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
+        let map = tour::read(&text(Path::new(&path))).unwrap();
+        let clear = |at: Point| solids.iter().all(|solid| solid.distance(at) > 0.25);
+        for at in map.positions() {
+            assert!(clear(at), "{name}: a node at {at:?}");
+        }
+        for (a, b) in map.edges() {
+            let crossed = (0..=100).map(|i| a + (b - a) * (f64::from(i) / 100.0));
+            let blocked: Vec<Point> = crossed.filter(|at| !clear(*at)).collect();
+            assert!(blocked.is_empty(), "{name}: {a:?} to {b:?} at {:?}", blocked.first());
         }
     }
 }
@@ -214,6 +256,51 @@ fn the_department_has_the_walls_and_rooms_of_the_map_made_of_it() {
         let share = count(inside) * 0.01 / floor.area_in(&outline);
         assert!((0.6..=1.1).contains(&share), "{name}: {share}");
     }
+}
+
+/// Their Map 2 is a world; of their Map 4 there is the map that the study's robot made, recorded from (0, 0).
+#[test]
+fn the_maps_of_the_comparison_have_the_walls_of_the_originals() {
+    let Some(folder) = originals("the_maps_of_the_comparison_have_the_walls_of_the_originals")
+    else {
+        return;
+    };
+    let our = ours("map-2", &[]);
+    let original = sdf::read(&text(&folder.join("worlds/map2.world"))).unwrap();
+    let floors = [&our, &original].map(|world| Floor::of(world, start(&our)));
+    let walls = [floors[0].walls(&our), floors[1].walls(&original)];
+    let [ours_in, theirs_in] = [agreeing(&walls[0], &walls[1]), agreeing(&walls[1], &walls[0])];
+    let areas = floors.each_ref().map(Floor::area);
+    println!(
+        "map-2: walls precision {ours_in:.4}, recall {theirs_in:.4}, reachable {areas:.1?} m2"
+    );
+    assert!(ours_in.min(theirs_in) >= 0.95, "{ours_in} {theirs_in}");
+    assert!((areas[0] / areas[1] - 1.0).abs() <= 0.01, "{areas:?} m2");
+    let named = parts(&our);
+    let [doors, their_doors] = floors.each_ref().map(|floor| floor.doors(&named));
+    println!("map-2: {} passages", doors.len());
+    same_passages("map-2", doors, their_doors);
+
+    let our = ours("map-4", &[]);
+    let path = folder.join("maps/map4.yaml");
+    let source = text(&path);
+    let image = map_server::image_path(&source).unwrap();
+    let bytes = std::fs::read(path.parent().unwrap().join(&image)).unwrap();
+    let map = map_server::read(&source, &image, &bytes, Options { average_alpha: true }).unwrap();
+    // As published it is set to the start (16, 8).
+    let at = |cell| map.frame().center(cell) + Point::new(16.0, 8.0);
+    let cells = |value| map.frame().cells().filter(move |cell| map.at(*cell) == value);
+    let drawn: Vec<Point> = cells(Occupancy::Occupied).map(at).collect();
+    let floor = Floor::with_radius(&our, start(&our), 0.0);
+    let walls = floor.walls(&our);
+    let [ours_in, theirs_in] = [agreeing(&walls, &drawn), agreeing(&drawn, &walls)];
+    let theirs = f64::from(u32::try_from(cells(Occupancy::Free).count()).unwrap()) * 0.01;
+    println!(
+        "map-4: walls precision {ours_in:.4}, recall {theirs_in:.4}, floor {:.1} m2 of {theirs:.1} m2",
+        floor.area()
+    );
+    assert!(ours_in.min(theirs_in) >= 0.95, "{ours_in} {theirs_in}");
+    assert!((floor.area() / theirs - 1.0).abs() <= 0.02, "{} {theirs} m2", floor.area());
 }
 
 /// Share of `cells` that have one of `others` within 0.2 m.

@@ -164,6 +164,9 @@ fn results(plan: &Plan, records: &[TrialRecord]) -> Result<Vec<(String, Vec<u8>)
                 }
                 (findings.effects_table(wanted), print)
             }
+            TableLayout::MeasuresTable(wanted) => {
+                (findings.measures_table(wanted), findings.measures_table_in_print(wanted))
+            }
             TableLayout::OutcomeTable(wanted) => {
                 (findings.outcome_table(wanted), findings.outcome_table_in_print(wanted))
             }

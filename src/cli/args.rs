@@ -266,8 +266,14 @@ pub(super) struct ReplayArgs {
     /// The instant of the still picture (s) [default: the end]
     #[arg(long, value_name = "SECONDS", requires = "svg")]
     pub(super) at: Option<f64>,
+    /// Prior-map study: ... or when this coverage (percent) was first reached
+    #[arg(long, value_name = "PERCENT", requires = "svg", conflicts_with = "at")]
+    pub(super) at_coverage: Option<f64>,
+    /// Leave frontiers and the planned path out of the still picture: map, path travelled and robot alone
+    #[arg(long, requires = "svg", conflicts_with = "decision")]
+    pub(super) plain: bool,
     /// Prior-map study: instead of a still, draw what the candidate of this choice (from 1) promises, with and without prior
-    #[arg(long, value_name = "CHOICE", requires = "svg", conflicts_with = "at")]
+    #[arg(long, value_name = "CHOICE", requires = "svg", conflicts_with_all = ["at", "at_coverage"])]
     pub(super) decision: Option<usize>,
     /// Which candidate of that choice, from 1 [default: the chosen one]
     #[arg(long, value_name = "CANDIDATE", requires = "decision")]

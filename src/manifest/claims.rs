@@ -4,8 +4,8 @@ use super::Experiment;
 use crate::claims::metric::WALL_TIME_COLUMNS;
 use crate::claims::{self, Claim};
 use crate::document::Diagnostic;
-use crate::studies::prior_map::{FURTHER_AT_MILESTONES, MILESTONES};
-use crate::studies::{StudyKind, deadline};
+use crate::studies::prior_map::{FURTHER_AT_MILESTONES, MILESTONES, coverage_at_distance};
+use crate::studies::{Setup, StudyKind, deadline};
 
 /// Every fault of the experiment's claims.
 pub fn check_claims(experiment: &Experiment) -> Vec<Diagnostic> {
@@ -27,7 +27,15 @@ pub fn check_claims(experiment: &Experiment) -> Vec<Diagnostic> {
     let factors: Vec<_> =
         experiment.factors.iter().map(|f| (f.name.clone(), f.values.clone())).collect();
     let published: Vec<String> = experiment.published.keys().cloned().collect();
-    let measures = measures(experiment.kind);
+    let mut measures = measures(experiment.kind);
+    for (_, setup) in &experiment.conditions {
+        if let Setup::PriorMap(setup) = setup {
+            let asked_for = &setup.parameters.measurement.coverage_at_distance_m;
+            measures.extend(asked_for.iter().map(|&distance| coverage_at_distance(distance)));
+        }
+    }
+    measures.sort();
+    measures.dedup();
     let problems = claims::check_all(&claims, &factors, &measures, &published);
     faults.extend(problems.into_iter().map(|problem| tree.fault(tree.place("/claims"), problem)));
     faults

@@ -204,12 +204,14 @@ pub struct PoseDoc {
     pub heading_deg: f64,
 }
 
-/// Prior knowledge: a map file, or what is derived from a world.
+/// Prior knowledge: a map file, what is derived from a world, or a graph.
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum PriorDoc {
     /// A `map_server` map.
     Map(MapPrior),
+    /// A graph of places, for `exploration.strategy: topo-metric-tour`.
+    TopoMetric(TopoMetricPrior),
     /// The floor plan of a world.
     FloorPlan(FloorPlanOf),
     /// A world's floor plan without what stands inside.
@@ -236,6 +238,14 @@ pub struct MapPrior {
     /// What cells between the two thresholds become.
     #[serde(default)]
     pub unknown: UnknownAs,
+}
+
+/// A graph of places.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct TopoMetricPrior {
+    /// The YAML file with its nodes, in the world's frame, and edges.
+    pub topo_metric_map: String,
 }
 
 /// A corner of a map.
@@ -351,7 +361,7 @@ pub enum PublishedDoc {
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub struct PublishedFile {
-    /// Columns: factors, `coverage-percent`, `value`, `sd`, `n`.
+    /// Columns: factors, `coverage-percent` or `measure`, `value`, `sd`, `n`.
     pub file: String,
     /// Factors that the paper did not vary: its numbers stand beside all their values.
     #[serde(default)]

@@ -8,7 +8,7 @@ use crate::grid::{Cell, Occupancy, OccupancyGrid};
 use crate::math;
 use crate::robot::Robot;
 use crate::studies::deadline;
-use crate::studies::prior_map::Setup;
+use crate::studies::prior_map::{Setup, Strategy};
 use crate::units::Tick;
 use crate::world::World;
 use crate::world::topology::Topology;
@@ -26,6 +26,7 @@ pub(super) fn check(setup: &Setup, prior: Option<&UsedPrior>, faults: &mut Fault
     start(&setup.world, &setup.robot, setup.start, faults);
     units(&serde_json::json!(setup.parameters), faults);
     median(setup, faults);
+    tour(setup, faults);
     if let Some(prior) = prior {
         resolution(setup, prior, faults);
     }
@@ -107,6 +108,31 @@ fn start(world: &World, robot: &Robot, start: Pose, faults: &mut Faults<'_>) {
 
 fn spot(point: Point) -> String {
     format!("({:.2}, {:.2}) m", point.x, point.y)
+}
+
+/// A tour needs a graph, and a graph is of no use to anything else.
+fn tour(setup: &Setup, faults: &mut Faults<'_>) {
+    let exploration = &setup.parameters.exploration;
+    let is_toured = exploration.strategy == Strategy::TopoMetricTour;
+    let pointer = "/parameters/exploration/strategy";
+    if is_toured && setup.topo_metric_map.is_none() {
+        let message = "the strategy `topo-metric-tour` has no graph to make a tour of";
+        let fault = faults.fault(pointer, message).label("expected a prior with a graph");
+        let help = "name one under `prior-maps`, as `graph: {topo-metric-map: FILE}`, and choose it as `prior`";
+        faults.push(fault.help(help));
+    } else if !is_toured && setup.topo_metric_map.is_some() {
+        let message = "the prior is a graph, which this strategy cannot use";
+        let fault = faults.fault(pointer, message).label("expected `topo-metric-tour`");
+        faults.push(
+            fault.help("set `exploration.strategy: topo-metric-tour` where this is the prior"),
+        );
+    }
+    if !is_toured && exploration.node_noise_sd_m > 0.0 {
+        let pointer = "/parameters/exploration/node-noise-sd-m";
+        let message = "there are no nodes for `exploration.node-noise-sd-m` to move";
+        let label = "expected 0 but for `strategy: topo-metric-tour`";
+        faults.at(pointer, message, label);
+    }
 }
 
 /// A median over an even number of beams would invent a range between two.

@@ -1,8 +1,10 @@
-//! Prior knowledge PK_E: a map file aligned to the world, or what is derived from a world.
+//! Prior knowledge PK_E: a map file aligned to the world, what is derived from a world, or a graph of places in it.
 
 use super::choice::Choice;
 use super::crossing::known_or_near;
-use super::document::{DerivedFrom, MapPrior, OwnWorld, PriorDoc, PriorFrame, UnknownAs};
+use super::document::{
+    DerivedFrom, MapPrior, OwnWorld, PriorDoc, PriorFrame, TopoMetricPrior, UnknownAs,
+};
 use super::faults::step;
 use super::inputs::{joined, normalised};
 use super::readers::{self, Derived};
@@ -16,6 +18,7 @@ use crate::json;
 use crate::robot::Robot;
 use crate::studies::Condition;
 use crate::studies::prior_map::Parameters;
+use crate::studies::prior_map::tour::TopoMetricMap;
 use crate::world::{floor_plan::Plan, map_server};
 use serde_json::{Value, json};
 use std::sync::Arc;
@@ -27,6 +30,49 @@ const NONE: &str = "none";
 /// Something could not be had; the faults say why.
 #[derive(Debug)]
 pub(super) struct Told;
+
+/// Prior knowledge as a condition uses it.
+#[derive(Clone)]
+pub(super) enum Knowledge {
+    /// A map.
+    Map(UsedPrior),
+    /// A graph, what it means and what it was read from.
+    TopoMetric(Arc<TopoMetricMap>, MeaningDigest, Value),
+}
+
+impl Knowledge {
+    /// The map, where it is one.
+    pub(super) fn map(&self) -> Option<&UsedPrior> {
+        match self {
+            Self::Map(map) => Some(map),
+            Self::TopoMetric(..) => None,
+        }
+    }
+
+    /// The graph, where it is one.
+    pub(super) fn topo_metric_map(&self) -> Option<Arc<TopoMetricMap>> {
+        match self {
+            Self::Map(_) => None,
+            Self::TopoMetric(graph, ..) => Some(Arc::clone(graph)),
+        }
+    }
+
+    /// Digest of what it means.
+    pub(super) fn meaning(&self) -> MeaningDigest {
+        match self {
+            Self::Map(map) => map.meaning,
+            Self::TopoMetric(_, meaning, _) => *meaning,
+        }
+    }
+
+    /// What it was resolved from.
+    pub(super) fn described(&self) -> Value {
+        match self {
+            Self::Map(map) => map.described.clone(),
+            Self::TopoMetric(.., described) => described.clone(),
+        }
+    }
+}
 
 /// A prior map as a condition uses it.
 #[derive(Clone)]
@@ -85,7 +131,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// The prior map of `condition`, where it has one.
+    /// The prior knowledge of `condition`, where it has some.
     ///
     /// # Errors
     /// Where it could not be had.
@@ -96,7 +142,7 @@ impl Resolver<'_> {
         robot: &Robot,
         start: Pose,
         parameters: &Parameters,
-    ) -> Result<Option<UsedPrior>, Told> {
+    ) -> Result<Option<Knowledge>, Told> {
         let doc = self.doc;
         let name = condition.value(FACTOR).or(doc.prior.as_deref()).unwrap_or(NONE);
         if name == NONE {
@@ -109,7 +155,13 @@ impl Resolver<'_> {
             (kind, from.clone(), resolution.unwrap_or(parameters.mapping.resolution_m))
         };
         let (kind, from, resolution) = match prior {
-            PriorDoc::Map(map) => return self.map(map, &pointer, start).map(Some).ok_or(Told),
+            PriorDoc::Map(map) => {
+                let map = self.map(map, &pointer, start).ok_or(Told)?;
+                return Ok(Some(Knowledge::Map(map)));
+            }
+            PriorDoc::TopoMetric(graph) => {
+                return self.topo_metric_map(graph, &pointer).map(Some).ok_or(Told);
+            }
             PriorDoc::FloorPlan(p) => derived(Derived::FloorPlan, &p.floor_plan_of, p.resolution_m),
             PriorDoc::Footprint(p) => derived(Derived::Footprint, &p.footprint_of, p.resolution_m),
             PriorDoc::BoundingBox(p) => {
@@ -152,7 +204,23 @@ impl Resolver<'_> {
         let (grid, meaning) = known.ok_or(Told)?;
         // Footprints and boxes leave most walls out by what they are: that few have one in the world is no slip.
         let own = own || kind != Derived::FloorPlan;
-        Ok(Some(UsedPrior { grid, meaning, described, pointer, own }))
+        Ok(Some(Knowledge::Map(UsedPrior { grid, meaning, described, pointer, own })))
+    }
+
+    /// Every condition reads it anew: it is small.
+    fn topo_metric_map(&mut self, doc: &TopoMetricPrior, pointer: &str) -> Option<Knowledge> {
+        let source = self.text(&doc.topo_metric_map, &format!("{pointer}/topo-metric-map"))?;
+        match readers::topo_metric_map(&source) {
+            Ok(graph) => {
+                let described = json!({ "topo-metric-map": normalised(&doc.topo_metric_map) });
+                let meaning = graph.meaning();
+                Some(Knowledge::TopoMetric(Arc::new(graph), meaning, described))
+            }
+            Err(faults) => {
+                self.faults.extend(faults);
+                None
+            }
+        }
     }
 
     fn map(&mut self, doc: &MapPrior, pointer: &str, start: Pose) -> Option<UsedPrior> {

@@ -4,32 +4,43 @@ use super::claims::measures;
 use super::crossing::{Factor, is_kebab, kebab, known_or_near};
 use super::document::ManifestDoc;
 use super::faults::{Faults, step};
+use super::resolve::Resolved;
 use crate::document::{Diagnostic, Source, suggestion};
 use crate::studies::deadline::OutcomeTable;
-use crate::studies::prior_map::{AgreementTable, CoverageTable, EffectsTable, MILESTONES};
-use crate::studies::{FactorValue, FigureLayout, StudyKind, TableLayout, coverage_tables};
+use crate::studies::prior_map::{
+    AgreementTable, CoverageTable, EffectsTable, MILESTONES, MeasuresTable, coverage_at_distance,
+};
+use crate::studies::{FactorValue, FigureLayout, Setup, StudyKind, TableLayout, coverage_tables};
 use crate::table::{Table, Value};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Columns of a tidy CSV of published numbers besides the factors', and whether each must be there: tables of the prior-map
-/// study are by coverage.
-fn columns(kind: StudyKind) -> [(&'static str, bool); 4] {
-    let by_coverage = kind == StudyKind::PriorMap;
-    [("coverage-percent", by_coverage), ("value", true), ("sd", false), ("n", false)]
+/// study are by coverage, or by measure.
+fn columns(kind: StudyKind, by_measure: bool) -> [(&'static str, bool); 5] {
+    let by_coverage = kind == StudyKind::PriorMap && !by_measure;
+    [
+        ("coverage-percent", by_coverage),
+        ("value", true),
+        ("sd", false),
+        ("n", false),
+        (MEASURE, false),
+    ]
 }
+
+/// The column that names what is measured, in numbers that are not by coverage.
+const MEASURE: &str = "measure";
 
 /// No paper prints more (bytes); a table takes many times its text.
 const MOST_BYTES: usize = 1 << 19;
 
 /// Reads a tidy CSV: columns named after factors, then `coverage-percent`, `value`, and where known `sd` and
-/// `n`; one row per published number.
+/// `n`; one row per published number. Where a column `measure` says what was measured, there need be no coverage.
 pub(super) fn read(
     source: &Source,
     kind: StudyKind,
     factors: &[Factor],
     faults: &mut Faults<'_>,
 ) -> Option<Table> {
-    let numbers = columns(kind);
     if source.text.len() > MOST_BYTES {
         let message =
             format!("a file of {} bytes: expected at most {MOST_BYTES}", source.text.len());
@@ -43,6 +54,7 @@ pub(super) fn read(
             return None;
         }
     };
+    let numbers = columns(kind, table.column(MEASURE).is_some());
     let mut fine = true;
     let known: Vec<&str> = factors
         .iter()
@@ -153,6 +165,11 @@ pub(super) fn check_requests(
                 foreign(StudyKind::PriorMap, &pointer, faults);
                 check_effects(wanted, &pointer, doc, factors, published, faults);
             }
+            TableLayout::MeasuresTable(wanted) => {
+                let pointer = format!("/tables/{i}/measures-table");
+                foreign(StudyKind::PriorMap, &pointer, faults);
+                check_measures(wanted, &pointer, doc, factors, published, faults);
+            }
             TableLayout::OutcomeTable(table) => {
                 let pointer = format!("/tables/{i}/outcome-table");
                 foreign(StudyKind::Deadline, &pointer, faults);
@@ -219,17 +236,8 @@ fn check_outcomes(
     published: &BTreeMap<String, Table>,
     faults: &mut Faults<'_>,
 ) {
-    // Success and outcomes are no columns: `share` shows them.
-    let mut known = measures(doc.study);
-    known.retain(|name| name != "success" && !name.starts_with("outcome:"));
     for measure in table.show.measures() {
-        if !known.iter().any(|name| name == measure) {
-            let known: Vec<&str> = known.iter().map(String::as_str).collect();
-            let fault = faults
-                .fault(&format!("{pointer}/show"), format!("trials have no measure `{measure}`"))
-                .label("asked for by this table");
-            faults.push(fault.help(known_or_near(measure, &known)));
-        }
+        check_measure(measure, &format!("{pointer}/show"), &numeric(doc.study), faults);
     }
     check_only(&table.only, pointer, factors, faults);
     check_columns(&table.by, &table.rows, pointer, factors, faults);
@@ -242,6 +250,65 @@ fn check_outcomes(
         published,
         faults,
     );
+}
+
+/// The measures that are columns of numbers: success and outcomes are not.
+fn numeric(kind: StudyKind) -> Vec<String> {
+    let mut known = measures(kind);
+    known.retain(|name| name != "success" && !name.starts_with("outcome:"));
+    known
+}
+
+fn check_measure(measure: &str, place: &str, known: &[String], faults: &mut Faults<'_>) {
+    if known.iter().any(|name| name == measure) {
+        return;
+    }
+    let known: Vec<&str> = known.iter().map(String::as_str).collect();
+    let fault = faults
+        .fault(place, format!("trials have no measure `{measure}`"))
+        .label("asked for by this table");
+    faults.push(fault.help(known_or_near(measure, &known)));
+}
+
+fn check_measures(
+    wanted: &MeasuresTable,
+    pointer: &str,
+    doc: &ManifestDoc,
+    factors: &[Factor],
+    published: &BTreeMap<String, Table>,
+    faults: &mut Faults<'_>,
+) {
+    for (i, row) in wanted.rows.iter().enumerate() {
+        faults.check_factor(factors, row, &format!("{pointer}/rows/{i}"), false);
+    }
+    let Some((first, rows)) = wanted.rows.split_first() else { return };
+    check_published(wanted.published.as_ref(), first, rows, pointer, doc, published, faults);
+    let place = format!("{pointer}/published");
+    let numbers = wanted.published.as_ref().and_then(|name| published.get(name));
+    if numbers.is_some_and(|numbers| numbers.column(MEASURE).is_none()) {
+        let message = format!("the published numbers have no column `{MEASURE}`");
+        faults.at(&place, message, "this table needs numbers that say what they measure");
+    }
+}
+
+/// Faults of the measures that tables ask for, which depend on what the conditions record.
+pub(super) fn check_recorded(doc: &ManifestDoc, resolved: &[Resolved], faults: &mut Faults<'_>) {
+    let mut known = numeric(doc.study);
+    for (_, setup, ..) in resolved {
+        if let Setup::PriorMap(setup) = setup {
+            let asked_for = &setup.parameters.measurement.coverage_at_distance_m;
+            let names = asked_for.iter().map(|&distance| coverage_at_distance(distance));
+            let new: Vec<String> = names.filter(|name| !known.contains(name)).collect();
+            known.extend(new);
+        }
+    }
+    for (i, table) in doc.tables.iter().enumerate() {
+        let TableLayout::MeasuresTable(wanted) = &table.layout else { continue };
+        for (j, measure) in wanted.measures.iter().enumerate() {
+            let place = format!("/tables/{i}/measures-table/measures/{j}");
+            check_measure(measure, &place, &known, faults);
+        }
+    }
 }
 
 fn check_table(

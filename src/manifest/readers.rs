@@ -3,6 +3,7 @@
 use super::document::Alpha;
 use crate::document::{Diagnostic, Source};
 use crate::grid::OccupancyGrid;
+use crate::studies::prior_map::tour::{self, TopoMetricMap};
 use crate::world::floor_plan::{self, Plan};
 use crate::world::{World, document, map_server, sdf};
 
@@ -49,6 +50,11 @@ pub(super) fn world(source: &Source, layers: Option<&[String]>) -> Result<World,
     } else {
         document::read(source, layers)
     }
+}
+
+/// A topo-metric map.
+pub(super) fn topo_metric_map(source: &Source) -> Result<TopoMetricMap, Vec<Diagnostic>> {
+    tour::read(source)
 }
 
 /// A `map_server` map from its descriptor and the bytes of its image.

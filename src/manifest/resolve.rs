@@ -8,6 +8,7 @@ use super::faults::{Faults, step};
 use super::inputs::{InputFiles, Inputs, WrittenIn, joined, normalised};
 use super::parameters::WrappedValue;
 use super::pinned::Pins;
+use super::priors::Knowledge;
 use super::worlds::UsedWorld;
 use super::{lint, overrides, published, schema, settings};
 use crate::digest::MeaningDigest;
@@ -131,6 +132,7 @@ impl Resolver<'_> {
             resolved.extend(self.condition(condition));
         }
         if !self.faults.any_error() {
+            published::check_recorded(doc, &resolved, &mut self.faults);
             // What names a file, a map its image, may itself be what is missing.
             self.check_licenses();
             self.check_pins();
@@ -268,16 +270,18 @@ impl Resolver<'_> {
         // Every part has told its faults by now; the prior needs them all.
         let (parameters, parts) = (parameters?, parts?);
         let Parts { robot, robot_meaning, robot_file, world, start } = parts;
-        let prior = self.prior(&condition, &world, &robot, start, &parameters).ok()?;
+        let knowledge = self.prior(&condition, &world, &robot, start, &parameters).ok()?;
+        let prior = knowledge.as_ref().and_then(Knowledge::map);
         let setup = prior_map::Setup::new(
             Arc::clone(&world.world),
             robot,
             prior.as_ref().map(|prior| Arc::clone(&prior.grid)),
             start,
             parameters,
-        );
-        lint::check(&setup, prior.as_ref(), &mut self.faults);
-        if let Some(prior) = prior.as_ref().filter(|prior| !prior.own) {
+        )
+        .with_topo_metric_map(knowledge.as_ref().and_then(Knowledge::topo_metric_map));
+        lint::check(&setup, prior, &mut self.faults);
+        if let Some(prior) = prior.filter(|prior| !prior.own) {
             // Conditions share worlds and priors; holding one against the other once is enough.
             let pair = (world.meaning, prior.meaning, prior.pointer.clone());
             if self.aligned.insert(pair) {
@@ -287,12 +291,12 @@ impl Resolver<'_> {
         let meanings = Meanings {
             robot: robot_meaning,
             world: world.meaning,
-            prior: prior.as_ref().map(|prior| prior.meaning),
+            prior: knowledge.as_ref().map(Knowledge::meaning),
         };
         let described = json!({
             "robot": robot_file,
             "world": world.described,
-            "prior": prior.map(|prior| prior.described),
+            "prior": knowledge.map(|knowledge| knowledge.described()),
         });
         Some((condition, Setup::PriorMap(Arc::new(setup)), meanings, described))
     }

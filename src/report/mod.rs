@@ -28,7 +28,7 @@ pub use gain_still::{GainView, gain_svg};
 pub use gather::content_of;
 pub use page::page;
 pub use replay::replay_page;
-pub use still::still_svg;
+pub use still::{Shown, still_svg};
 
 #[cfg(test)]
 mod fixtures;

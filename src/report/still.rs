@@ -9,9 +9,18 @@ use crate::studies::recording::{Frame, Recording};
 /// Longest side of the drawing (px).
 const SIZE: f64 = 800.0;
 
+/// What a still shows besides the map, the way travelled and the robot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shown {
+    /// Also the frontiers with their candidates, and the planned path.
+    Everything,
+    /// Nothing, as the paper prints maps (Figure 9c).
+    MapAndTrail,
+}
+
 /// The robot's map (free white, occupied black, unknown grey), the frontiers with the chosen candidate, the
 /// path and the trail, and the robot, at `at` s or at the end; with a scale bar.
-pub fn still_svg(recording: &Recording, at: Option<f64>) -> String {
+pub fn still_svg(recording: &Recording, at: Option<f64>, shown: Shown) -> String {
     let seen = recording.frames.iter().take_while(|f| at.is_none_or(|at| f.time_s <= at));
     let frames: Vec<&Frame> = seen.collect();
     let bounds = bounds(recording);
@@ -42,14 +51,15 @@ pub fn still_svg(recording: &Recording, at: Option<f64>) -> String {
     }
     let trail: Vec<_> = frames.iter().map(|f| f.pose.position()).collect();
     body.push(stroke(line(&trail), "#555555", 1.5));
-    if let Some(path) = frames.iter().rev().find_map(|f| f.path.as_deref()) {
+    let is_all = shown == Shown::Everything;
+    if let Some(path) = frames.iter().rev().filter(|_| is_all).find_map(|f| f.path.as_deref()) {
         body.push(stroke(line(path), "#0072b2", 2.5).set("stroke-dasharray", "7 4"));
     }
     let dot = |p: Point, r: f64| {
         let (x, y) = place(p);
         Element::new("circle").at("cx", x).at("cy", y).at("r", r)
     };
-    let decision = frames.iter().rev().find_map(|f| f.decision.as_ref());
+    let decision = frames.iter().rev().filter(|_| is_all).find_map(|f| f.decision.as_ref());
     for (i, frontier) in decision.iter().flat_map(|d| d.frontiers.iter().enumerate()) {
         let side = recording.map_frame.resolution * scale;
         for &cell in &frontier.cells {
@@ -73,7 +83,8 @@ pub fn still_svg(recording: &Recording, at: Option<f64>) -> String {
     }
     body.extend(scale_bar(height, scale));
     let time = frames.last().map_or(0.0, |f| f.time_s);
-    let title = format!("Map, frontiers, path and robot after {} s", number(time));
+    let what = if is_all { "Map, frontiers, path and robot" } else { "Map, path and robot" };
+    let title = format!("{what} after {} s", number(time));
     document(width, height, &title, body)
 }
 
@@ -154,7 +165,7 @@ mod tests {
     #[test]
     fn the_still_shows_map_frontiers_path_and_robot() {
         let recording = recording(40);
-        let svg = still_svg(&recording, None);
+        let svg = still_svg(&recording, None, Shown::Everything);
         let parsed = roxmltree::Document::parse(&svg).unwrap();
         let with = |name: &str, value: &str| {
             parsed.descendants().filter(|n| n.attribute(name) == Some(value)).count()
@@ -163,8 +174,15 @@ mod tests {
         assert_eq!(with("stroke-dasharray", "7 4"), 1, "one path");
         assert_eq!(with("fill", "#56b4e9"), 1, "one robot");
         assert_eq!((with("fill", "#111111"), with("stroke", "#111111")), (2, 4));
-        assert_eq!(svg, still_svg(&recording, None));
+        assert_eq!(svg, still_svg(&recording, None, Shown::Everything));
         assert!(!svg.contains("NaN") && !svg.contains("inf"));
+    }
+
+    #[test]
+    fn a_plain_still_has_neither_frontiers_nor_a_planned_path() {
+        let svg = still_svg(&recording(40), None, Shown::MapAndTrail);
+        assert!(svg.contains("#555555") && svg.contains("#56b4e9"), "the trail and the robot");
+        assert!(!svg.contains("#d55e00") && !svg.contains("#009e73") && !svg.contains("7 4"));
     }
 
     #[test]
@@ -173,7 +191,8 @@ mod tests {
         let frames: Vec<_> = recording.frames.iter().collect();
         let known = |n: usize| map_of(&recording, &frames[..n]).count(Occupancy::Unknown);
         assert!(known(40) < known(5) && known(5) < known(0));
-        assert!(still_svg(&recording, Some(0.3)).contains("after 0.3 s"));
-        assert!(still_svg(&recording, Some(-1.0)).contains("after 0 s"), "before it began");
+        let still = |at| still_svg(&recording, Some(at), Shown::Everything);
+        assert!(still(0.3).contains("after 0.3 s"));
+        assert!(still(-1.0).contains("after 0 s"), "before it began");
     }
 }

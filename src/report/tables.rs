@@ -6,8 +6,11 @@ use crate::plan::Plan;
 use crate::studies::deadline::results::OutcomeCell;
 use crate::studies::deadline::{ManeuverTable, OutcomeTable, Quantity};
 use crate::studies::prior_map::effects::Effect;
+use crate::studies::prior_map::measures::MeasureCell;
 use crate::studies::prior_map::results::CoverageCell;
-use crate::studies::prior_map::{AgreementTable, CoverageTable, EffectsTable, Metric};
+use crate::studies::prior_map::{
+    AgreementTable, CoverageTable, EffectsTable, MeasuresTable, Metric,
+};
 use crate::studies::{Findings, TableLayout, TableRequest, coverage_tables};
 
 /// What the page shows of a requested table.
@@ -16,6 +19,7 @@ pub(super) fn table(findings: &Findings<'_>, request: &TableRequest, plan: &Plan
         TableLayout::CoverageTable(wanted) => coverage_table(findings, request, wanted, plan),
         TableLayout::AgreementTable(wanted) => agreement_table(findings, request, wanted, plan),
         TableLayout::EffectsTable(wanted) => effects_table(findings, request, wanted, plan),
+        TableLayout::MeasuresTable(wanted) => measures_table(findings, request, wanted, plan),
         TableLayout::OutcomeTable(wanted) => outcome_table(findings, request, wanted, plan),
         TableLayout::ManeuverTable(wanted) => maneuver_table(findings, request, wanted),
     }
@@ -183,6 +187,42 @@ fn effects_table(
         row_header: "level, in".to_owned(),
         rows: rows.collect(),
         columns: wanted.at.iter().map(|percent| format!("{percent} %")).collect(),
+    }
+}
+
+/// One line a cell of the design; the measures stand side by side.
+fn measures_table(
+    findings: &Findings<'_>,
+    request: &TableRequest,
+    wanted: &MeasuresTable,
+    plan: &Plan,
+) -> ReportTable {
+    let cells = findings.measure_cells(wanted);
+    let rows = cells.chunks(wanted.measures.len().max(1)).map(|line| {
+        let label: Vec<&str> = line
+            .iter()
+            .take(1)
+            .flat_map(|cell| cell.rows.iter().map(|(_, value)| value.as_str()))
+            .collect();
+        let cell = |cell: &MeasureCell| {
+            let measured = |mean: f64, sd: Option<f64>, n| Measured { mean, sd, n };
+            ReportCell {
+                ours: cell.ours.map(|s| measured(s.mean, (s.n > 1).then_some(s.sd), Some(s.n))),
+                published: cell.published.map(|(mean, sd)| measured(mean, sd, None)),
+                ..ReportCell::default()
+            }
+        };
+        ReportRow { label: label.join(", "), cells: line.iter().map(cell).collect() }
+    });
+    ReportTable {
+        id: request.id.clone(),
+        title: request.title.clone(),
+        source: source(plan, wanted.published.as_ref()),
+        quantity: "measures of whole trials".to_owned(),
+        decimals: 1,
+        row_header: wanted.rows.join(", "),
+        rows: rows.collect(),
+        columns: wanted.measures.clone(),
     }
 }
 

@@ -28,6 +28,8 @@ pub enum TableLayout {
     AgreementTable(prior_map::AgreementTable),
     /// Prior map: how much each level of a factor moves a metric, over matched conditions.
     EffectsTable(prior_map::EffectsTable),
+    /// Prior map: measures of whole trials side by side, as the numbers of section 4.5.
+    MeasuresTable(prior_map::MeasuresTable),
     /// Deadline: shares of outcomes, means and ratios by condition, as in Tables 1 and 2.
     OutcomeTable(deadline::OutcomeTable),
     /// Deadline: the six maneuvers as calibrated and as they went in the study's own trials.
@@ -42,6 +44,7 @@ pub fn coverage_tables(tables: &[TableRequest]) -> Vec<(&str, &prior_map::Covera
             TableLayout::CoverageTable(table) => Some((request.id.as_str(), table)),
             TableLayout::AgreementTable(_)
             | TableLayout::EffectsTable(_)
+            | TableLayout::MeasuresTable(_)
             | TableLayout::OutcomeTable(_)
             | TableLayout::ManeuverTable(_) => None,
         })

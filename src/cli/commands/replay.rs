@@ -5,7 +5,7 @@ use crate::cli::exit::{Exit, Failure};
 use crate::cli::load;
 use crate::cli::terminal::{Terminal, counted};
 use crate::plan::Plan;
-use crate::report::{GainView, gain_svg, replay_page, still_svg};
+use crate::report::{GainView, Shown, gain_svg, replay_page, still_svg};
 use crate::studies::recording::Recording;
 use crate::studies::{self, Setup, TrialRecord};
 use crate::verify::plan_of;
@@ -52,7 +52,14 @@ pub(in crate::cli) fn run(args: &ReplayArgs, terminal: Terminal) -> Result<Exit,
     }
     if let (Some(path), Some((_, recording))) = (&args.svg, played.first()) {
         let still = match args.decision {
-            None => still_svg(recording, args.at),
+            None => {
+                let at = match args.at_coverage {
+                    None => args.at,
+                    Some(percent) => Some(instant_of(percent, recording)?),
+                };
+                let shown = if args.plain { Shown::MapAndTrail } else { Shown::Everything };
+                still_svg(recording, at, shown)
+            }
             Some(decision) => gain_still(&plan, args, decision, recording)?,
         };
         load::write(path, still.as_bytes())?;
@@ -68,6 +75,18 @@ pub(in crate::cli) fn run(args: &ReplayArgs, terminal: Terminal) -> Result<Exit,
     }
     terminal.result(&notes.join("\n"));
     Ok(exit)
+}
+
+/// When (s) the trial first covered `percent`.
+fn instant_of(percent: f64, recording: &Recording) -> Result<f64, Failure> {
+    let reached = recording.frames.iter().find(|frame| frame.coverage_percent >= percent);
+    reached.map(|frame| frame.time_s).ok_or_else(|| {
+        let most = recording.frames.iter().map(|frame| frame.coverage_percent);
+        let most = most.fold(0.0, f64::max);
+        Failure::not_understood(format!(
+            "the trial never covered {percent} %: it ended with {most:.1} % at most; choose a lower `--at-coverage`"
+        ))
+    })
 }
 
 /// What a candidate of the first trial's choice promises.

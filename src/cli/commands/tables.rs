@@ -32,6 +32,10 @@ pub(super) fn table(
             }
             text + "  (largest first; means of ln over matched conditions; runs that got there of all, of either level;\n  paper: from our mean at the first level to the paper's)\n"
         }
+        TableLayout::MeasuresTable(wanted) => {
+            aligned(&findings.measures_table_in_print(wanted))
+                + "  (mean ± standard deviation of trials; in parentheses: the paper's)\n"
+        }
         TableLayout::OutcomeTable(wanted) => outcome_table(findings, wanted),
         TableLayout::ManeuverTable(wanted) => aligned(&findings.maneuver_table(wanted)),
     };

@@ -6,9 +6,10 @@ use super::frontier::{Frontier, find_frontiers};
 use super::information_gain::{AlignedPrior, InformationGain};
 use super::parameters::{Exploration, Gain, Parameters, Strategy, View};
 use super::released_gain::{Rays, ReleasedGain};
+use super::tour::Tour;
 use super::utility::{Appraisal, utilities};
 use crate::geometry::Pose;
-use crate::grid::{Cell, GridFrame};
+use crate::grid::{Cell, GridFrame, Occupancy};
 use crate::mapping::OccupancyMap;
 use crate::math;
 use crate::navigation::CostGrid;
@@ -55,6 +56,8 @@ pub struct Chooser {
     headings: Option<Headings>,
     /// Only for the released program's gain.
     rays: Option<Rays>,
+    /// Only for the method of [8].
+    tour: Option<Tour>,
 }
 
 impl Chooser {
@@ -78,7 +81,15 @@ impl Chooser {
             prior,
             range,
             view,
+            tour: None,
         }
+    }
+
+    /// The same one, choosing along `tour` where the strategy is to.
+    #[must_use]
+    pub fn with_tour(self, tour: Option<Tour>) -> Self {
+        let tour = tour.filter(|_| self.exploration.strategy == Strategy::TopoMetricTour);
+        Self { tour, ..self }
     }
 
     /// Step (b): the frontiers that the robot can go to.
@@ -90,11 +101,12 @@ impl Chooser {
         find_frontiers(map, sight.costs, robot, lethal, minimum_frontier_cells, candidate)
     }
 
-    /// The terms of equation 1 for `frontiers`; none is chosen yet.
-    pub fn appraise(&self, sight: Sight<'_>, frontiers: Vec<Frontier>) -> Choice {
+    /// The terms of equation 1 for `frontiers`; none is chosen yet. Without a utility there is no gain, and what stands for
+    /// u(p) has the order of the strategy.
+    pub fn appraise(&mut self, sight: Sight<'_>, frontiers: Vec<Frontier>) -> Choice {
         let frame = *sight.map.grid().frame();
-        let nearest_only = self.exploration.strategy == Strategy::NearestFrontier;
-        let gains = if nearest_only {
+        let by_distance = self.exploration.strategy != Strategy::Utility;
+        let gains = if by_distance {
             vec![0.0; frontiers.len()]
         } else {
             let candidates: Vec<Cell> = frontiers.iter().map(|f| f.candidate).collect();
@@ -106,8 +118,16 @@ impl Chooser {
             .zip(gains)
             .map(|(f, gain)| Appraisal { distance: distance(f), gain })
             .collect();
-        let alpha = if nearest_only { 1.0 } else { self.exploration.alpha };
-        let utilities = utilities(&appraisals, alpha);
+        let alpha = if by_distance { 1.0 } else { self.exploration.alpha };
+        let utilities = match &mut self.tour {
+            None => utilities(&appraisals, alpha),
+            Some(tour) => {
+                let places: Vec<_> = frontiers.iter().map(|f| frame.center(f.candidate)).collect();
+                let map = sight.map.grid();
+                let is_known = |place| map.at(frame.cell_at(place)) != Occupancy::Unknown;
+                tour.rank(sight.pose.position(), &places, is_known)
+            }
+        };
         Choice { frame, frontiers, appraisals, utilities, chosen: None }
     }
 

@@ -7,6 +7,7 @@ use super::choice::{Choice, Chooser, Sight};
 use super::frontier::Frontier;
 use super::information_gain::AlignedPrior;
 use super::parameters::{Parameters, Reselect};
+use super::tour::Tour;
 use super::utility::ranked;
 use crate::geometry::{Point, Pose};
 use crate::grid::{Cell, GridFrame, Occupancy, OccupancyGrid};
@@ -157,6 +158,12 @@ impl Explorer {
             delays,
             decided: None,
         }
+    }
+
+    /// The same mind with a tour, in the frame of its map, to choose along under `strategy: topo-metric-tour`.
+    #[must_use]
+    pub fn with_tour(self, tour: Option<Tour>) -> Self {
+        Self { chooser: self.chooser.with_tour(tour), ..self }
     }
 
     /// Whether the mind will look at the scan taken at `odometry`.
@@ -405,10 +412,11 @@ impl Explorer {
     }
 
     /// Step (b) and the terms of equation 1, of the frontiers not given up.
-    fn appraise(&self, costs: &CostGrid, pose: Pose) -> Choice {
-        let sight = Sight { map: self.map(), costs, pose };
+    fn appraise(&mut self, costs: &CostGrid, pose: Pose) -> Choice {
+        // Not by `map()`: the chooser learns where its tour leads while it looks.
+        let sight = Sight { map: self.mapper.map(), costs, pose };
         let mut frontiers = self.chooser.frontiers(sight);
-        let frame = self.map().grid().frame();
+        let frame = sight.map.grid().frame();
         frontiers.retain(|frontier| !self.is_given_up(frontier, frame));
         self.chooser.appraise(sight, frontiers)
     }

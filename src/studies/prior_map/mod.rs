@@ -12,11 +12,13 @@ pub mod explorer;
 mod field_of_view;
 pub mod frontier;
 pub mod information_gain;
+pub mod measures;
 mod mission;
 mod parameters;
 mod released_gain;
 mod requests;
 pub mod results;
+pub mod tour;
 pub mod utility;
 
 pub use cell_tests::{CellTests, Difference};
@@ -25,7 +27,7 @@ pub use parameters::{
     Parameters, Reselect, Sensing, Strategy, View,
 };
 pub use requests::{
-    AgreementTable, CoverageCurve, CoverageTable, EffectsTable, Metric, PlanFigure,
+    AgreementTable, CoverageCurve, CoverageTable, EffectsTable, MeasuresTable, Metric, PlanFigure,
 };
 
 use crate::geometry::Pose;
@@ -33,8 +35,11 @@ use crate::grid::OccupancyGrid;
 use crate::robot::Robot;
 use crate::world::World;
 use std::sync::{Arc, OnceLock};
+use tour::TopoMetricMap;
 
-pub use mission::{FURTHER_AT_MILESTONES, MILESTONES, Prepared, plan_figure, run};
+pub use mission::{
+    FURTHER_AT_MILESTONES, MILESTONES, Prepared, coverage_at_distance, plan_figure, run,
+};
 
 /// Everything a trial of this study needs.
 #[derive(Debug)]
@@ -45,6 +50,8 @@ pub struct Setup {
     pub robot: Arc<Robot>,
     /// Prior knowledge PK_E, aligned to the world's frame; `None` for the strategy without.
     pub prior: Option<Arc<OccupancyGrid>>,
+    /// Prior knowledge of the other kind, a graph in the world's frame, for `strategy: topo-metric-tour`.
+    pub topo_metric_map: Option<Arc<TopoMetricMap>>,
     /// Where the robot begins, in the world's frame (m, rad).
     pub start: Pose,
     /// Everything else.
@@ -61,7 +68,14 @@ impl Setup {
         start: Pose,
         parameters: Parameters,
     ) -> Self {
-        Self { world, robot, prior, start, parameters, prepared: OnceLock::new() }
+        let (topo_metric_map, prepared) = (None, OnceLock::new());
+        Self { world, robot, prior, topo_metric_map, start, parameters, prepared }
+    }
+
+    /// The same setup with a topo-metric map.
+    #[must_use]
+    pub fn with_topo_metric_map(self, map: Option<Arc<TopoMetricMap>>) -> Self {
+        Self { topo_metric_map: map, ..self }
     }
 
     /// How far the scanner reaches when a gain is computed, in cells of the robot's map; 0 without a scanner.

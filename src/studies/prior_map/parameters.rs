@@ -152,6 +152,11 @@ parameters!(
         #[serde(skip_serializing_if = "is_default")]
         #[schemars(range(min = 0.0))]
         decision_jitter_s: f64 = 0.0,
+        /// Under `strategy: topo-metric-tour`, the standard deviation (m) of Gaussian noise on the positions of the graph's
+        /// nodes, in x and in y, drawn anew for every trial, 0 or more.
+        #[serde(skip_serializing_if = "is_default")]
+        #[schemars(range(min = 0.0))]
+        node_noise_sd_m: f64 = 0.0,
     }
 );
 
@@ -163,6 +168,8 @@ pub enum Strategy {
     Utility,
     /// The nearest frontier (Yamauchi 1997), a further baseline.
     NearestFrontier,
+    /// The method of [8] in section 4.5: along a tour over the nodes of a topo-metric map, the nearest frontier of each.
+    TopoMetricTour,
 }
 
 /// How the information gain I(p) is computed.
@@ -225,6 +232,10 @@ parameters!(
         /// Whether the mean speed of the whole trial is recorded.
         #[serde(skip_serializing_if = "is_default")]
         mean_speed: bool = false,
+        /// Distances travelled (m) at which coverage is recorded; a trial that ended before has its last coverage there.
+        #[serde(skip_serializing_if = "is_default")]
+        #[schemars(inner(range(min = 1)))]
+        coverage_at_distance_m: Vec<u32> = Vec::new(),
     }
 );
 

@@ -39,6 +39,21 @@ pub struct AgreementTable {
     pub tables: Vec<String>,
 }
 
+/// Mean and standard deviation of whole trials' measures, side by side, one row for every cell that was run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct MeasuresTable {
+    /// Measures of trials, as columns of `results/trials.csv`: `distance-m`, `coverage-percent-at-239-m`.
+    #[schemars(length(min = 1))]
+    pub measures: Vec<String>,
+    /// Factors whose values get rows of their own; trials that differ in other factors are one cell.
+    #[schemars(length(min = 1))]
+    pub rows: Vec<String>,
+    /// A key of `published`, a file with a column `measure`: the paper's own numbers, to stand beside.
+    #[serde(default)]
+    pub published: Option<String>,
+}
+
 /// What each choice moves: effects of factors' levels on a metric, over matched conditions.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]

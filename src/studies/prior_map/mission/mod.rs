@@ -9,10 +9,11 @@ mod tests;
 mod trace;
 
 pub use plan_figure::plan_figure;
-pub use trace::MILESTONES;
+pub use trace::{MILESTONES, coverage_at_distance};
 
 use super::explorer::{CONTROL_PERIOD, Ending, Explorer};
 use super::information_gain::AlignedPrior;
+use super::tour::Tour;
 use super::{Parameters, Setup};
 use crate::geometry::{Outline, Pose};
 use crate::robot::{Lidar, Odometry, Scan};
@@ -96,6 +97,11 @@ pub fn run(
         },
     };
     let sim = Simulator::new(scene, &spec.seeds);
+    let node_noise = setup.parameters.exploration.node_noise_sd_m;
+    let tour = setup.topo_metric_map.as_ref().map(|map| {
+        let mut noise = spec.seeds.stream("node-noise");
+        Tour::new(&map.seen_from(setup.start).with_noise(node_noise, &mut noise))
+    });
     let mission = Mission {
         setup,
         prepared,
@@ -106,8 +112,13 @@ pub fn run(
             &prepared.lidar,
             prepared.prior.clone(),
             spec.seeds.stream("decision-delay"),
+        )
+        .with_tour(tour),
+        trace: Trace::new(
+            prepared.reference.total(),
+            measurement.crossing,
+            &measurement.coverage_at_distance_m,
         ),
-        trace: Trace::new(prepared.reference.total(), measurement.crossing),
         further: BTreeMap::new(),
         recorder: recording.map(|recording| Recorder::new(recording, setup, &prepared.visible)),
         moved: (start.unwrap_or(setup.start), Tick(0)),

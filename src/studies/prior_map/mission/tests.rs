@@ -2,10 +2,12 @@
 
 use super::*;
 use crate::digest::{Sha256Digest, TrialKey};
+use crate::document::Source;
 use crate::geometry::Point;
 use crate::grid::{GridFrame, Occupancy, OccupancyGrid};
 use crate::rng::Seeds;
 use crate::robot::{Drive, DriveKind, Robot};
+use crate::studies::prior_map::tour::{self, TopoMetricMap};
 use crate::studies::prior_map::{
     Candidate, Coverage, Crossing, Gain, Parameters, Reselect, Strategy, View,
 };
@@ -103,6 +105,42 @@ fn spec(trial: u32, prior: bool, parameters: Parameters) -> TrialSpec {
         trial,
         seeds: Seeds::new(1, vec![("trial".into(), trial.to_string())]),
         setup: studies::Setup::PriorMap(Arc::new(setup)),
+    }
+}
+
+/// Any trial, for tests of records.
+pub(super) fn spec_of_the_flat() -> TrialSpec {
+    spec(0, false, Parameters::default())
+}
+
+/// The flat's two rooms and its door as a graph, from a robot in the left one.
+fn graph(door: f64) -> TopoMetricMap {
+    let text = format!(
+        "reenact-topo-metric-map: 1\nname: flat\nsource: ours\nnodes:\n  left: {{at-m: [-2, 0]}}\n  door: {{at-m: [0, {door}]}}\n  \
+         right: {{at-m: [2, 0]}}\nedges: [[left, door], [door, right]]\n"
+    );
+    tour::read(&Source::new("flat.yaml", text)).unwrap()
+}
+
+#[test]
+fn a_tour_explores_the_flat_whether_or_not_its_nodes_stand_free() {
+    // In the doorway; in the wall; far outside, where the robot can never be.
+    for (door, noise) in [(-0.55, 0.0), (1.0, 0.0), (30.0, 0.0), (-0.55, 2.0)] {
+        let mut parameters = Parameters::default();
+        parameters.exploration.strategy = Strategy::TopoMetricTour;
+        parameters.exploration.node_noise_sd_m = noise;
+        parameters.measurement.coverage_at_distance_m = vec![1, 500];
+        let map = Some(Arc::new(graph(door)));
+        let setup = Setup { parameters, ..setup(None) }.with_topo_metric_map(map);
+        let spec =
+            TrialSpec { setup: studies::Setup::PriorMap(Arc::new(setup)), ..spec_of_the_flat() };
+        let record = studies::execute(&spec);
+        assert_eq!(record.outcome, Outcome::Explored, "{door} {noise}: {}", record.cause);
+        let measure = |name: &str| record.measures[name].unwrap();
+        assert!(measure("coverage-percent") > 97.0, "{door} {noise}");
+        assert!(measure("coverage-percent-at-1-m") < 90.0, "{door} {noise}");
+        assert_eq!(measure("coverage-percent-at-500-m"), measure("coverage-percent"));
+        assert_eq!(record.to_line(), studies::execute(&spec).to_line(), "the same again");
     }
 }
 

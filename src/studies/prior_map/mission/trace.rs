@@ -10,6 +10,11 @@ use std::collections::BTreeMap;
 /// Coverages (percent) at which distance and time are told.
 pub const MILESTONES: [u32; 10] = [50, 55, 60, 65, 70, 75, 80, 85, 90, 95];
 
+/// The measure of coverage (percent) after `distance_m` of travel.
+pub fn coverage_at_distance(distance_m: u32) -> String {
+    format!("coverage-percent-at-{distance_m}-m")
+}
+
 /// The running record of a trial.
 #[derive(Debug)]
 pub(super) struct Trace {
@@ -23,12 +28,15 @@ pub(super) struct Trace {
     undecided: Vec<u32>,
     /// Time (s), distance (m) and coverage (percent) at the last keyframe that changed the map.
     before: (f64, f64, f64),
+    /// Distances (m) at which coverage is asked for, and what it was there.
+    at_distances: BTreeMap<u32, Option<f64>>,
     chain: StateChain,
 }
 
 impl Trace {
-    /// The trace of a trial in a world of `total` cells to cover, coverages counting as reached as `when` says.
-    pub(super) fn new(total: u32, when: Crossing) -> Self {
+    /// The trace of a trial in a world of `total` cells to cover, coverages counting as reached as `when` says; coverage is
+    /// also told at `distances` (m).
+    pub(super) fn new(total: u32, when: Crossing, distances: &[u32]) -> Self {
         Self {
             total,
             covered: 0,
@@ -38,6 +46,7 @@ impl Trace {
             crossings: BTreeMap::new(),
             undecided: Vec::new(),
             before: (0.0, 0.0, 0.0),
+            at_distances: distances.iter().map(|&distance| (distance, None)).collect(),
             chain: StateChain::default(),
         }
     }
@@ -94,8 +103,13 @@ impl Trace {
         }
     }
 
-    /// Every 10 s, notes a point of the curve and a state hash.
+    /// Notes how far the robot is, and every 10 s a point of the curve and a state hash.
     pub(super) fn note_time(&mut self, now: Tick, distance_m: f64, pose: Pose, choices: u32) {
+        let percent = self.coverage_percent();
+        let passed = |distance: u32| distance_m >= f64::from(distance);
+        for (_, coverage) in self.at_distances.iter_mut().filter(|(d, _)| passed(**d)) {
+            coverage.get_or_insert(percent);
+        }
         if !self.chain.is_due(now) {
             return;
         }
@@ -126,6 +140,11 @@ impl Trace {
             measures.insert(format!("time-s-at-{percent}"), crossing.map(|c| c.0));
             measures.insert(format!("distance-m-at-{percent}"), crossing.map(|c| c.1));
         }
+        for (&distance, coverage) in &self.at_distances {
+            // A robot that has nothing left to explore has covered as much after any further way.
+            let coverage = coverage.unwrap_or_else(|| self.coverage_percent());
+            measures.insert(coverage_at_distance(distance), Some(coverage));
+        }
         measures.insert("time-s".to_owned(), Some(now.seconds().get()));
         measures.insert("coverage-percent".to_owned(), Some(self.coverage_percent()));
         TrialRecord {
@@ -148,7 +167,7 @@ mod tests {
 
     /// Keyframes at 2 s and 4 s bring 50 and 60 of 100 cells; a choice follows at 5 s.
     fn trace(when: Crossing) -> Trace {
-        let mut trace = Trace::new(100, when);
+        let mut trace = Trace::new(100, when, &[]);
         trace.cover(50);
         assert_eq!(trace.note_coverage(Tick(6000), 1.0), 1..51);
         trace.cover(10);
@@ -157,6 +176,19 @@ mod tests {
         trace.cover(10);
         trace.note_coverage(Tick(18_000), 4.0);
         trace
+    }
+
+    #[test]
+    fn coverage_is_told_where_the_robot_first_is_that_far() {
+        let mut trace = Trace::new(100, Crossing::Keyframe, &[2, 5]);
+        for (seconds, distance, cells) in [(1, 1.0, 10), (2, 2.1, 20), (3, 2.5, 30)] {
+            trace.cover(cells);
+            trace.note_time(Tick(seconds * 3000), distance, Pose::default(), 0);
+        }
+        let spec = crate::studies::prior_map::mission::tests::spec_of_the_flat();
+        let record = trace.finish(&spec, Outcome::Explored, String::new(), Tick(9000));
+        assert_eq!(record.measures[&coverage_at_distance(2)], Some(30.0));
+        assert_eq!(record.measures[&coverage_at_distance(5)], Some(60.0), "it ended before");
     }
 
     #[test]
