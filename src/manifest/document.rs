@@ -216,6 +216,8 @@ pub enum PriorDoc {
     Footprint(FootprintOf),
     /// The box around a world.
     BoundingBox(BoundingBoxOf),
+    /// What a robot mapped earlier.
+    Previous(PreviousMapOf),
 }
 
 /// A `map_server` map.
@@ -317,6 +319,38 @@ pub struct BoundingBoxOf {
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub resolution_m: Option<f64>,
+}
+
+/// The map that a robot of an earlier exploration ended with.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct PreviousMapOf {
+    /// Which exploration.
+    pub previous_map: PreviousMapDoc,
+}
+
+/// One trial before the experiment's own, by the condition's robot with the condition's parameters.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct PreviousMapDoc {
+    /// The world as it was then.
+    pub world: WorldDoc,
+    /// Where the robot began then; where the condition's begins if left out.
+    #[serde(default)]
+    pub start: Option<StartDoc>,
+    /// What it knew then: `none`, or another key of `prior-maps`.
+    pub prior: String,
+    /// Which of the trials that the seed gives, from 0.
+    #[serde(default)]
+    pub trial: u32,
+    /// Seed of its randomness; the experiment's where left out.
+    #[serde(default)]
+    pub seed: Option<u64>,
+    /// What cells that it never saw become.
+    #[serde(default)]
+    pub unknown: UnknownAs,
+    /// Why this exploration.
+    pub why: String,
 }
 
 /// The world that prior knowledge is derived from.

@@ -81,7 +81,7 @@ fn scanner(robot: &Robot, faults: &mut Faults<'_>) {
     }
 }
 
-fn start(world: &World, robot: &Robot, start: Pose, faults: &mut Faults<'_>) {
+pub(super) fn start(world: &World, robot: &Robot, start: Pose, faults: &mut Faults<'_>) {
     let at = start.position();
     let solids = world.contact(robot.body_z[0], robot.body_z[1]);
     let radius = robot.circumscribed_radius();

@@ -61,3 +61,12 @@ pub(super) fn map(
     let options = map_server::Options { average_alpha: alpha == Alpha::Average };
     map_server::read(source, image_name, image, options)
 }
+
+/// A map as [`map_server::write`] writes it.
+pub(super) fn explored(
+    source: &Source,
+    image_name: &str,
+    image: &[u8],
+) -> Result<OccupancyGrid, Vec<Diagnostic>> {
+    map_server::read(source, image_name, image, map_server::Options::default())
+}
