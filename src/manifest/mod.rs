@@ -29,8 +29,9 @@ pub use claims::check_claims;
 pub use crossing::Factor;
 pub use document::{
     Alpha, Author, BoundingBoxOf, Cite, DerivedFrom, FactorRef, FloorPlanOf, FootprintOf,
-    GenerateDoc, GeneratedWorld, ManifestDoc, MapPrior, OriginDoc, OwnWorld, PoseDoc, PreviousMapDoc, PreviousMapOf, PriorDoc,
-    PriorFrame, PublishedDoc, PublishedFile, SeedDoc, StartDoc, UnknownAs, WorldDoc, WorldFile,
+    GenerateDoc, GeneratedWorld, ManifestDoc, MapPrior, OriginDoc, OwnWorld, PoseDoc,
+    PreviousMapDoc, PreviousMapOf, PriorDoc, PriorFrame, PublishedDoc, PublishedFile, SeedDoc,
+    StartDoc, UnknownAs, WorldDoc, WorldFile,
 };
 pub use experiment::{Assumption, Experiment, Meanings};
 pub use inputs::{Input, Inputs, WrittenIn};

@@ -85,7 +85,10 @@ fn all(doc: &ManifestDoc) -> Vec<(String, &PreviousMapDoc)> {
 
 /// The prior maps that earlier explorations start from, and where they are named.
 pub(super) fn priors_then(doc: &ManifestDoc) -> Vec<(String, &str)> {
-    all(doc).into_iter().map(|(place, map)| (format!("{place}/prior"), map.prior.as_str())).collect()
+    all(doc)
+        .into_iter()
+        .map(|(place, map)| (format!("{place}/prior"), map.prior.as_str()))
+        .collect()
 }
 
 /// The reasons for the choice of explorations.

@@ -349,7 +349,9 @@ impl Resolver<'_> {
         };
         let name = match self.faults.written_in(pointer) {
             WrittenIn::Manifest => joined(self.folder, path),
-            WrittenIn::CommandLine | WrittenIn::Calibration | WrittenIn::PreviousMap => normalised(path),
+            WrittenIn::CommandLine | WrittenIn::Calibration | WrittenIn::PreviousMap => {
+                normalised(path)
+            }
         };
         Some(Source::new(name, text))
     }

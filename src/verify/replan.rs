@@ -58,8 +58,7 @@ fn plan_with(bundle: &Bundle, seed: Option<u64>) -> Result<(Plan, Selection), St
         Some(written) => Selection::from_json(written)?,
         None => Selection::default(),
     };
-    let inputs: &dyn Inputs =
-        if seed.is_some() { &Afresh::new(bundle) } else { &Sealed(bundle) };
+    let inputs: &dyn Inputs = if seed.is_some() { &Afresh::new(bundle) } else { &Sealed(bundle) };
     let experiment = resolve(&source, &overrides, inputs)?;
     // Counted before they are made: a manifest of a few words can ask for millions.
     let planned = Plan::size(&experiment, &selection);
@@ -85,7 +84,11 @@ fn written(bundle: &Bundle) -> Result<(Source, Vec<String>), String> {
     Ok((Source::new("study.yaml", text), overrides))
 }
 
-fn resolve(source: &Source, overrides: &[String], inputs: &dyn Inputs) -> Result<Experiment, String> {
+fn resolve(
+    source: &Source,
+    overrides: &[String],
+    inputs: &dyn Inputs,
+) -> Result<Experiment, String> {
     match manifest::resolve(source, overrides, inputs) {
         Ok((experiment, _)) => Ok(experiment),
         Err(faults) => Err(faults.iter().map(|f| f.render(false)).collect()),
@@ -147,7 +150,8 @@ impl Inputs for Afresh<'_> {
         if let Ok(sealed) = self.sealed.explore(spec, sealed_as) {
             for ((name, sealed), again) in sealed_as.iter().zip(sealed).zip(&again) {
                 if sealed != *again {
-                    let digest = |bytes: &[u8]| format!("sha256:{}", Sha256Digest::of(bytes).short());
+                    let digest =
+                        |bytes: &[u8]| format!("sha256:{}", Sha256Digest::of(bytes).short());
                     let expected = format!("{} as explored again", digest(again));
                     let fault = Fault::new(name.as_str(), expected, digest(&sealed));
                     let hint = "the previous map that the study starts from is not what that exploration gives";

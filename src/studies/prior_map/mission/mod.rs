@@ -83,7 +83,9 @@ pub fn run(
 pub fn explored_map(spec: &TrialSpec, setup: &Setup) -> Result<OccupancyGrid, String> {
     if setup.start.heading != 0.0 {
         let degrees = setup.start.heading.to_degrees();
-        return Err(format!("a start that faces along x is needed, and this is turned by {degrees} degrees"));
+        return Err(format!(
+            "a start that faces along x is needed, and this is turned by {degrees} degrees"
+        ));
     }
     let (_, mind) = enact(spec, setup, setup.prepared()?, None, &mut ());
     known_part(mind.map().grid(), setup.start.position())
