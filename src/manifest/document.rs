@@ -5,6 +5,7 @@ use super::parameters::ParametersDoc;
 use super::pinned::PinnedDoc;
 use crate::studies::StudyKind;
 use crate::studies::{FactorValue, FigureRequest, TableRequest};
+use crate::world::document::LayerDoc;
 use crate::world::generate::Family;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -168,6 +169,14 @@ pub struct WorldFile {
     /// Layers that stand; all where left out.
     #[serde(default)]
     pub layers: Option<Choice<Vec<String>>>,
+    /// SDF: the folders of the models that meshes are named by, `NAME` of `model://NAME/mesh.dae` to its folder. They are
+    /// relative to the manifest.
+    #[serde(default)]
+    pub models: BTreeMap<String, String>,
+    /// SDF: what stands for meshes, by their URI as the world writes it: solids as in a layer of world YAML, in the frame of
+    /// the collision. They go before a file.
+    #[serde(default)]
+    pub stand_ins: BTreeMap<String, LayerDoc>,
 }
 
 /// Where the robot begins.

@@ -162,7 +162,7 @@ pub(super) fn alignment(setup: &Setup, prior: &UsedPrior, faults: &mut Faults<'_
     let outlines: Vec<Outline> = solids
         .iter()
         .filter(|solid| !has_walls || solid.layer == WALLS)
-        .filter_map(|solid| solid.body.slice(lidar.height))
+        .flat_map(|solid| solid.body.slice(lidar.height))
         .collect();
     let grid = &prior.grid;
     let walls = along(&outlines, grid.frame().resolution);

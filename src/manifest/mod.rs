@@ -13,6 +13,7 @@ mod experiment;
 mod faults;
 mod inputs;
 mod lint;
+mod models;
 mod overrides;
 mod parameters;
 mod pinned;
