@@ -42,6 +42,7 @@ const DOORS: &[(&str, &[&str])] = &[
     ("fs_err", &["store.rs"]),
     ("indicatif", &["cli/"]),
     ("libm", &["math.rs"]),
+    ("mesh_loader", &["world/mesh/files.rs"]),
     ("minijinja", &["report/template.rs"]),
     ("minisign_verify", &["verify/signature/minisign.rs"]),
     ("png", &["world/map_server/image.rs", "report/show/grid.rs"]),

@@ -212,7 +212,7 @@ fn plan_figure(plan: &Plan, title: &str, wanted: &PlanFigure, with_prior: bool) 
         return svg::document(320.0, 36.0, title, [text]);
     };
     let prior = condition.value("prior").unwrap_or("prior map");
-    prior_map::plan_figure(title, setup, with_prior.then_some(prior))
+    prior_map::plan_figure(title, setup, &wanted.crossed, with_prior.then_some(prior))
 }
 
 /// A list of verdicts as bundles hold it.

@@ -1,15 +1,16 @@
-//! What a deadline study's planner expects of its maneuvers: measured by running another manifest, or taken from its trials
-//! in the store.
+//! What an experiment needs of runs before its own: what a deadline study's planner expects of its maneuvers, measured by
+//! running another manifest or taken from its trials in the store; and the maps of earlier explorations.
 
 use super::load;
 use super::progress::Progress;
 use super::terminal::Terminal;
 use crate::cmdp::build::{Expectation, Maneuvers};
+use crate::manifest;
 use crate::plan::Plan;
 use crate::runner::{Scheduler, TrialStore};
 use crate::store::DirectoryStore;
 use crate::studies::deadline::Calibration;
-use crate::studies::{self, TrialRecord};
+use crate::studies::{self, TrialRecord, TrialSpec};
 use std::path::Path;
 
 /// How a calibration is had.
@@ -29,17 +30,17 @@ pub(super) enum Calibrator<'a> {
 }
 
 impl Calibrator<'_> {
-    /// The calibration of `manifest` as CSV.
-    pub(super) fn csv(self, manifest: &Path, terminal: Terminal) -> Result<Vec<u8>, String> {
+    /// The calibration of the manifest at `path` as CSV.
+    pub(super) fn csv(self, path: &Path, terminal: Terminal) -> Result<Vec<u8>, String> {
         if matches!(self, Self::StandIn) {
             return Ok(stand_in().to_csv().into_bytes());
         }
-        let loaded = load::manifest(manifest, &[], Calibrator::StandIn, terminal)
+        let loaded = load::manifest(path, &[], Calibrator::StandIn, terminal)
             .map_err(|failure| failure.message)?;
         let plan = Plan::of(loaded.experiment);
         let records = match self {
             Self::StandIn => Vec::new(),
-            Self::Stored(store) => stored(&plan, store, manifest)?,
+            Self::Stored(store) => stored(&plan, store, path)?,
             Self::Run { scheduler, store } => {
                 let progress = Progress::new(terminal);
                 let store = store.map(|store| store as &dyn TrialStore);
@@ -51,6 +52,19 @@ impl Calibrator<'_> {
         Calibration::of_trials(&plan.trials, &records)
             .map(|calibration| calibration.to_csv().into_bytes())
             .map_err(|e| e.to_string())
+    }
+
+    /// The map that the robot of `spec` ends with, as a descriptor and an image. One exploration takes about a second, so
+    /// it is not kept in the store.
+    pub(super) fn map(
+        self,
+        spec: &TrialSpec,
+        sealed_as: &[String; 2],
+    ) -> Result<[Vec<u8>; 2], String> {
+        match self {
+            Self::StandIn => manifest::unexplored(spec, sealed_as),
+            Self::Stored(_) | Self::Run { .. } => manifest::explored(spec, sealed_as),
+        }
     }
 }
 

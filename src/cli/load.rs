@@ -10,6 +10,7 @@ use crate::document::{Severity, Source};
 use crate::manifest::{self, Experiment, Inputs, WrittenIn};
 use crate::plan::{Plan, Selection};
 use crate::store::{self, reason};
+use crate::studies::TrialSpec;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
@@ -140,7 +141,9 @@ impl Inputs for Folder<'_> {
         let beside = self.path.join(as_written);
         let read = |path: &Path| store::read(path);
         match written_in {
-            WrittenIn::Manifest | WrittenIn::Calibration => read(&beside).map_err(|e| reason(&e)),
+            WrittenIn::Manifest | WrittenIn::Calibration | WrittenIn::PreviousMap => {
+                read(&beside).map_err(|e| reason(&e))
+            }
             // Given on the command line: from here, as a shell completes it, or else from the manifest.
             WrittenIn::CommandLine => read(Path::new(as_written)).or_else(|here| {
                 read(&beside)
@@ -162,5 +165,9 @@ impl Inputs for Folder<'_> {
             self.path.join(as_written)
         };
         self.calibrator.csv(&manifest, self.terminal)
+    }
+
+    fn explore(&self, spec: &TrialSpec, sealed_as: &[String; 2]) -> Result<[Vec<u8>; 2], String> {
+        self.calibrator.map(spec, sealed_as)
     }
 }

@@ -11,6 +11,8 @@ const WALL: &str = "#2b2b2b";
 const FURNITURE: &str = "#9a9a9a";
 /// Fill of the obstacles of a grid map laid over the plan: orange, as in the prior-knowledge study's Figure 5.
 const OVERLAY: &str = "#e69f00";
+/// Stroke of crosses: red, as in the same study's Figure 7.
+const CROSS: &str = "#d62728";
 
 /// A building cut at some height, to be drawn. Lengths in m, in the world's frame.
 #[derive(Debug, Clone)]
@@ -21,6 +23,10 @@ pub struct Plan<'a> {
     pub walls: Vec<Outline>,
     /// What else stands.
     pub furniture: Vec<Outline>,
+    /// What is shown by a cross over its place alone, such as closed doors.
+    pub crossed: Vec<Outline>,
+    /// What the crosses are, for the legend.
+    pub crossed_name: String,
     /// Where the robot begins.
     pub start: Option<Pose>,
     /// A grid map over the plan, with its name.
@@ -68,6 +74,18 @@ impl Plan<'_> {
                     .set("transform", move_there),
             );
         }
+        for outline in &self.crossed {
+            let bounds = outline.bounds();
+            let middle = (bounds.min + bounds.max) * 0.5;
+            let arm = 0.5 * bounds.width().max(bounds.height()).max(0.012 * span);
+            for turn in [1.0, -1.0] {
+                let arm = Point::new(arm, turn * arm);
+                let (from, to) = (canvas.at(middle - arm), canvas.at(middle + arm));
+                let line = Element::new("line").at("x1", from.0).at("y1", from.1);
+                let line = line.at("x2", to.0).at("y2", to.1);
+                canvas.push(line.set("stroke", CROSS).set("stroke-width", 2.5));
+            }
+        }
         if let Some(start) = self.start {
             let tip = start.transform(Point::new(0.05 * span, 0.0));
             canvas.arrow(start.position(), tip, ACCENT);
@@ -89,6 +107,9 @@ impl Plan<'_> {
         let mut legend = vec![("walls".to_owned(), WALL, WALL)];
         if !self.furniture.is_empty() {
             legend.push(("furniture".to_owned(), FURNITURE, FURNITURE));
+        }
+        if !self.crossed.is_empty() {
+            legend.push((self.crossed_name.clone(), CROSS, CROSS));
         }
         if let Some((name, _)) = self.overlay {
             legend.push((name.to_owned(), OVERLAY, OVERLAY));
@@ -159,6 +180,8 @@ mod tests {
             title: "Plan <a>".to_owned(),
             walls,
             furniture: Vec::new(),
+            crossed: Vec::new(),
+            crossed_name: "closed-doors".to_owned(),
             start: Some(Pose::new(1.0, 1.0, 0.0)),
             overlay: Some(("bounding-box", &map)),
         };
@@ -167,7 +190,12 @@ mod tests {
         assert!(svg.contains("10 m by 4.25 m over all") && svg.contains(">bounding-box<"));
         assert!(svg.contains(OVERLAY) && !svg.contains(">furniture<"));
         plan.overlay = None;
-        assert!(!plan.to_svg().contains(OVERLAY));
+        assert!(!plan.to_svg().contains(OVERLAY) && !plan.to_svg().contains(CROSS));
+        plan.crossed = vec![Outline::Circle { center: Point::new(5.0, 2.0), radius: 0.5 }];
+        let svg = plan.to_svg();
+        assert_eq!(svg.matches(&format!("stroke=\"{CROSS}\" stroke-width=\"2.5\"")).count(), 2);
+        assert!(svg.contains(">closed-doors<"));
+        plan.crossed.clear();
         let empty = Plan { walls: Vec::new(), start: None, ..plan };
         assert!(!empty.to_svg().contains("NaN") && !empty.to_svg().contains("inf"));
     }

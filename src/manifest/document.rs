@@ -5,6 +5,7 @@ use super::parameters::ParametersDoc;
 use super::pinned::PinnedDoc;
 use crate::studies::StudyKind;
 use crate::studies::{FactorValue, FigureRequest, TableRequest};
+use crate::world::document::LayerDoc;
 use crate::world::generate::Family;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -168,6 +169,14 @@ pub struct WorldFile {
     /// Layers that stand; all where left out.
     #[serde(default)]
     pub layers: Option<Choice<Vec<String>>>,
+    /// SDF: the folders of the models that meshes are named by, `NAME` of `model://NAME/mesh.dae` to its folder. They are
+    /// relative to the manifest.
+    #[serde(default)]
+    pub models: BTreeMap<String, String>,
+    /// SDF: what stands for meshes, by their URI as the world writes it: solids as in a layer of world YAML, in the frame of
+    /// the collision. They go before a file.
+    #[serde(default)]
+    pub stand_ins: BTreeMap<String, LayerDoc>,
 }
 
 /// Where the robot begins.
@@ -218,6 +227,8 @@ pub enum PriorDoc {
     Footprint(FootprintOf),
     /// The box around a world.
     BoundingBox(BoundingBoxOf),
+    /// What a robot mapped earlier.
+    Previous(PreviousMapOf),
 }
 
 /// A `map_server` map.
@@ -327,6 +338,38 @@ pub struct BoundingBoxOf {
     #[serde(default)]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub resolution_m: Option<f64>,
+}
+
+/// The map that a robot of an earlier exploration ended with.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct PreviousMapOf {
+    /// Which exploration.
+    pub previous_map: PreviousMapDoc,
+}
+
+/// One trial before the experiment's own, by the condition's robot with the condition's parameters.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct PreviousMapDoc {
+    /// The world as it was then.
+    pub world: WorldDoc,
+    /// Where the robot began then; where the condition's begins if left out.
+    #[serde(default)]
+    pub start: Option<StartDoc>,
+    /// What it knew then: `none`, or another key of `prior-maps`.
+    pub prior: String,
+    /// Which of the trials that the seed gives, from 0.
+    #[serde(default)]
+    pub trial: u32,
+    /// Seed of its randomness; the experiment's where left out.
+    #[serde(default)]
+    pub seed: Option<u64>,
+    /// What cells that it never saw become.
+    #[serde(default)]
+    pub unknown: UnknownAs,
+    /// Why this exploration.
+    pub why: String,
 }
 
 /// The world that prior knowledge is derived from.

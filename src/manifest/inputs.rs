@@ -1,6 +1,7 @@
 //! The files a manifest names: asked for once each, by their path as written.
 
 use crate::digest::{FileDigest, Sha256Digest};
+use crate::studies::TrialSpec;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -14,6 +15,8 @@ pub enum WrittenIn {
     CommandLine,
     /// Nowhere: made from the calibration manifest.
     Calibration,
+    /// Nowhere: made by an exploration before the experiment's own.
+    PreviousMap,
 }
 
 /// Who hands over the bytes of files: the file system, or a bundle.
@@ -36,6 +39,16 @@ pub trait Inputs {
     ) -> Result<Vec<u8>, String> {
         let _ = (sealed_as, written_in);
         Err(format!("nobody here can run `{as_written}`"))
+    }
+
+    /// The map that the robot of `spec` ends with, as a `map_server` descriptor and the image that it names; in bundles
+    /// they are sealed as `sealed_as`. [`super::explored`] makes them.
+    ///
+    /// # Errors
+    /// Why there is none, in words.
+    fn explore(&self, spec: &TrialSpec, sealed_as: &[String; 2]) -> Result<[Vec<u8>; 2], String> {
+        let _ = sealed_as;
+        Err(format!("nobody here can run the exploration {}", spec.key.short()))
     }
 }
 
@@ -88,6 +101,24 @@ impl<'a> InputFiles<'a> {
             .entry((sealed_as.to_owned(), WrittenIn::Calibration))
             .or_insert_with(|| self.source.calibrate(path, sealed_as, written_in).map(Into::into))
             .clone()
+    }
+
+    /// What the robot of `spec` mapped, kept as the inputs `sealed_as`.
+    pub(super) fn explore(
+        &mut self,
+        spec: &TrialSpec,
+        sealed_as: &[String; 2],
+    ) -> Result<[Arc<[u8]>; 2], String> {
+        let keys = sealed_as.each_ref().map(|name| (name.clone(), WrittenIn::PreviousMap));
+        if !self.files.contains_key(&keys[0]) {
+            let files = match self.source.explore(spec, sealed_as) {
+                Ok(files) => files.map(|bytes| Ok(bytes.into())),
+                Err(problem) => [Err(problem.clone()), Err(problem)],
+            };
+            self.files.extend(keys.clone().into_iter().zip(files));
+        }
+        let [descriptor, image] = keys.map(|key| self.files[&key].clone());
+        Ok([descriptor?, image?])
     }
 
     /// The paths of all files that were asked for.

@@ -82,7 +82,7 @@ fn scanner(robot: &Robot, faults: &mut Faults<'_>) {
     }
 }
 
-fn start(world: &World, robot: &Robot, start: Pose, faults: &mut Faults<'_>) {
+pub(super) fn start(world: &World, robot: &Robot, start: Pose, faults: &mut Faults<'_>) {
     let at = start.position();
     let solids = world.contact(robot.body_z[0], robot.body_z[1]);
     let radius = robot.circumscribed_radius();
@@ -188,7 +188,7 @@ pub(super) fn alignment(setup: &Setup, prior: &UsedPrior, faults: &mut Faults<'_
     let outlines: Vec<Outline> = solids
         .iter()
         .filter(|solid| !has_walls || solid.layer == WALLS)
-        .filter_map(|solid| solid.body.slice(lidar.height))
+        .flat_map(|solid| solid.body.slice(lidar.height))
         .collect();
     let grid = &prior.grid;
     let walls = along(&outlines, grid.frame().resolution);

@@ -13,9 +13,11 @@ mod experiment;
 mod faults;
 mod inputs;
 mod lint;
+mod models;
 mod overrides;
 mod parameters;
 mod pinned;
+mod previous;
 mod priors;
 mod published;
 mod readers;
@@ -28,13 +30,15 @@ pub use claims::check_claims;
 pub use crossing::Factor;
 pub use document::{
     Alpha, Author, BoundingBoxOf, Cite, DerivedFrom, FactorRef, FloorPlanOf, FootprintOf,
-    GenerateDoc, GeneratedWorld, ManifestDoc, MapPrior, OriginDoc, OwnWorld, PoseDoc, PriorDoc,
-    PriorFrame, PublishedDoc, PublishedFile, SeedDoc, StartDoc, UnknownAs, WorldDoc, WorldFile,
+    GenerateDoc, GeneratedWorld, ManifestDoc, MapPrior, OriginDoc, OwnWorld, PoseDoc,
+    PreviousMapDoc, PreviousMapOf, PriorDoc, PriorFrame, PublishedDoc, PublishedFile, SeedDoc,
+    StartDoc, UnknownAs, WorldDoc, WorldFile,
 };
 pub use experiment::{Assumption, Experiment, Meanings};
 pub use inputs::{Input, Inputs, WrittenIn};
 pub use parameters::ParametersDoc;
 pub use pinned::{PinnedDoc, PinnedFileDoc};
+pub use previous::{explored, unexplored};
 pub use resolve::resolve;
 
 use crate::studies::StudyKind;

@@ -34,18 +34,18 @@ pub struct PinnedFileDoc {
 
 /// One input: where it is published, and its digest.
 #[derive(Debug, Clone, PartialEq, Eq)]
-struct Pin {
+pub(super) struct Pin {
     publisher: String,
     commit: String,
     path: String,
-    digest: Sha256Digest,
+    pub(super) digest: Sha256Digest,
     /// Where its key stands in the manifest.
     pointer: String,
 }
 
 impl Pin {
     /// Where the file is to be had, in words.
-    fn published(&self) -> String {
+    pub(super) fn published(&self) -> String {
         let Self { publisher, commit, path, .. } = self;
         format!("`{path}` of {publisher} at commit {commit}")
     }
@@ -90,7 +90,7 @@ impl Pins {
     }
 
     /// The pin of the input at `path`, which is [`normalised`].
-    fn of(&self, path: &str) -> Option<&Pin> {
+    pub(super) fn of(&self, path: &str) -> Option<&Pin> {
         self.0.get(path)
     }
 

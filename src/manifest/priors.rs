@@ -7,6 +7,7 @@ use super::document::{
 };
 use super::faults::step;
 use super::inputs::{joined, normalised};
+use super::previous;
 use super::readers::{self, Derived};
 use super::resolve::{Known, Resolver};
 use super::worlds::UsedWorld;
@@ -25,7 +26,7 @@ use std::sync::Arc;
 
 /// The factor that chooses among prior maps, and the choice of none.
 const FACTOR: &str = "prior";
-const NONE: &str = "none";
+pub(super) const NONE: &str = "none";
 
 /// Something could not be had; the faults say why.
 #[derive(Debug)]
@@ -86,7 +87,18 @@ pub(super) struct UsedPrior {
     pub(super) own: bool,
 }
 
-impl Resolver<'_> {
+/// What a robot explores with which settings: a condition's own trials, or an exploration before them.
+#[derive(Clone, Copy)]
+pub(super) struct Exploration<'a> {
+    /// The condition that decides all choices, also for what went before.
+    pub(super) condition: &'a Condition,
+    pub(super) world: &'a UsedWorld,
+    pub(super) robot: &'a Arc<Robot>,
+    pub(super) start: Pose,
+    pub(super) parameters: &'a Parameters,
+}
+
+impl<'a> Resolver<'a> {
     /// Faults of the names of prior maps.
     pub(super) fn check_prior_names(&mut self) {
         let doc = self.doc;
@@ -107,7 +119,10 @@ impl Resolver<'_> {
             }
             None => doc.prior.iter().map(|name| ("/prior".to_owned(), name.clone())).collect(),
         };
-        for (pointer, name) in &chosen {
+        let then = previous::priors_then(doc);
+        let then = then.iter().map(|(place, name)| (place.clone(), (*name).to_owned()));
+        let named: Vec<_> = chosen.iter().cloned().chain(then).collect();
+        for (pointer, name) in &named {
             if !known.contains(&name.as_str()) {
                 let fault = self
                     .faults
@@ -118,7 +133,7 @@ impl Resolver<'_> {
         }
         // A misspelled name is one fault, not two.
         let meant: Vec<&str> =
-            chosen.iter().filter_map(|(_, name)| suggestion(name, known.iter().copied())).collect();
+            named.iter().filter_map(|(_, name)| suggestion(name, known.iter().copied())).collect();
         for name in doc.prior_maps.keys().filter(|name| !meant.contains(&name.as_str())) {
             let fault = self
                 .faults
@@ -139,12 +154,27 @@ impl Resolver<'_> {
         &mut self,
         condition: &Condition,
         world: &UsedWorld,
-        robot: &Robot,
+        robot: &Arc<Robot>,
         start: Pose,
         parameters: &Parameters,
     ) -> Result<Option<Knowledge>, Told> {
+        let name = condition.value(FACTOR).or(self.doc.prior.as_deref()).unwrap_or(NONE);
+        let whole = Exploration { condition, world, robot, start, parameters };
+        self.prior_called(name, &whole, &mut Vec::new())
+    }
+
+    /// The prior knowledge `name` as `exploration` uses it. `before` are the prior maps that are made of it.
+    pub(super) fn prior_called<'d>(
+        &mut self,
+        name: &'d str,
+        exploration: &Exploration<'_>,
+        before: &mut Vec<&'d str>,
+    ) -> Result<Option<Knowledge>, Told>
+    where
+        'a: 'd,
+    {
+        let Exploration { condition, world, robot, start, parameters } = *exploration;
         let doc = self.doc;
-        let name = condition.value(FACTOR).or(doc.prior.as_deref()).unwrap_or(NONE);
         if name == NONE {
             return Ok(None);
         }
@@ -161,6 +191,12 @@ impl Resolver<'_> {
             }
             PriorDoc::TopoMetric(graph) => {
                 return self.topo_metric_map(graph, &pointer).map(Some).ok_or(Told);
+            }
+            PriorDoc::Previous(of) => {
+                before.push(name);
+                let found = self.previous_map(&of.previous_map, &pointer, exploration, before);
+                before.pop();
+                return found.map(|map| Some(Knowledge::Map(map)));
             }
             PriorDoc::FloorPlan(p) => derived(Derived::FloorPlan, &p.floor_plan_of, p.resolution_m),
             PriorDoc::Footprint(p) => derived(Derived::Footprint, &p.footprint_of, p.resolution_m),
@@ -277,20 +313,29 @@ impl Resolver<'_> {
         };
         let origin = doc.origin.map_or(grid.frame().origin, |o| Point::new(o.x_m, o.y_m));
         let frame = GridFrame { origin: origin + shift, ..*grid.frame() };
-        let unknown = match doc.unknown {
-            UnknownAs::Unknown => Occupancy::Unknown,
-            UnknownAs::Free => Occupancy::Free,
-            UnknownAs::Occupied => Occupancy::Occupied,
-        };
-        let cells = grid
-            .values()
-            .iter()
-            .map(|&cell| if cell == Occupancy::Unknown { unknown } else { cell })
-            .collect();
-        let grid = OccupancyGrid::from_cells(frame, cells);
-        let meaning = meaning(&grid);
-        Some((Arc::new(grid), meaning))
+        Some(read_as(&grid, frame, doc.unknown))
     }
+}
+
+/// `grid` at `frame`, its unknown cells as `unknown` says, and what that means.
+pub(super) fn read_as(
+    grid: &OccupancyGrid,
+    frame: GridFrame,
+    unknown: UnknownAs,
+) -> (Arc<OccupancyGrid>, MeaningDigest) {
+    let unknown = match unknown {
+        UnknownAs::Unknown => Occupancy::Unknown,
+        UnknownAs::Free => Occupancy::Free,
+        UnknownAs::Occupied => Occupancy::Occupied,
+    };
+    let cells = grid
+        .values()
+        .iter()
+        .map(|&cell| if cell == Occupancy::Unknown { unknown } else { cell })
+        .collect();
+    let grid = OccupancyGrid::from_cells(frame, cells);
+    let meaning = meaning(&grid);
+    (Arc::new(grid), meaning)
 }
 
 /// Digest of where a grid lies and what it holds.

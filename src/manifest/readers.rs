@@ -42,11 +42,21 @@ impl Derived {
     }
 }
 
-/// A world, by the ending of its file's name: all its layers, or its walls and those of `layers`.
-pub(super) fn world(source: &Source, layers: Option<&[String]>) -> Result<World, Vec<Diagnostic>> {
-    let extension = source.name.rsplit('.').next().unwrap_or_default().to_ascii_lowercase();
-    if extension == "world" || extension == "sdf" {
-        sdf::read(source)
+/// Whether the file `name` is a Gazebo world, by its ending.
+pub(super) fn is_sdf(name: &str) -> bool {
+    let extension = name.rsplit('.').next().unwrap_or_default().to_ascii_lowercase();
+    extension == "world" || extension == "sdf"
+}
+
+/// A world, by the ending of its file's name: all its layers, or its walls and those of `layers`; with the meshes that
+/// `models` knows.
+pub(super) fn world(
+    source: &Source,
+    layers: Option<&[String]>,
+    models: &mut dyn sdf::Models,
+) -> Result<World, Vec<Diagnostic>> {
+    if is_sdf(&source.name) {
+        sdf::read_with(source, models)
     } else {
         document::read(source, layers)
     }
@@ -66,4 +76,13 @@ pub(super) fn map(
 ) -> Result<OccupancyGrid, Vec<Diagnostic>> {
     let options = map_server::Options { average_alpha: alpha == Alpha::Average };
     map_server::read(source, image_name, image, options)
+}
+
+/// A map as [`map_server::write`] writes it.
+pub(super) fn explored(
+    source: &Source,
+    image_name: &str,
+    image: &[u8],
+) -> Result<OccupancyGrid, Vec<Diagnostic>> {
+    map_server::read(source, image_name, image, map_server::Options::default())
 }

@@ -10,7 +10,7 @@ use super::parameters::WrappedValue;
 use super::pinned::Pins;
 use super::priors::Knowledge;
 use super::worlds::UsedWorld;
-use super::{lint, overrides, published, schema, settings};
+use super::{lint, overrides, previous, published, schema, settings};
 use crate::digest::MeaningDigest;
 use crate::document::{Diagnostic, Node, Parsed, Source, parse_tree_by, read};
 use crate::geometry::Pose;
@@ -225,6 +225,7 @@ impl Resolver<'_> {
                 why: why.to_owned(),
             }));
         }
+        assumptions.extend(previous::assumptions(self.doc));
         assumptions
     }
 
@@ -352,7 +353,9 @@ impl Resolver<'_> {
         };
         let name = match self.faults.written_in(pointer) {
             WrittenIn::Manifest => joined(self.folder, path),
-            WrittenIn::CommandLine | WrittenIn::Calibration => normalised(path),
+            WrittenIn::CommandLine | WrittenIn::Calibration | WrittenIn::PreviousMap => {
+                normalised(path)
+            }
         };
         Some(Source::new(name, text))
     }
@@ -379,11 +382,22 @@ impl Resolver<'_> {
 
     fn start(&mut self, world: Option<&UsedWorld>, condition: &Condition) -> Option<Pose> {
         let (start, pointer) = self.choose(&self.doc.start, "/start", condition)?;
+        self.start_written(start, &pointer, world, condition)
+    }
+
+    /// The start that `start`, written at `pointer`, is in `world`.
+    pub(super) fn start_written(
+        &mut self,
+        start: &StartDoc,
+        pointer: &str,
+        world: Option<&UsedWorld>,
+        condition: &Condition,
+    ) -> Option<Pose> {
         match start {
             StartDoc::Pose(pose) => {
                 Some(Pose::new(pose.x_m, pose.y_m, Radians::from_degrees(pose.heading_deg).get()))
             }
-            StartDoc::Name(name) => self.named_start(name, &pointer, world?),
+            StartDoc::Name(name) => self.named_start(name, pointer, world?),
             StartDoc::Factor(FactorRef { factor }) => {
                 let place = format!("{pointer}/factor");
                 self.faults.check_factor(&self.factors, factor, &place, false)?;
@@ -411,7 +425,7 @@ impl Resolver<'_> {
 pub(super) fn relative_to(written_in: WrittenIn) -> &'static str {
     match written_in {
         WrittenIn::Manifest => "paths are relative to the file they are written in",
-        WrittenIn::CommandLine | WrittenIn::Calibration => {
+        WrittenIn::CommandLine | WrittenIn::Calibration | WrittenIn::PreviousMap => {
             "paths in `--set` are relative to the current directory"
         }
     }

@@ -53,7 +53,9 @@ pub(super) fn underlay(
     })?;
     let name = match written_in {
         WrittenIn::Manifest => joined(&tree.sources[0].name, &path),
-        WrittenIn::CommandLine | WrittenIn::Calibration => normalised(&path),
+        WrittenIn::CommandLine | WrittenIn::Calibration | WrittenIn::PreviousMap => {
+            normalised(&path)
+        }
     };
     let source = Source::new(name, text);
     let study_of = |tree: &Tree| tree.root.get("study").and_then(Node::scalar_text);

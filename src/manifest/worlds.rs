@@ -3,11 +3,13 @@
 use super::crossing::known_or_near;
 use super::document::{FactorRef, GenerateDoc, SeedDoc, WorldDoc, WorldFile};
 use super::inputs::normalised;
+use super::models::Shelf;
 use super::readers;
 use super::resolve::{Known, Resolver};
 use crate::digest::MeaningDigest;
 use crate::document::Source;
 use crate::studies::Condition;
+use crate::world::sdf::NoModels;
 use crate::world::{World, generate};
 use serde_json::{Value, json};
 use std::sync::Arc;
@@ -98,16 +100,22 @@ impl Resolver<'_> {
             None => None,
             Some(layers) => Some(self.choose(layers, &format!("{pointer}/layers"), condition)?),
         };
-        let described = json!({
+        let mut described = json!({
             "file": normalised(file),
             "layers": layers.as_ref().map(|(layers, _)| layers),
         });
+        if !doc.models.is_empty() {
+            described["models"] = json!(doc.models);
+        }
+        if !doc.stand_ins.is_empty() {
+            described["stand-ins"] = json!(doc.stand_ins);
+        }
         let written_in = self.faults.written_in(&file_pointer);
         let key = json!([described, written_in]).to_string();
         let known = if let Some(known) = self.worlds.get(&key) {
             known.clone()
         } else {
-            let known = self.read_world(file, &file_pointer, layers.as_ref());
+            let known = self.read_world(doc, pointer, (file, &file_pointer), layers.as_ref());
             self.worlds.insert(key, known.clone());
             known
         };
@@ -117,12 +125,20 @@ impl Resolver<'_> {
 
     fn read_world(
         &mut self,
-        file: &str,
-        pointer: &str,
+        doc: &WorldFile,
+        place: &str,
+        (file, pointer): (&str, &str),
         layers: Option<&(&Vec<String>, String)>,
     ) -> Known<World> {
         let source = self.text(file, pointer)?;
-        let mut world = match readers::world(&source, None) {
+        let stand_ins = self.stand_ins(doc, place);
+        let world = (normalised(file), self.faults.written_in(pointer));
+        let folders = self.faults.written_in(&format!("{place}/models"));
+        let mut shelf = Shelf::new(doc, world, folders, &mut self.files, &self.pins, stand_ins);
+        let read = readers::world(&source, None, &mut shelf);
+        let told = shelf.told();
+        self.told_by(told, doc, place);
+        let mut world = match read {
             Ok(world) => world,
             Err(faults) => {
                 self.faults.extend(faults);
@@ -157,8 +173,8 @@ impl Resolver<'_> {
         let unknown = |layer: &String| !known.contains(layer);
         if layers.iter().any(unknown) {
             // A layer may be there and hold nothing.
-            if let Ok(world) = readers::world(source, Some(layers))
-                && source.name.ends_with(".yaml")
+            if source.name.ends_with(".yaml")
+                && let Ok(world) = readers::world(source, Some(layers), &mut NoModels)
             {
                 return world;
             }

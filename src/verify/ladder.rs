@@ -304,6 +304,9 @@ impl Climb<'_> {
             self.report.judged.push(Level::Sampled);
         }
         self.report.judged.push(level);
+        if level == Level::Full {
+            self.report.note(level, Severity::Error, replanned.explore_again());
+        }
         let (sample, faults) = reexecution::check(bundle, replanned.as_ref(), &indices, seed);
         // A single trial that differs fails the sample as well as the whole.
         self.report.note(Level::Sampled, Severity::Error, faults);

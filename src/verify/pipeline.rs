@@ -1,6 +1,6 @@
 //! What verification asks of the program that ran the study, kept to what levels 3 to 6 need.
 
-use crate::bundle::{Bundle, BundleContent};
+use crate::bundle::{Bundle, BundleContent, Fault};
 use crate::digest::TrialKey;
 
 /// The way from a manifest to trials, as `run` goes it.
@@ -29,6 +29,11 @@ pub trait Replanned {
 
     /// Executes the trials at `indices` of the plan again, never from a store; their record lines in that order.
     fn execute(&self, indices: &[usize]) -> Vec<String>;
+
+    /// Runs again the explorations whose maps the study starts from, and tells of every sealed map that came out otherwise.
+    fn explore_again(&self) -> Vec<Fault> {
+        Vec::new()
+    }
 
     /// Runs the whole study, never from a store, with `seed` in place of the manifest's and everything else as it is, and
     /// gives what `run` would seal.

@@ -1,12 +1,14 @@
 //! The pipeline that `run` goes, gone again from a bundle: manifest, plan, trials, results.
 
 use super::{Pipeline, PlannedTrial, Replanned};
-use crate::bundle::{Bundle, BundleContent, assemble};
+use crate::bundle::{Bundle, BundleContent, Fault, assemble, format};
+use crate::digest::Sha256Digest;
 use crate::document::Source;
-use crate::manifest::{self, Inputs, WrittenIn};
+use crate::manifest::{self, Experiment, Inputs, WrittenIn};
 use crate::plan::{ENGINE_VERSION, Plan, Selection};
 use crate::runner::{RunError, Scheduler, Silent};
 use crate::studies::{self, TrialRecord, TrialSpec};
+use std::cell::RefCell;
 
 /// This program's own pipeline.
 #[derive(Debug)]
@@ -49,19 +51,15 @@ pub fn plan_of(bundle: &Bundle) -> Result<(Plan, Selection), String> {
 /// The same plan, with `seed` in place of the manifest's where one is given.
 fn plan_with(bundle: &Bundle, seed: Option<u64>) -> Result<(Plan, Selection), String> {
     let study = bundle.resolved();
-    let mut overrides: Vec<String> = serde_json::from_value(study["overrides"].clone())
-        .map_err(|e| format!("overrides: {e}"))?;
+    let (source, mut overrides) = written(bundle)?;
     // As `run --set seed=S` would have it: the last override counts.
     overrides.extend(seed.map(|seed| format!("seed={seed}")));
     let selection = match study.get("selection") {
         Some(written) => Selection::from_json(written)?,
         None => Selection::default(),
     };
-    let text = std::str::from_utf8(bundle.study_yaml())
-        .map_err(|_| "study.yaml is not UTF-8 text".to_owned())?;
-    let source = Source::new("study.yaml", text);
-    let (experiment, _) = manifest::resolve(&source, &overrides, &Sealed(bundle))
-        .map_err(|faults| faults.iter().map(|f| f.render(false)).collect::<String>())?;
+    let inputs: &dyn Inputs = if seed.is_some() { &Afresh::new(bundle) } else { &Sealed(bundle) };
+    let experiment = resolve(&source, &overrides, inputs)?;
     // Counted before they are made: a manifest of a few words can ask for millions.
     let planned = Plan::size(&experiment, &selection);
     let sealed: usize =
@@ -77,6 +75,26 @@ fn plan_with(bundle: &Bundle, seed: Option<u64>) -> Result<(Plan, Selection), St
     Ok((plan, selection))
 }
 
+/// The manifest in `bundle` and what was overridden in it.
+fn written(bundle: &Bundle) -> Result<(Source, Vec<String>), String> {
+    let overrides = serde_json::from_value(bundle.resolved()["overrides"].clone())
+        .map_err(|e| format!("overrides: {e}"))?;
+    let text = std::str::from_utf8(bundle.study_yaml())
+        .map_err(|_| "study.yaml is not UTF-8 text".to_owned())?;
+    Ok((Source::new("study.yaml", text), overrides))
+}
+
+fn resolve(
+    source: &Source,
+    overrides: &[String],
+    inputs: &dyn Inputs,
+) -> Result<Experiment, String> {
+    match manifest::resolve(source, overrides, inputs) {
+        Ok((experiment, _)) => Ok(experiment),
+        Err(faults) => Err(faults.iter().map(|f| f.render(false)).collect()),
+    }
+}
+
 /// The inputs sealed in a bundle.
 struct Sealed<'a>(&'a Bundle);
 
@@ -90,6 +108,58 @@ impl Inputs for Sealed<'_> {
 
     fn calibrate(&self, _: &str, sealed_as: &str, _: WrittenIn) -> Result<Vec<u8>, String> {
         self.read(sealed_as, WrittenIn::Calibration)
+    }
+
+    fn explore(&self, _: &TrialSpec, sealed_as: &[String; 2]) -> Result<[Vec<u8>; 2], String> {
+        let [descriptor, image] = sealed_as;
+        let read = |name: &str| self.read(name, WrittenIn::PreviousMap);
+        Ok([read(descriptor)?, read(image)?])
+    }
+}
+
+/// The inputs sealed in a bundle, but for the maps of earlier explorations, which are explored again.
+struct Afresh<'a> {
+    sealed: Sealed<'a>,
+    /// The sealed maps that came out otherwise.
+    other: RefCell<Vec<Fault>>,
+}
+
+impl<'a> Afresh<'a> {
+    fn new(bundle: &'a Bundle) -> Self {
+        Self { sealed: Sealed(bundle), other: RefCell::default() }
+    }
+}
+
+impl Inputs for Afresh<'_> {
+    fn read(&self, as_written: &str, written_in: WrittenIn) -> Result<Vec<u8>, String> {
+        self.sealed.read(as_written, written_in)
+    }
+
+    fn calibrate(
+        &self,
+        path: &str,
+        sealed_as: &str,
+        written_in: WrittenIn,
+    ) -> Result<Vec<u8>, String> {
+        self.sealed.calibrate(path, sealed_as, written_in)
+    }
+
+    fn explore(&self, spec: &TrialSpec, sealed_as: &[String; 2]) -> Result<[Vec<u8>; 2], String> {
+        let again = manifest::explored(spec, sealed_as)?;
+        // With another seed there is another exploration, of which the bundle knows nothing.
+        if let Ok(sealed) = self.sealed.explore(spec, sealed_as) {
+            for ((name, sealed), again) in sealed_as.iter().zip(sealed).zip(&again) {
+                if sealed != *again {
+                    let digest =
+                        |bytes: &[u8]| format!("sha256:{}", Sha256Digest::of(bytes).short());
+                    let expected = format!("{} as explored again", digest(again));
+                    let fault = Fault::new(name.as_str(), expected, digest(&sealed));
+                    let hint = "the previous map that the study starts from is not what that exploration gives";
+                    self.other.borrow_mut().push(fault.hint(hint));
+                }
+            }
+        }
+        Ok(again)
     }
 }
 
@@ -123,6 +193,18 @@ impl Replanned for Study<'_> {
             .run(&specs, &studies::execute, None, &Silent)
             .map(|records| records.iter().map(TrialRecord::to_line).collect())
             .unwrap_or_default()
+    }
+
+    fn explore_again(&self) -> Vec<Fault> {
+        let afresh = Afresh::new(self.bundle);
+        let told = written(self.bundle)
+            .and_then(|(source, overrides)| resolve(&source, &overrides, &afresh));
+        let mut faults = afresh.other.into_inner();
+        if let (Err(problem), true) = (told, faults.is_empty()) {
+            let path = format!("{}{}", format::PAYLOAD, format::STUDY);
+            faults.push(Fault::new(path, "earlier explorations that can be run again", problem));
+        }
+        faults
     }
 
     fn replicate(&self, seed: u64) -> Result<BundleContent, String> {

@@ -9,7 +9,7 @@ use super::{Body, Region, RegionKind, Solid, Tag, World};
 use crate::document::{self, Diagnostic, Parsed, Source, suggestion};
 use crate::geometry::{Outline, Point, Pose};
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// The layer that every world has, chosen or not.
@@ -42,7 +42,7 @@ pub struct WorldDoc {
 }
 
 /// Solid things that come and go together.
-#[derive(Debug, Clone, Default, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct LayerDoc {
     /// Lower and upper end (m) of whatever does not say its own; 0 to 2.5 where absent.
@@ -62,7 +62,7 @@ pub struct LayerDoc {
 }
 
 /// A wall along the middle of its thickness. It ends where the line ends; joints are filled.
-#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct WallDoc {
     /// Name, for messages.
@@ -77,7 +77,7 @@ pub struct WallDoc {
 }
 
 /// A box.
-#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct BoxDoc {
     /// Name, for messages.
@@ -95,7 +95,7 @@ pub struct BoxDoc {
 }
 
 /// A round column.
-#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct CircleDoc {
     /// Name, for messages.
@@ -110,7 +110,7 @@ pub struct CircleDoc {
 }
 
 /// A column over a polygon.
-#[derive(Debug, Clone, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct PolygonDoc {
     /// Name, for messages.
@@ -182,24 +182,39 @@ const MAX_DISTANCE: f64 = 1e4;
 /// Every fault of the document, layers asked for that it does not have among them.
 pub fn read(source: &Source, layers: Option<&[String]>) -> Result<World, Vec<Diagnostic>> {
     let parsed = document::parse::<WorldDoc>(source)?;
-    let mut reader = Reader { parsed: &parsed, faults: Vec::new() };
-    let world = reader.world(layers);
+    let mut reader =
+        Reader { fault_at: &|at, message| parsed.fault(at, message), faults: Vec::new() };
+    let world = reader.world(&parsed, layers);
     if reader.faults.is_empty() { Ok(world) } else { Err(reader.faults) }
 }
 
+/// The solids of `layer`, which is written at `pointer` of a document that makes faults by `fault_at` (pointer, message).
+///
+/// # Errors
+/// Every fault of it.
+pub fn solids(
+    layer: &LayerDoc,
+    pointer: &str,
+    fault_at: &dyn Fn(&str, &str) -> Diagnostic,
+) -> Result<Vec<Solid>, Vec<Diagnostic>> {
+    let mut reader = Reader { fault_at, faults: Vec::new() };
+    let mut solids = Vec::new();
+    reader.layer(BASE_LAYER, pointer, layer, &mut solids);
+    if reader.faults.is_empty() { Ok(solids) } else { Err(reader.faults) }
+}
+
 struct Reader<'a> {
-    parsed: &'a Parsed<WorldDoc>,
+    fault_at: &'a dyn Fn(&str, &str) -> Diagnostic,
     faults: Vec<Diagnostic>,
 }
 
 impl Reader<'_> {
-    fn world(&mut self, layers: Option<&[String]>) -> World {
-        let doc = &self.parsed.value;
+    fn world(&mut self, parsed: &Parsed<WorldDoc>, layers: Option<&[String]>) -> World {
+        let doc = &parsed.value;
         self.expect(doc.reenact_world == 1, "/reenact-world", "unknown format version", "1");
         for asked in layers.unwrap_or(&[]).iter().filter(|name| !doc.layers.contains_key(*name)) {
             let known: Vec<&str> = doc.layers.keys().map(String::as_str).collect();
-            let mut fault = self
-                .parsed
+            let mut fault = parsed
                 .key_fault("/layers", format!("world `{}` has no layer `{asked}`", doc.name))
                 .label(format!("the layers are {}", known.join(", ")));
             if let Some(near) = suggestion(asked, known) {
@@ -210,7 +225,8 @@ impl Reader<'_> {
         let mut solids = Vec::new();
         for (name, layer) in &doc.layers {
             let before = solids.len();
-            self.layer(name, layer, &mut solids);
+            let pointer = format!("/layers/{}", escaped(name));
+            self.layer(name, &pointer, layer, &mut solids);
             let chosen = name == BASE_LAYER || layers.is_none_or(|layers| layers.contains(name));
             if !chosen {
                 solids.truncate(before);
@@ -241,8 +257,7 @@ impl Reader<'_> {
         }
     }
 
-    fn layer(&mut self, name: &str, layer: &LayerDoc, solids: &mut Vec<Solid>) {
-        let base = format!("/layers/{}", escaped(name));
+    fn layer(&mut self, name: &str, base: &str, layer: &LayerDoc, solids: &mut Vec<Solid>) {
         let storey = layer.z_m.unwrap_or(STOREY);
         self.heights(&format!("{base}/z-m"), storey);
         let mut add = |solid_name: String, outline: Outline, z: [f64; 2]| {
@@ -338,7 +353,7 @@ impl Reader<'_> {
 
     fn expect(&mut self, holds: bool, at: &str, message: &str, expected: &str) {
         if !holds {
-            self.faults.push(self.parsed.fault(at, message).label(format!("expected {expected}")));
+            self.faults.push((self.fault_at)(at, message).label(format!("expected {expected}")));
         }
     }
 }

@@ -60,7 +60,7 @@ pub fn floor_plan(world: &World, plan: Plan<'_>) -> Result<OccupancyGrid, PlanEr
         .solids
         .iter()
         .filter(|solid| plan.layers.is_none_or(|layers| layers.contains(&solid.layer)))
-        .filter_map(|solid| solid.body.slice(plan.height))
+        .flat_map(|solid| solid.body.slice(plan.height))
         .collect();
     let bounds = outlines.iter().fold(Bounds::EMPTY, |all, outline| all.union(outline.bounds()));
     if bounds.is_empty() {

@@ -6,6 +6,7 @@ pub mod document;
 pub mod floor_plan;
 pub mod generate;
 pub mod map_server;
+pub mod mesh;
 #[cfg(test)]
 pub(crate) mod originals;
 pub mod sdf;
@@ -96,19 +97,19 @@ impl World {
 
     /// Outlines of everything cut by the plane at height `z` (m): what a lidar at that height sees.
     pub fn slice(&self, z: f64) -> Vec<Outline> {
-        self.solids.iter().filter_map(|solid| solid.body.slice(z)).collect()
+        self.solids.iter().flat_map(|solid| solid.body.slice(z)).collect()
     }
 
     /// Outlines of everything between the heights `low` and `high` (m): what a body of that height touches.
     pub fn contact(&self, low: f64, high: f64) -> Vec<Outline> {
-        self.solids.iter().filter_map(|solid| solid.body.shadow(low, high)).collect()
+        self.solids.iter().flat_map(|solid| solid.body.shadow(low, high)).collect()
     }
 
     /// The smallest box around all solids.
     pub fn bounds(&self) -> Bounds {
         self.solids
             .iter()
-            .filter_map(|solid| solid.body.shadow(f64::NEG_INFINITY, f64::INFINITY))
+            .flat_map(|solid| solid.body.shadow(f64::NEG_INFINITY, f64::INFINITY))
             .fold(Bounds::EMPTY, |bounds, outline| bounds.union(outline.bounds()))
     }
 

@@ -1,8 +1,10 @@
 //! Solid things in three dimensions, and the two ways the plane sees them: cut by a lidar's scan plane, and
 //! as the shadow of what a robot's body could touch.
 
+use super::mesh::{Mesh, section};
 use crate::geometry::{Outline, Placement, Point, convex_hull};
 use crate::math;
+use section::Standing;
 use serde::Serialize;
 
 /// One solid thing.
@@ -46,21 +48,41 @@ pub enum Body {
         /// Where its centre is and how it is turned.
         placement: Placement,
     },
+    /// A surface of triangles.
+    Mesh {
+        /// The triangles in their own frame.
+        mesh: Mesh,
+        /// Where they stand.
+        standing: Standing,
+    },
 }
 
 /// Corners used for the round ends of a tilted cylinder: the outline is within 0.5 % of its radius.
 const ROUND: u32 = 32;
 
 impl Body {
-    /// Outline of the cut at height `z` (m), if the plane meets the body.
-    pub fn slice(&self, z: f64) -> Option<Outline> {
-        self.shadow(z, z)
+    /// Outlines of the cut at height `z` (m): none where the plane misses the body, one of a solid, thin ones of the lines
+    /// of a mesh.
+    pub fn slice(&self, z: f64) -> Vec<Outline> {
+        match self {
+            Self::Mesh { mesh, standing } => section::cut(mesh, standing, z),
+            _ => self.whole(z, z).into_iter().collect(),
+        }
     }
 
-    /// Outline of the part between the heights `low` and `high` (m) seen from above, if there is any.
-    /// Exact for boxes and upright prisms and cylinders; the hull of a 32-gon for tilted cylinders.
-    pub fn shadow(&self, low: f64, high: f64) -> Option<Outline> {
+    /// Outlines of the part between the heights `low` and `high` (m) seen from above: at most one of a solid, one for each
+    /// face of a mesh. Exact for boxes, meshes and upright prisms and cylinders; the hull of a 32-gon for tilted cylinders.
+    pub fn shadow(&self, low: f64, high: f64) -> Vec<Outline> {
         match self {
+            Self::Mesh { mesh, standing } => section::shadow(mesh, standing, low, high),
+            _ => self.whole(low, high).into_iter().collect(),
+        }
+    }
+
+    /// The one outline of a solid between two heights; none of a mesh.
+    fn whole(&self, low: f64, high: f64) -> Option<Outline> {
+        match self {
+            Self::Mesh { .. } => None,
             Self::Prism { outline, z } => (z[0] <= high && z[1] >= low).then(|| outline.clone()),
             Self::Cylinder { radius, length, placement } if placement.is_upright() => {
                 let [x, y, z] = placement.translation;
@@ -142,6 +164,11 @@ mod tests {
     use super::*;
     use std::f64::consts::FRAC_PI_2;
 
+    fn one(outlines: Vec<Outline>) -> Option<Outline> {
+        assert!(outlines.len() <= 1, "{outlines:?}");
+        outlines.into_iter().next()
+    }
+
     fn size(outline: &Outline) -> (f64, f64) {
         let bounds = outline.bounds();
         (bounds.width(), bounds.height())
@@ -152,7 +179,7 @@ mod tests {
         // The cars of the open world: 4.5 x 4 x 2 m with roll 1.571 stand on their side.
         let placement = Placement::from_xyz_rpy([0.0, 0.0, 1.0, FRAC_PI_2, 0.0, 0.0]);
         let car = Body::Box { size: [4.5, 4.0, 2.0], placement };
-        let (width, height) = size(&car.slice(0.16).unwrap());
+        let (width, height) = size(&one(car.slice(0.16)).unwrap());
         assert!((width - 4.5).abs() < 1e-9 && (height - 2.0).abs() < 1e-9);
     }
 
@@ -163,7 +190,7 @@ mod tests {
             let placement = Placement::from_xyz_rpy([32.0, 8.9, 1.25, 0.0, -0.0, yaw]);
             let wall = Body::Box { size: [10.25, 0.15, 2.5], placement };
             for outline in [wall.slice(0.1602), wall.shadow(0.0, 0.43), wall.shadow(-9.0, 9.0)] {
-                assert_eq!(outline.unwrap().sides().count(), 4, "{yaw}");
+                assert_eq!(one(outline).unwrap().sides().count(), 4, "{yaw}");
             }
         }
     }
@@ -172,9 +199,9 @@ mod tests {
     fn a_lintel_is_above_the_lidar_but_a_tall_body_could_touch_it() {
         let placement = Placement::from_xyz_rpy([1.0, 2.0, 2.25, 0.0, 0.0, 0.3]);
         let lintel = Body::Box { size: [0.9, 0.15, 0.5], placement };
-        assert_eq!(lintel.slice(0.1602), None);
-        assert_eq!(lintel.shadow(0.0, 0.43), None);
-        assert!(lintel.shadow(0.0, 2.1).is_some());
+        assert_eq!(lintel.slice(0.1602), []);
+        assert_eq!(lintel.shadow(0.0, 0.43), []);
+        assert_eq!(lintel.shadow(0.0, 2.1).len(), 1);
     }
 
     #[test]
@@ -182,9 +209,9 @@ mod tests {
         // A 45 degree wedge: a unit cube pitched by a quarter of pi, cut through its centre, is sqrt(2) long.
         let placement = Placement::from_xyz_rpy([0.0, 0.0, 0.0, 0.0, FRAC_PI_2 / 2.0, 0.0]);
         let cube = Body::Box { size: [1.0, 1.0, 1.0], placement };
-        let (width, height) = size(&cube.slice(0.0).unwrap());
+        let (width, height) = size(&one(cube.slice(0.0)).unwrap());
         assert!((width - 2.0_f64.sqrt()).abs() < 1e-9 && (height - 1.0).abs() < 1e-9);
-        let (width, _) = size(&cube.slice(0.5).unwrap());
+        let (width, _) = size(&one(cube.slice(0.5)).unwrap());
         assert!((width - (2.0_f64.sqrt() - 1.0)).abs() < 1e-9);
     }
 }

@@ -98,7 +98,7 @@ pub fn describe_world(world: &World, lidar_height: f64) -> String {
     );
     for layer in world.layers() {
         let of_layer = || world.solids.iter().filter(|solid| solid.layer == layer);
-        let cut = of_layer().filter(|solid| solid.body.slice(lidar_height).is_some()).count();
+        let cut = of_layer().filter(|solid| !solid.body.slice(lidar_height).is_empty()).count();
         text.push_str(&format!(
             "layer {layer}: {} solids, {cut} of them at {lidar_height} m\n",
             of_layer().count()

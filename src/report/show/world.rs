@@ -73,9 +73,12 @@ fn building_sheet(
     let mut missed = false;
     let mut cut = Vec::new();
     for solid in &world.solids {
-        if let Some(outline) = solid.body.slice(lidar_height) {
-            cut.push((grey(&solid.layer), outline));
-        } else if let Some(outline) = solid.body.shadow(f64::NEG_INFINITY, f64::INFINITY) {
+        let met = solid.body.slice(lidar_height);
+        if !met.is_empty() {
+            cut.extend(met.into_iter().map(|outline| (grey(&solid.layer), outline)));
+            continue;
+        }
+        for outline in solid.body.shadow(f64::NEG_INFINITY, f64::INFINITY) {
             missed = true;
             let shape = canvas
                 .outline(&outline)

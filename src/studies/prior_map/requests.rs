@@ -121,4 +121,7 @@ pub struct PlanFigure {
     /// The first condition with these factor values.
     #[serde(default, rename = "where")]
     pub only: BTreeMap<String, FactorValue>,
+    /// Layers that are drawn as red crosses, such as closed doors.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub crossed: Vec<String>,
 }

@@ -59,10 +59,10 @@ fn a_document_means_solids_regions_tags_starts_and_goals() {
     );
     assert_eq!(world.slice(0.16).len(), 4, "the circle begins above");
     assert_eq!(world.slice(0.9).len(), 3, "the others of its layer end below");
-    let desk = world.solids[0].body.slice(0.1).unwrap().bounds();
+    let desk = world.solids[0].body.slice(0.1)[0].bounds();
     assert!((desk.width() - 1.0).abs() < 1e-12 && (desk.height() - 2.0).abs() < 1e-12);
     // The corner at (4, 0) is filled, the ends stay where they are written.
-    let walls: Vec<_> = world.solids[3..].iter().map(|s| s.body.slice(1.0).unwrap()).collect();
+    let walls: Vec<_> = world.solids[3..].iter().map(|s| s.body.slice(1.0).remove(0)).collect();
     assert!(walls.iter().any(|wall| wall.contains(Point::new(4.09, -0.09))));
     assert_eq!(walls[0].bounds().min.x, 0.0);
     assert_eq!(walls[1].bounds().max.y, 3.0);
@@ -144,7 +144,7 @@ fn the_basic_apartment_is_as_described() {
         .solids
         .iter()
         .filter(|solid| solid.layer == "furniture")
-        .filter_map(|solid| solid.body.slice(0.1602))
+        .flat_map(|solid| solid.body.slice(0.1602))
         .map(|outline| match outline {
             Outline::Circle { radius, .. } => std::f64::consts::PI * radius * radius,
             Outline::Polygon(corners) => area(&corners),
@@ -153,7 +153,7 @@ fn the_basic_apartment_is_as_described() {
     assert!((0.105..0.115).contains(&(furniture / floor)), "{furniture} of {floor} m2");
     // Nobody starts inside a wall, and nothing stands in a wall's way: every piece is within one region.
     for solid in furnished.solids.iter().filter(|solid| solid.layer == "furniture") {
-        let middle = solid.body.slice(0.1602).unwrap().bounds();
+        let middle = solid.body.slice(0.1602)[0].bounds();
         let middle = (middle.min + middle.max) * 0.5;
         let rooms = furnished
             .regions

@@ -6,6 +6,9 @@
 //! (`raw`). Bytes in, values out: whoever calls fetches the image.
 
 mod image;
+mod write;
+
+pub use write::write;
 
 use crate::document::{self, Diagnostic, Parsed, Source};
 use crate::geometry::Point;

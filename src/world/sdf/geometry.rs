@@ -1,5 +1,6 @@
 //! The shapes of collisions.
 
+use super::{Models, mesh};
 use crate::document::xml::{self, Faults};
 use crate::geometry::{Outline, Placement, Point};
 use crate::world::Body;
@@ -8,9 +9,26 @@ use roxmltree::Node;
 /// Largest extent (m) of one shape.
 const MAX_SIZE: f64 = 1e5;
 
-/// The body of a `<collision>` at `placement`, sizes multiplied by `scale` as Gazebo does; `None` for planes and,
+/// The bodies of a `<collision>` at `placement`, sizes multiplied by `scale` as Gazebo does; none for planes and,
 /// with a warning or fault, for what cannot be read.
 pub(super) fn read(
+    collision: Node<'_, '_>,
+    name: &str,
+    placement: Placement,
+    scale: [f64; 3],
+    models: &mut dyn Models,
+    faults: &mut Faults<'_>,
+) -> Vec<Body> {
+    let shape = xml::child(collision, "geometry").and_then(|g| xml::elements(g).next());
+    match shape {
+        Some(shape) if shape.tag_name().name() == "mesh" => {
+            mesh::read(shape, name, placement, scale, models, faults)
+        }
+        _ => primitive(collision, name, placement, scale, faults).into_iter().collect(),
+    }
+}
+
+fn primitive(
     collision: Node<'_, '_>,
     name: &str,
     placement: Placement,

@@ -5,7 +5,11 @@
 //! Ground planes are left out. Whatever else cannot be read is a warning that names it.
 
 mod geometry;
+mod mesh;
 mod model;
+mod models;
+
+pub use models::{Found, Models, NoModels};
 
 use super::World;
 use crate::document::xml::{self, Faults};
@@ -21,11 +25,19 @@ pub const MAX_BYTES: usize = 16 << 20;
 /// The layer of every solid of an SDF world.
 pub const LAYER: &str = "walls";
 
-/// Reads a world; its `warnings` say what could not be read.
+/// Reads a world without its meshes; its `warnings` say what could not be read.
 ///
 /// # Errors
 /// Every fault found, warnings among them, where the file is no SDF world.
 pub fn read(source: &Source) -> Result<World, Vec<Diagnostic>> {
+    read_with(source, &mut NoModels)
+}
+
+/// Reads a world with the meshes that `models` hands over.
+///
+/// # Errors
+/// As [`read`]; also where a mesh is there and cannot be read.
+pub fn read_with(source: &Source, models: &mut dyn Models) -> Result<World, Vec<Diagnostic>> {
     let document = xml::parse(source, MAX_BYTES)?;
     let mut faults = Faults::new(source);
     let mut solids = Vec::new();
@@ -42,7 +54,7 @@ pub fn read(source: &Source) -> Result<World, Vec<Diagnostic>> {
                     let name = element.attribute("name").unwrap_or("");
                     let state = State::read(states.get(name).copied(), &mut faults);
                     let place = model::Place { outer: Placement::IDENTITY, prefix: String::new() };
-                    model::read(element, &place, &state, &mut solids, &mut faults);
+                    model::read(element, &place, &state, models, &mut solids, &mut faults);
                 }
                 "include" => model::warn_of_include(element, &mut faults),
                 kind @ ("actor" | "population" | "road") => {

@@ -1,6 +1,6 @@
 //! Models, links and collisions, placed one inside the other.
 
-use super::geometry;
+use super::{Models, geometry};
 use crate::document::xml::{self, Faults};
 use crate::geometry::Placement;
 use crate::world::Solid;
@@ -49,6 +49,7 @@ pub(super) fn read(
     model: Node<'_, '_>,
     place: &Place,
     state: &State<'_, '_>,
+    models: &mut dyn Models,
     solids: &mut Vec<Solid>,
     faults: &mut Faults<'_>,
 ) {
@@ -66,12 +67,13 @@ pub(super) fn read(
                     Some(node) => pose(node, faults),
                     None => placement.compose(&within),
                 };
-                read_link(element, &format!("{name}/{part}"), &link, state.scale, solids, faults);
+                let name = format!("{name}/{part}");
+                read_link(element, &name, &link, state.scale, models, solids, faults);
             }
             "model" => {
                 let inner = State::read(state.of("model", part), faults);
                 let place = Place { outer: placement, prefix: format!("{name}/") };
-                read(element, &place, &inner, solids, faults);
+                read(element, &place, &inner, models, solids, faults);
             }
             "include" => warn_of_include(element, faults),
             _ => {}
@@ -91,14 +93,15 @@ fn read_link(
     name: &str,
     placement: &Placement,
     scale: [f64; 3],
+    models: &mut dyn Models,
     solids: &mut Vec<Solid>,
     faults: &mut Faults<'_>,
 ) {
     for collision in xml::elements(link).filter(|e| e.tag_name().name() == "collision") {
         let placement = placement.compose(&pose(collision, faults));
         let name = format!("{name}/{}", collision.attribute("name").unwrap_or(""));
-        if let Some(body) = geometry::read(collision, &name, placement, scale, faults) {
-            solids.push(Solid { name, layer: super::LAYER.to_owned(), body });
+        for body in geometry::read(collision, &name, placement, scale, models, faults) {
+            solids.push(Solid { name: name.clone(), layer: super::LAYER.to_owned(), body });
         }
     }
 }

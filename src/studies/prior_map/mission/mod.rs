@@ -15,7 +15,8 @@ use super::explorer::{CONTROL_PERIOD, Ending, Explorer};
 use super::information_gain::AlignedPrior;
 use super::tour::Tour;
 use super::{Parameters, Setup};
-use crate::geometry::{Outline, Pose};
+use crate::geometry::{Outline, Point, Pose};
+use crate::grid::{Cell, GridFrame, Occupancy, OccupancyGrid};
 use crate::robot::{Lidar, Odometry, Scan};
 use crate::sim::{Distribution, DriveNoise, OdometryNoise, Scene, Simulator, Stepping};
 use crate::studies::recording::Recording;
@@ -70,10 +71,52 @@ pub fn run(
     recording: Option<&mut Recording>,
     watch: &mut dyn Stopwatch,
 ) -> TrialRecord {
-    let prepared = match setup.prepared() {
-        Ok(prepared) => prepared,
-        Err(cause) => return TrialRecord::panicked(spec, cause),
+    match setup.prepared() {
+        Ok(prepared) => enact(spec, setup, prepared, recording, watch).0,
+        Err(cause) => TrialRecord::panicked(spec, cause),
+    }
+}
+
+/// Runs the trial and tells the map that its robot ends with, in the world's frame and cut to what is known of it.
+///
+/// # Errors
+/// Where the setup cannot run, or the robot starts turned against the world's axes, in words.
+pub fn explored_map(spec: &TrialSpec, setup: &Setup) -> Result<OccupancyGrid, String> {
+    if setup.start.heading != 0.0 {
+        let degrees = setup.start.heading.to_degrees();
+        return Err(format!(
+            "a start that faces along x is needed, and this is turned by {degrees} degrees"
+        ));
+    }
+    let (_, mind) = enact(spec, setup, setup.prepared()?, None, &mut ());
+    known_part(mind.map().grid(), setup.start.position())
+        .ok_or_else(|| "its robot mapped nothing".to_owned())
+}
+
+/// The smallest part of `map` that holds all its known cells, its origin moved by `shift`.
+fn known_part(map: &OccupancyGrid, shift: Point) -> Option<OccupancyGrid> {
+    let frame = map.frame();
+    let known = || frame.cells().filter(|cell| map.at(*cell) != Occupancy::Unknown);
+    let (left, right) = (known().map(|c| c.x).min()?, known().map(|c| c.x).max()?);
+    let (low, high) = (known().map(|c| c.y).min()?, known().map(|c| c.y).max()?);
+    let corner = Point::new(f64::from(left), f64::from(low)) * frame.resolution;
+    let part = GridFrame {
+        resolution: frame.resolution,
+        origin: frame.origin + corner + shift,
+        width: right - left + 1,
+        height: high - low + 1,
     };
+    let cells = part.cells().map(|c| map.at(Cell::new(c.x + left, c.y + low))).collect();
+    Some(OccupancyGrid::from_cells(part, cells))
+}
+
+fn enact(
+    spec: &TrialSpec,
+    setup: &Setup,
+    prepared: &Prepared,
+    recording: Option<&mut Recording>,
+    watch: &mut dyn Stopwatch,
+) -> (TrialRecord, Explorer) {
     let Parameters { sensing, measurement, .. } = &setup.parameters;
     let start = start::draw(setup, &prepared.solid, &spec.seeds);
     let scene = Scene {
@@ -147,7 +190,7 @@ struct Mission<'a> {
 }
 
 impl Mission<'_> {
-    fn run(mut self, spec: &TrialSpec) -> TrialRecord {
+    fn run(mut self, spec: &TrialSpec) -> (TrialRecord, Explorer) {
         let limit = Tick::at_or_after(Seconds(self.setup.parameters.mission.time_limit_s));
         let mut next_control = Tick(0);
         self.perceive();
@@ -201,7 +244,7 @@ impl Mission<'_> {
                 }
             }
         }
-        record
+        (record, self.mind)
     }
 
     /// Step (a): shows the mind the scan just taken, where it wants it.

@@ -1,0 +1,156 @@
+//! The meshes that a Gazebo world names: files in the folders that the manifest gives, each sealed like any input, or what
+//! the manifest puts in their place.
+
+use super::document::WorldFile;
+use super::faults::step;
+use super::inputs::{InputFiles, WrittenIn, joined, normalised};
+use super::pinned::Pins;
+use super::resolve::Resolver;
+use crate::digest::Sha256Digest;
+use crate::world::sdf::{Found, Models};
+use crate::world::{Solid, document, mesh};
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+/// What a manifest knows of one world's meshes.
+pub(super) struct Shelf<'r, 'a> {
+    doc: &'r WorldFile,
+    /// The world's own path, which relative URIs are beside.
+    world: (String, WrittenIn),
+    /// What the folders of models are relative to.
+    folders: WrittenIn,
+    files: &'r mut InputFiles<'a>,
+    pins: &'r Pins,
+    stand_ins: BTreeMap<&'r str, Arc<[Solid]>>,
+    known: BTreeMap<String, Found>,
+    /// Files that are not the ones that are pinned, in words.
+    unpinned: Vec<String>,
+}
+
+impl Shelf<'_, '_> {
+    /// The path of the file that `uri` names.
+    fn path_of(&self, uri: &str) -> Result<(String, WrittenIn), String> {
+        let model = uri.strip_prefix("model://");
+        let path = model.or_else(|| uri.strip_prefix("file://")).unwrap_or(uri);
+        if path.contains("://") {
+            return Err(String::new());
+        }
+        if path.split(['/', '\\']).any(|step| step == "..") {
+            return Err("its path leads out of the folder".to_owned());
+        }
+        if model.is_none() {
+            if path.starts_with('/') {
+                return Err("a path from the root of some machine is not followed".to_owned());
+            }
+            return Ok((joined(&self.world.0, path), self.world.1));
+        }
+        if self.doc.models.is_empty() {
+            return Err(String::new());
+        }
+        let path = path.trim_start_matches('/');
+        let (name, rest) = path.split_once('/').unwrap_or((path, ""));
+        match self.doc.models.get(name) {
+            Some(folder) => Ok((normalised(&format!("{folder}/{rest}")), self.folders)),
+            None => Err(format!("`models` gives no folder for `{name}`")),
+        }
+    }
+
+    fn look_up(&mut self, uri: &str) -> Found {
+        if let Some(solids) = self.stand_ins.get(uri) {
+            return Found::StandIn(Arc::clone(solids));
+        }
+        let (path, written_in) = match self.path_of(uri) {
+            Ok(found) => found,
+            Err(why) => return Found::Missing(why),
+        };
+        let pin = self.pins.of(&path).filter(|_| written_in == WrittenIn::Manifest);
+        let bytes = match self.files.read(&path, written_in) {
+            Ok(bytes) => bytes,
+            Err(reason) => {
+                if let Some(pin) = pin {
+                    let published = pin.published();
+                    self.unpinned
+                        .push(format!("cannot read the mesh `{path}`, published as {published}"));
+                }
+                return Found::Missing(format!("`{path}`: {reason}"));
+            }
+        };
+        let found = Sha256Digest::of(&bytes);
+        if let Some(pin) = pin.filter(|pin| pin.digest != found) {
+            self.unpinned.push(format!(
+                "the mesh `{path}` is not the file that is pinned: expected SHA-256 {}, found {found}",
+                pin.digest
+            ));
+        }
+        Found::Mesh(Arc::new(mesh::read(&path, &bytes)))
+    }
+}
+
+impl Resolver<'_> {
+    /// What the manifest knows of the meshes of `doc`, written at `pointer`; faults of its stand-ins. The world is at `world`.
+    pub(super) fn stand_ins<'d>(
+        &mut self,
+        doc: &'d WorldFile,
+        pointer: &str,
+    ) -> BTreeMap<&'d str, Arc<[Solid]>> {
+        let mut stand_ins = BTreeMap::new();
+        for (uri, layer) in &doc.stand_ins {
+            let place = step(&format!("{pointer}/stand-ins"), uri);
+            let tree = self.faults.tree;
+            let fault = |at: &str, message: &str| tree.fault(tree.place(at), message);
+            match document::solids(layer, &place, &fault) {
+                Ok(solids) => drop(stand_ins.insert(uri.as_str(), solids.into())),
+                Err(faults) => self.faults.extend(faults),
+            }
+        }
+        stand_ins
+    }
+
+    /// Faults and warnings of what `shelf` had to hand over for the world at `pointer`.
+    pub(super) fn told_by(&mut self, told: Told, doc: &WorldFile, pointer: &str) {
+        for problem in told.unpinned {
+            self.faults.at(&format!("{pointer}/file"), problem, "named by this world");
+        }
+        for uri in doc.stand_ins.keys().filter(|uri| !told.asked.contains(*uri)) {
+            let place = step(&format!("{pointer}/stand-ins"), uri);
+            let fault = self.faults.key_fault(&place, "this stands in for nothing");
+            let label = "expected the URI of a mesh, as the world writes it";
+            self.faults.push(fault.label(label).warning());
+        }
+    }
+}
+
+/// What came of a shelf.
+pub(super) struct Told {
+    unpinned: Vec<String>,
+    asked: BTreeSet<String>,
+}
+
+impl<'r, 'a> Shelf<'r, 'a> {
+    pub(super) fn new(
+        doc: &'r WorldFile,
+        world: (String, WrittenIn),
+        folders: WrittenIn,
+        files: &'r mut InputFiles<'a>,
+        pins: &'r Pins,
+        stand_ins: BTreeMap<&'r str, Arc<[Solid]>>,
+    ) -> Self {
+        let (known, unpinned) = (BTreeMap::new(), Vec::new());
+        Self { doc, world, folders, files, pins, stand_ins, known, unpinned }
+    }
+
+    pub(super) fn told(self) -> Told {
+        Told { unpinned: self.unpinned, asked: self.known.into_keys().collect() }
+    }
+}
+
+impl Models for Shelf<'_, '_> {
+    fn find(&mut self, uri: &str) -> Found {
+        if let Some(found) = self.known.get(uri) {
+            return found.clone();
+        }
+        let found = self.look_up(uri);
+        self.known.insert(uri.to_owned(), found.clone());
+        found
+    }
+}

@@ -1,0 +1,23 @@
+//! Maps as `map_saver` writes them, for maps that a robot of ours made.
+
+use crate::grid::{Cell, Occupancy, OccupancyGrid};
+
+/// `grid` as a descriptor and the PGM image `image_name` that it names: what [`super::read`] reads back cell by cell, as
+/// does ROS's `map_server`. The origin is the grid's own.
+pub fn write(grid: &OccupancyGrid, image_name: &str) -> [Vec<u8>; 2] {
+    let frame = grid.frame();
+    let descriptor = format!(
+        "image: {image_name}\nresolution: {:?}\norigin: [{:?}, {:?}, 0.0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n",
+        frame.resolution, frame.origin.x, frame.origin.y
+    );
+    let mut image = format!("P5\n{} {}\n255\n", frame.width, frame.height).into_bytes();
+    // Images run from the top, grids from the bottom.
+    for y in (0..frame.height).rev() {
+        image.extend((0..frame.width).map(|x| match grid.at(Cell::new(x, y)) {
+            Occupancy::Occupied => 0,
+            Occupancy::Unknown => 205,
+            Occupancy::Free => 254,
+        }));
+    }
+    [descriptor.into_bytes(), image]
+}

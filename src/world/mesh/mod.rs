@@ -1,0 +1,112 @@
+//! Triangle meshes: STL, OBJ and COLLADA files, and what a plane or a slab of heights cuts of them.
+//!
+//! A mesh is a surface, not a solid: files rarely close it. So its sections are lines, drawn [`section::THICKNESS`] thick.
+
+mod collada;
+mod files;
+pub mod section;
+
+use crate::digest::{Hasher, MeaningDigest};
+use crate::document::Diagnostic;
+use serde::{Serialize, Serializer};
+use std::sync::Arc;
+
+/// Longest file read (bytes).
+pub const MAX_BYTES: usize = 64 << 20;
+
+/// Most triangles of one file, instances counted.
+pub const MAX_TRIANGLES: usize = 1 << 20;
+
+/// Largest coordinate (m).
+const MAX_DISTANCE: f64 = 1e5;
+
+/// Three corners (m).
+pub type Triangle = [[f64; 3]; 3];
+
+/// A named part of a file: what SDF calls a submesh.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Part {
+    /// The names that it goes by: its node's and its geometry's in COLLADA, its object's in OBJ.
+    pub names: Vec<String>,
+    /// Its triangles, z up (m).
+    pub triangles: Vec<Triangle>,
+}
+
+/// Triangles in a frame of their own (m).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mesh {
+    triangles: Arc<[Triangle]>,
+    meaning: MeaningDigest,
+}
+
+impl Mesh {
+    /// A mesh of `triangles`, whose corners are finite.
+    pub fn new(triangles: Vec<Triangle>) -> Self {
+        let mut hasher = Hasher::new();
+        hasher.update(b"reenact-mesh-1\0");
+        for number in triangles.as_flattened().as_flattened() {
+            // Both zeros are one.
+            hasher.update((number + 0.0).to_bits().to_le_bytes());
+        }
+        Self { meaning: MeaningDigest(hasher.digest()), triangles: triangles.into() }
+    }
+
+    /// Its triangles (m).
+    pub fn triangles(&self) -> &[Triangle] {
+        &self.triangles
+    }
+}
+
+impl Serialize for Mesh {
+    /// As the digest of what it holds: meshes are large.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.meaning.serialize(serializer)
+    }
+}
+
+/// Reads the file `name`, whose ending tells its format: `.stl`, `.obj` or `.dae`.
+///
+/// # Errors
+/// Every fault found, with its line where the format has lines.
+pub fn read(name: &str, bytes: &[u8]) -> Result<Vec<Part>, Vec<Diagnostic>> {
+    let refuse = |problem: String| Err(vec![Diagnostic::placeless(problem)]);
+    if bytes.len() > MAX_BYTES {
+        let found = bytes.len();
+        return refuse(format!(
+            "`{name}` is too large: expected at most {MAX_BYTES} bytes, found {found}"
+        ));
+    }
+    let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending).to_ascii_lowercase();
+    let read = match ending.as_str() {
+        "stl" => files::stl(bytes),
+        "obj" => files::obj(bytes),
+        "dae" => return collada::read(name, bytes),
+        other => Err(format!("expected .stl, .obj or .dae, found `.{other}`")),
+    };
+    match read.and_then(|parts| checked(parts.iter()).map(|()| parts)) {
+        Ok(parts) => Ok(parts),
+        Err(problem) => refuse(format!("cannot read the mesh `{name}`: {problem}")),
+    }
+}
+
+/// Nothing, where `parts` are a mesh of ours; else what is wrong with them.
+fn checked<'p>(parts: impl Iterator<Item = &'p Part>) -> Result<(), String> {
+    let mut count = 0;
+    for part in parts {
+        count += part.triangles.len();
+        let corners = part.triangles.iter().flatten().flatten();
+        if let Some(wrong) = corners.copied().find(|c| !c.is_finite() || c.abs() > MAX_DISTANCE) {
+            return Err(format!(
+                "expected coordinates within {MAX_DISTANCE} m of the origin, found {wrong}"
+            ));
+        }
+    }
+    match count {
+        0 => Err("it has no triangle".to_owned()),
+        1..=MAX_TRIANGLES => Ok(()),
+        _ => Err(format!("expected at most {MAX_TRIANGLES} triangles, found {count}")),
+    }
+}
+
+#[cfg(test)]
+mod tests;
