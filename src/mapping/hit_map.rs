@@ -43,19 +43,32 @@ impl Place {
     }
 }
 
-/// Beams that ended in a cell: how many, and the sums of where, in units from the cell's corner.
+/// Beams that ended in a cell, in units from the cell's corner.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 struct Hits {
-    count: u32,
+    /// Sums of where they ended.
     x: u32,
     y: u32,
+    count: u16,
+    /// Where they ended on average; means nothing where there were none.
+    mean: [u8; 2],
 }
 
 impl Hits {
-    fn mean(self) -> Option<[i32; 2]> {
-        #[expect(clippy::cast_possible_wrap, reason = "below 256")]
-        let mean = |sum: u32| (sum / self.count) as i32;
-        (self.count > 0).then(|| [mean(self.x), mean(self.y)])
+    const NONE: Self = Self { x: 0, y: 0, count: 0, mean: [0; 2] };
+
+    /// With one more, at `place`.
+    fn with(self, place: Place) -> Self {
+        if self.count == u16::MAX {
+            return self;
+        }
+        #[expect(clippy::cast_sign_loss, reason = "masked")]
+        let within = |v: i32| (v & (CELL - 1)) as u32;
+        let (x, y) = (self.x + within(place.x), self.y + within(place.y));
+        let count = self.count + 1;
+        #[expect(clippy::cast_possible_truncation, reason = "a mean of numbers below 256")]
+        let mean = [x, y].map(|sum| (sum / u32::from(count)) as u8);
+        Self { x, y, count, mean }
     }
 }
 
@@ -66,7 +79,7 @@ struct Tile {
     nearest: [[i16; 2]; 4 * CELLS],
 }
 
-const EMPTY: Tile = Tile { hits: [Hits { count: 0, x: 0, y: 0 }; CELLS], nearest: [NONE; 4 * CELLS] };
+const EMPTY: Tile = Tile { hits: [Hits::NONE; CELLS], nearest: [NONE; 4 * CELLS] };
 
 /// The map. Cells and tiles are counted on an endless lattice.
 #[derive(Debug, Clone)]
@@ -109,64 +122,71 @@ impl HitMap {
 
     /// Takes in that beams ended at `places`.
     pub(super) fn register(&mut self, places: impl IntoIterator<Item = Place>) {
-        let mut cells = Vec::new();
+        let mut cells = Vec::with_capacity(256);
         for place in places {
             let cell = [place.x >> CELL_BITS, place.y >> CELL_BITS];
             let hits = &mut self.tile_mut(cell).hits[in_tile(cell)];
-            #[expect(clippy::cast_sign_loss, reason = "masked")]
-            let within = |v: i32| (v & (CELL - 1)) as u32;
-            // Beyond 2^24 beams in one cell its mean is settled.
-            if hits.count < 1 << 24 {
-                *hits =
-                    Hits { count: hits.count + 1, x: hits.x + within(place.x), y: hits.y + within(place.y) };
+            let before = *hits;
+            *hits = before.with(place);
+            if before.count == 0 || before.mean != hits.mean {
+                cells.push(cell);
             }
-            cells.push(cell);
         }
         cells.sort_unstable();
         cells.dedup();
+        let mut memory = (Vec::with_capacity(25), Vec::with_capacity(9));
         for cell in cells {
-            self.renew_around(cell);
+            self.renew_around(cell, &mut memory);
         }
     }
 
     /// Finds the nearest means anew where the mean of `cell` is in the window.
-    fn renew_around(&mut self, [x, y]: [i32; 2]) {
-        let k = self.kernel;
-        // Means in reach, in units from the corner of `cell`, with their cells counted from it.
-        let mut means: Vec<([i32; 2], [i32; 2])> = Vec::with_capacity(25);
-        for dy in -2 * k..=2 * k {
-            for dx in -2 * k..=2 * k {
-                if let Some([mx, my]) = self.hits([x + dx, y + dy]).mean() {
-                    means.push(([dx, dy], [dx * CELL + mx, dy * CELL + my]));
+    fn renew_around(&mut self, cell: [i32; 2], memory: &mut (Vec<Mean>, Vec<[i32; 2]>)) {
+        let (k, [x, y]) = (self.kernel, cell);
+        let (means, near) = memory;
+        self.means_around(cell, 2 * k, means);
+        for dy in -k..=k {
+            for dx in -k..=k {
+                near.clear();
+                let in_window = means.iter().filter(|mean| {
+                    (mean.cell[0] - dx).abs() <= k && (mean.cell[1] - dy).abs() <= k
+                });
+                near.extend(in_window.map(|m| [m.at[0] - dx * CELL, m.at[1] - dy * CELL]));
+                let quarters = [[1, 1], [3, 1], [1, 3], [3, 3]];
+                let nearest = quarters.map(|at| nearest(near, at.map(|v| v * CELL / 4)));
+                let there = [x + dx, y + dy];
+                let index = 4 * in_tile(there);
+                let held = self.tile(there).map_or(&EMPTY.nearest[..4], |t| &t.nearest[index..index + 4]);
+                // Looked at first, so that a tile that would not change stays shared.
+                if held != nearest {
+                    self.tile_mut(there).nearest[index..index + 4].copy_from_slice(&nearest);
                 }
             }
         }
-        for dy in -k..=k {
-            for dx in -k..=k {
-                let mut nearest = [NONE; 4];
-                for (quarter, nearest) in (0..4).zip(&mut nearest) {
-                    let middle = |d: i32, half: i32| d * CELL + CELL / 4 + half * (CELL / 2);
-                    let (px, py) = (middle(dx, quarter & 1), middle(dy, quarter >> 1));
-                    let mut best = i32::MAX;
-                    for ([cx, cy], [mx, my]) in &means {
-                        if (cx - dx).abs() > k || (cy - dy).abs() > k {
-                            continue;
-                        }
-                        let squared = (mx - px) * (mx - px) + (my - py) * (my - py);
-                        if squared < best {
-                            best = squared;
-                            #[expect(clippy::cast_possible_truncation, reason = "within the window")]
-                            let offset = [(mx - dx * CELL) as i16, (my - dy * CELL) as i16];
-                            *nearest = offset;
-                        }
-                    }
+    }
+
+    /// The means in cells up to `reach` from `cell`, row by row.
+    fn means_around(&self, cell: [i32; 2], reach: i32, means: &mut Vec<Mean>) {
+        means.clear();
+        let [x, y] = cell;
+        let mut take = |dx: i32, dy: i32, hits: Hits| {
+            if hits.count > 0 {
+                let [mx, my] = hits.mean.map(i32::from);
+                means.push(Mean { cell: [dx, dy], at: [dx * CELL + mx, dy * CELL + my] });
+            }
+        };
+        let inside = |v: i32| (reach..TILE - reach).contains(&(v & (TILE - 1)));
+        if let (Some(tile), true) = (self.tile(cell), inside(x) && inside(y)) {
+            for dy in -reach..=reach {
+                let first = in_tile([x - reach, y + dy]);
+                for (dx, hits) in (-reach..=reach).zip(&tile.hits[first..]) {
+                    take(dx, dy, *hits);
                 }
-                let cell = [x + dx, y + dy];
-                let index = 4 * in_tile(cell);
-                let held = self.tile(cell).map_or(&EMPTY.nearest[..4], |t| &t.nearest[index..index + 4]);
-                // Looked at first, so that a tile that would not change stays shared.
-                if held != nearest {
-                    self.tile_mut(cell).nearest[index..index + 4].copy_from_slice(&nearest);
+            }
+        } else {
+            for dy in -reach..=reach {
+                for dx in -reach..=reach {
+                    take(dx, dy, self.hits([x + dx, y + dy]));
                 }
             }
         }
@@ -220,6 +240,29 @@ impl HitMap {
         }
         (self.tiles, self.low, self.size) = (tiles, [low_x, low_y], [width, height]);
     }
+}
+
+/// A mean in sight of a cell: the cell it is of, counted from there, and where it is, in units from that cell's corner.
+#[derive(Debug)]
+struct Mean {
+    cell: [i32; 2],
+    at: [i32; 2],
+}
+
+/// The nearest of `means` to `from`; the first of those equally near.
+fn nearest(means: &[[i32; 2]], from: [i32; 2]) -> [i16; 2] {
+    let (mut found, mut lowest) = (NONE, i32::MAX);
+    for mean in means {
+        let (dx, dy) = (mean[0] - from[0], mean[1] - from[1]);
+        let squared = dx * dx + dy * dy;
+        if squared < lowest {
+            lowest = squared;
+            #[expect(clippy::cast_possible_truncation, reason = "within the window")]
+            let offset = mean.map(|v| v as i16);
+            found = offset;
+        }
+    }
+    found
 }
 
 /// Larger windows than this many cells to either side have no use: GMapping's are 1.

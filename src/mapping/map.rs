@@ -201,11 +201,14 @@ impl OccupancyMap {
     /// Undoes one visit of a cell.
     fn unvisit(&mut self, index: usize, was_hit: bool) {
         let count = &mut self.counts.values_mut()[index];
-        if count.visits < u16::MAX {
-            count.visits = count.visits.saturating_sub(1);
-            count.hits = count.hits.saturating_sub(u16::from(was_hit));
+        if count.visits == u16::MAX {
+            return;
         }
-        self.look(index);
+        count.visits = count.visits.saturating_sub(1);
+        if count.hits > 0 || count.visits == 0 {
+            count.hits = count.hits.saturating_sub(u16::from(was_hit));
+            self.look(index);
+        }
     }
 
     fn grow_to(&mut self, bounds: Bounds) {

@@ -120,3 +120,155 @@ impl Mapper {
         self.map.redraw(removed.iter().map(scan_at), added.iter().map(scan_at))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::{Cell, Occupancy};
+    use crate::mapping::{MatchRule, MotionNoise, room};
+    use crate::rng::Seeds;
+    use std::collections::BTreeMap;
+
+    const KEYFRAMES: KeyframeRule = KeyframeRule { distance: 0.3, turn: 0.3 };
+    const SCANS: ScanRule = ScanRule { resolution: 0.05, clip_range: 9.0, hit_ratio: 0.25 };
+    const GMAPPING: FilterRule = FilterRule {
+        particles: 12,
+        motion: MotionNoise { srr: 0.1, srt: 0.2, str: 0.1, stt: 0.2 },
+        matching: MatchRule {
+            linear_step: 0.05,
+            angular_step: 0.05,
+            iterations: 5,
+            sigma: 0.05,
+            kernel: 1,
+            minimum_score: 0.0,
+            likelihood_sigma: 0.075,
+            skip: 0,
+        },
+        likelihood_gain: 3.0,
+        resample_threshold: 0.5,
+    };
+    /// Nothing moves a particle but odometry.
+    const STILL: FilterRule = FilterRule {
+        particles: 1,
+        motion: MotionNoise { srr: 0.0, srt: 0.0, str: 0.0, stt: 0.0 },
+        matching: MatchRule { linear_step: 0.0, angular_step: 0.0, ..GMAPPING.matching },
+        ..GMAPPING
+    };
+
+    fn mapper(filter: FilterRule) -> Mapper {
+        Mapper::new(KEYFRAMES, SCANS, filter, Seeds::new(5, vec![]).stream("slam"))
+    }
+
+    /// True poses on rounds in the room, and odometry's, which drift.
+    fn rounds() -> Vec<(Pose, Pose)> {
+        let mut drift = Seeds::new(3, vec![]).stream("odometry");
+        let (mut truth, mut odometry) = (Pose::default(), Pose::default());
+        (0..300)
+            .map(|_| {
+                let step = Pose::new(0.05, 0.0, 0.05);
+                let (along, around) = drift.normal_pair();
+                truth = truth.compose(step);
+                odometry = odometry.compose(Pose::new(
+                    step.x + 0.006 * along,
+                    0.0,
+                    step.heading + 0.004 * around - 0.001,
+                ));
+                (truth, odometry)
+            })
+            .collect()
+    }
+
+    /// Drives the rounds and shows `each` the mapper, the true pose and odometry after every scan that was taken in.
+    fn drive(mapper: &mut Mapper, mut each: impl FnMut(&Mapper, Pose, Pose)) {
+        for (truth, odometry) in rounds() {
+            if mapper.wants(odometry) {
+                mapper.integrate(odometry, &room::scan(truth));
+                each(mapper, truth, odometry);
+            }
+        }
+    }
+
+    fn known(map: &OccupancyMap) -> BTreeMap<Cell, Occupancy> {
+        let grid = map.grid();
+        let lattice = |cell: Cell| Cell::new(cell.x + map.offset().x, cell.y + map.offset().y);
+        let cells = grid.frame().cells().map(|cell| (lattice(cell), grid.at(cell)));
+        cells.filter(|(_, value)| *value != Occupancy::Unknown).collect()
+    }
+
+    #[test]
+    fn a_filter_that_may_not_move_is_mapping_with_odometry() {
+        assert!(STILL.trusts_odometry() && !GMAPPING.trusts_odometry());
+        // Two particles go through the filter, one does not: with nothing to tell them apart all are odometry.
+        let (mut trusting, mut filtering) = (mapper(STILL), mapper(FilterRule { particles: 2, ..STILL }));
+        assert!(!trusting.estimates() && filtering.estimates());
+        let mut poses = Vec::new();
+        drive(&mut trusting, |mapper, _, odometry| {
+            assert_eq!(mapper.pose(odometry), odometry);
+            poses.push(odometry);
+        });
+        drive(&mut filtering, |mapper, _, odometry| {
+            assert!(mapper.pose(odometry).position().distance(odometry.position()) < 1e-9);
+        });
+        assert!(trusting.way().is_empty());
+        assert_eq!(filtering.way().len(), poses.len());
+        assert_eq!(known(trusting.map()), known(filtering.map()));
+    }
+
+    #[test]
+    fn particles_find_where_odometry_loses_the_way() {
+        let (mut worst, mut drifted) = (0.0_f64, 0.0_f64);
+        // The map's frame is where odometry began, and the first pose is one step from there.
+        let start = rounds()[0];
+        let mut mapper = mapper(GMAPPING);
+        drive(&mut mapper, |mapper, truth, odometry| {
+            let expected = start.1.compose(start.0.relative(truth));
+            worst = worst.max(mapper.pose(odometry).position().distance(expected.position()));
+            drifted = drifted.max(odometry.position().distance(expected.position()));
+        });
+        assert!(worst < 0.1 && drifted > 0.3, "{worst} m, odometry {drifted} m");
+    }
+
+    /// What is told adds up to the map, and the map is what the best particle's way makes of the scans: also where another
+    /// particle became best.
+    #[test]
+    fn changes_tell_the_whole_story_across_changes_of_the_best_particle() {
+        let vague = FilterRule {
+            matching: MatchRule { skip: 29, iterations: 1, ..GMAPPING.matching },
+            ..GMAPPING
+        };
+        let mut told = BTreeMap::new();
+        let (mut scans, mut ways) = (Vec::new(), Vec::new());
+        let mut mapper = mapper(vague);
+        drive(&mut mapper, |mapper, truth, _| {
+            scans.push(room::scan(truth));
+            ways.push(mapper.way());
+            for change in mapper.changes() {
+                let was = told.insert(change.cell, change.to).unwrap_or(Occupancy::Unknown);
+                assert_eq!(was, change.from);
+                assert_ne!(change.from, change.to);
+            }
+            told.retain(|_, value| *value != Occupancy::Unknown);
+            assert_eq!(known(mapper.map()), told);
+            let mut afresh = OccupancyMap::new(SCANS);
+            for (pose, scan) in mapper.way().into_iter().zip(&scans) {
+                afresh.integrate(pose, scan);
+            }
+            assert_eq!(known(&afresh), told);
+        });
+        let switches = ways.windows(2).filter(|pair| !pair[1].starts_with(&pair[0])).count();
+        assert!(switches > 3, "another particle became best {switches} times");
+    }
+
+    #[test]
+    fn the_same_again_to_the_bit_and_another_stream_differs() {
+        let ends = |stream: &str| {
+            let stream = Seeds::new(5, vec![]).stream(stream);
+            let mut mapper = Mapper::new(KEYFRAMES, SCANS, GMAPPING, stream);
+            drive(&mut mapper, |_, _, _| {});
+            let bits = |pose: &Pose| [pose.x, pose.y, pose.heading].map(f64::to_bits);
+            mapper.way().iter().map(bits).collect::<Vec<_>>()
+        };
+        assert_eq!(ends("slam"), ends("slam"));
+        assert_ne!(ends("slam"), ends("other"));
+    }
+}

@@ -12,6 +12,8 @@ mod mapper;
 mod motion_model;
 mod particle_filter;
 mod resampling;
+#[cfg(test)]
+mod room;
 mod scan_matcher;
 mod trajectories;
 

@@ -253,3 +253,90 @@ impl ScanMatcher {
         sum
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mapping::room;
+    use proptest::prelude::*;
+
+    const RULE: MatchRule = MatchRule {
+        linear_step: 0.05,
+        angular_step: 0.05,
+        iterations: 5,
+        sigma: 0.05,
+        kernel: 1,
+        minimum_score: 0.0,
+        likelihood_sigma: 0.075,
+        skip: 0,
+    };
+
+    /// A map of the room, and the beams of a scan taken at `pose` in it.
+    fn seen(pose: Pose) -> (ScanMatcher, HitMap, Beams) {
+        let matcher = ScanMatcher::new(RULE, 0.05);
+        let mut map = HitMap::new(RULE.kernel);
+        for place in [Pose::new(0.3, 0.1, 0.4), Pose::new(-1.0, 0.5, 2.0), Pose::new(1.0, -0.6, -1.0)] {
+            let hits = room::ends(place);
+            map.register(hits.iter().map(|&hit| Place::of(place.transform(hit), matcher.scale())));
+        }
+        let mut beams = Beams::default();
+        beams.take(room::ends(pose).into_iter());
+        (matcher, map, beams)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(40))]
+        #[test]
+        fn a_scan_in_a_known_room_tells_where_it_was_taken(
+            x in -1.0..1.0, y in -0.8..0.8, heading in -3.0..3.0,
+            dx in -0.08..0.08, dy in -0.08..0.08, turn in -0.08..0.08,
+        ) {
+            let truth = Pose::new(x, y, heading);
+            let (matcher, map, mut beams) = seen(truth);
+            let from = Pose::new(x + dx, y + dy, heading + turn);
+            let (found, fits) = matcher.climb(&map, &mut beams, from);
+            prop_assert!(fits);
+            // Within a cell: the map is of three scans that met the walls at different places.
+            let off = found.position().distance(truth.position());
+            prop_assert!(off < 0.05, "{off} m off");
+            prop_assert!(math::wrap_angle(found.heading - heading).abs() < 0.02);
+            let likelihood = |pose| matcher.log_likelihood(&map, &mut beams, pose);
+            let [there, here] = [from, found].map(likelihood);
+            prop_assert!(off >= from.position().distance(truth.position()) || here > there);
+        }
+
+        #[test]
+        fn giving_up_early_never_hides_a_winner(
+            dx in -0.1..0.1, dy in -0.1..0.1, turn in -0.1..0.1, floor in 0_u32..12_000_000,
+        ) {
+            let (matcher, map, mut beams) = seen(Pose::default());
+            let pose = Pose::new(dx, dy, turn);
+            matcher.turn(&beams.ends, pose.heading, &mut beams.turned);
+            let whole = matcher.score(&map, &beams.turned, matcher.place(pose), None);
+            let early = matcher.score(&map, &beams.turned, matcher.place(pose), Some(floor));
+            let right = if whole > floor { early == whole } else { early <= floor };
+            prop_assert!(right, "{early} of {whole}, floor {floor}");
+        }
+    }
+
+    #[test]
+    fn the_score_is_the_sum_of_the_formula_and_a_poor_one_is_told() {
+        let (matcher, map, mut beams) = seen(Pose::default());
+        matcher.turn(&beams.ends, 0.0, &mut beams.turned);
+        let score = matcher.score(&map, &beams.turned, matcher.place(Pose::default()), None);
+        let expected: f64 = beams
+            .turned
+            .iter()
+            .map(|&end| map.squared_distance(end))
+            .filter(|&squared| squared <= matcher.window)
+            .map(|squared| math::exp(-f64::from(squared) / matcher.scale / matcher.scale / RULE.sigma))
+            .sum();
+        let found = f64::from(score) / f64::from(FULL);
+        assert!((found / expected - 1.0).abs() < 1e-3, "{found}, expected {expected}");
+        // Of 180 beams 179 score less than 179: a bar above what can be had is never passed.
+        let strict = ScanMatcher::new(MatchRule { minimum_score: 180.0, ..RULE }, 0.05);
+        assert!(!strict.climb(&map, &mut beams, Pose::default()).1);
+        let far = Pose::new(50.0, 0.0, 0.0);
+        assert_eq!(matcher.log_likelihood(&map, &mut beams, far), -0.5 / 0.075 * beams.ends.len() as f64);
+    }
+}
