@@ -2,8 +2,8 @@
 //! (GMapping's `PointAccumulator`), and beside it, for each quarter of each cell, the nearest of these means.
 //!
 //! The second makes scoring one look-up a beam instead of one per cell of the window. Lengths are whole units, 1/256 of a cell
-//! (0.2 mm for cells of 5 cm), so that sums do not depend on their order. Tiles are shared between particles until one
-//! writes (copy on write).
+//! (0.2 mm for cells of 5 cm), so that sums do not depend on their order; means are kept to 1/32 of a cell. Tiles are shared
+//! between particles until one writes (copy on write).
 
 use crate::geometry::Point;
 use std::sync::Arc;
@@ -11,12 +11,22 @@ use std::sync::Arc;
 /// Units in a cell, as a power of two.
 pub(super) const CELL_BITS: u32 = 8;
 const CELL: i32 = 1 << CELL_BITS;
+/// Steps in a cell, as a power of two: what means are rounded to.
+const STEP_BITS: u32 = 5;
+const STEPS: i32 = 1 << STEP_BITS;
 /// Cells in a side of a tile, as a power of two.
 const TILE_BITS: u32 = 5;
 const TILE: i32 = 1 << TILE_BITS;
 const CELLS: usize = (TILE * TILE) as usize;
-/// Further away than the window of any kernel: there is no mean near.
-const NONE: [i16; 2] = [i16::MAX / 2; 2];
+/// The largest window reaches this many cells to either side: GMapping's reach 1, and offsets are to fit a byte.
+pub(super) const MAX_KERNEL: u32 = 2;
+/// There is no mean near: further away than any window's diagonal.
+const NONE: Offset = [i8::MIN; 2];
+/// A squared distance beyond any window.
+const FAR: u32 = u32::MAX;
+
+/// Where a mean is, in steps from a cell's corner.
+type Offset = [i8; 2];
 
 /// A place in units from the map frame's origin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -43,43 +53,42 @@ impl Place {
     }
 }
 
-/// Beams that ended in a cell, in units from the cell's corner.
+/// Beams that ended in a cell: how many, and the sums of where, in units from the cell's corner. With 255 the mean is settled.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 struct Hits {
-    /// Sums of where they ended.
-    x: u32,
-    y: u32,
-    count: u16,
-    /// Where they ended on average; means nothing where there were none.
-    mean: [u8; 2],
+    x: u16,
+    y: u16,
+    count: u8,
 }
 
 impl Hits {
-    const NONE: Self = Self { x: 0, y: 0, count: 0, mean: [0; 2] };
+    const NONE: Self = Self { x: 0, y: 0, count: 0 };
 
     /// With one more, at `place`.
     fn with(self, place: Place) -> Self {
-        if self.count == u16::MAX {
+        if self.count == u8::MAX {
             return self;
         }
-        #[expect(clippy::cast_sign_loss, reason = "masked")]
-        let within = |v: i32| (v & (CELL - 1)) as u32;
-        let (x, y) = (self.x + within(place.x), self.y + within(place.y));
-        let count = self.count + 1;
-        #[expect(clippy::cast_possible_truncation, reason = "a mean of numbers below 256")]
-        let mean = [x, y].map(|sum| (sum / u32::from(count)) as u8);
-        Self { x, y, count, mean }
+        #[expect(clippy::cast_sign_loss, clippy::cast_possible_truncation, reason = "masked")]
+        let within = |v: i32| (v & (CELL - 1)) as u16;
+        Self { x: self.x + within(place.x), y: self.y + within(place.y), count: self.count + 1 }
+    }
+
+    /// The step that holds the mean, from the cell's corner.
+    fn mean(self) -> Option<[i32; 2]> {
+        let mean = |sum: u16| i32::from(sum / u16::from(self.count)) >> (CELL_BITS - STEP_BITS);
+        (self.count > 0).then(|| [mean(self.x), mean(self.y)])
     }
 }
 
 #[derive(Debug, Clone)]
 struct Tile {
     hits: [Hits; CELLS],
-    /// The nearest mean as seen from the middle of each quarter of each cell, in units from the cell's corner.
-    nearest: [[i16; 2]; 4 * CELLS],
+    /// The nearest mean as seen from the middle of each quarter of each cell.
+    nearest: [[Offset; 4]; CELLS],
 }
 
-const EMPTY: Tile = Tile { hits: [Hits::NONE; CELLS], nearest: [NONE; 4 * CELLS] };
+const EMPTY: Tile = Tile { hits: [Hits::NONE; CELLS], nearest: [[NONE; 4]; CELLS] };
 
 /// The map. Cells and tiles are counted on an endless lattice.
 #[derive(Debug, Clone)]
@@ -113,7 +122,10 @@ impl HitMap {
         #[expect(clippy::cast_sign_loss, reason = "sizes are not negative")]
         let index = row as usize * self.size[0] as usize + column as usize;
         let Some(Some(tile)) = self.tiles.get(index) else { return FAR };
-        let [x, y] = tile.nearest[quarter(place) & (4 * CELLS - 1)].map(i32::from);
+        let cell = in_tile([place.x >> CELL_BITS, place.y >> CELL_BITS]);
+        let half = |v: i32| usize::from(v & (CELL / 2) != 0);
+        let offset = tile.nearest[cell % CELLS][half(place.y) << 1 | half(place.x)];
+        let [x, y] = offset.map(|step| (i32::from(step) << (CELL_BITS - STEP_BITS)) + CELL / STEPS / 2);
         let (dx, dy) = ((place.x & (CELL - 1)) - x, (place.y & (CELL - 1)) - y);
         #[expect(clippy::cast_sign_loss, reason = "a sum of squares")]
         let squared = (dx * dx + dy * dy) as u32;
@@ -122,74 +134,59 @@ impl HitMap {
 
     /// Takes in that beams ended at `places`.
     pub(super) fn register(&mut self, places: impl IntoIterator<Item = Place>) {
-        let mut cells = Vec::with_capacity(256);
         for place in places {
             let cell = [place.x >> CELL_BITS, place.y >> CELL_BITS];
             let hits = &mut self.tile_mut(cell).hits[in_tile(cell)];
-            let before = *hits;
-            *hits = before.with(place);
-            if before.count == 0 || before.mean != hits.mean {
-                cells.push(cell);
+            let before = hits.mean();
+            *hits = hits.with(place);
+            if let Some(mean) = hits.mean()
+                && before != Some(mean)
+            {
+                self.tell(cell, before, mean);
             }
-        }
-        cells.sort_unstable();
-        cells.dedup();
-        let mut memory = (Vec::with_capacity(25), Vec::with_capacity(9));
-        for cell in cells {
-            self.renew_around(cell, &mut memory);
         }
     }
 
-    /// Finds the nearest means anew where the mean of `cell` is in the window.
-    fn renew_around(&mut self, cell: [i32; 2], memory: &mut (Vec<Mean>, Vec<[i32; 2]>)) {
-        let (k, [x, y]) = (self.kernel, cell);
-        let (means, near) = memory;
-        self.means_around(cell, 2 * k, means);
+    /// Tells the cells around `cell`, whose mean was `before`, that it is `mean` now.
+    fn tell(&mut self, [x, y]: [i32; 2], before: Option<[i32; 2]>, mean: [i32; 2]) {
+        let k = self.kernel;
         for dy in -k..=k {
             for dx in -k..=k {
-                near.clear();
-                let in_window = means.iter().filter(|mean| {
-                    (mean.cell[0] - dx).abs() <= k && (mean.cell[1] - dy).abs() <= k
-                });
-                near.extend(in_window.map(|m| [m.at[0] - dx * CELL, m.at[1] - dy * CELL]));
-                let quarters = [[1, 1], [3, 1], [1, 3], [3, 3]];
-                let nearest = quarters.map(|at| nearest(near, at.map(|v| v * CELL / 4)));
                 let there = [x + dx, y + dy];
-                let index = 4 * in_tile(there);
-                let held = self.tile(there).map_or(&EMPTY.nearest[..4], |t| &t.nearest[index..index + 4]);
+                let seen = |[mx, my]: [i32; 2]| offset([mx - dx * STEPS, my - dy * STEPS]);
+                let (gone, new) = (before.map(seen), seen(mean));
+                let index = in_tile(there);
+                let held = self.tile(there).map_or([NONE; 4], |tile| tile.nearest[index]);
+                let mut nearest = held;
+                for (quarter, nearest) in nearest.iter_mut().enumerate() {
+                    if rank(quarter, new) <= rank(quarter, *nearest) {
+                        *nearest = new;
+                    } else if Some(*nearest) == gone {
+                        *nearest = self.nearest_to(there, quarter);
+                    }
+                }
                 // Looked at first, so that a tile that would not change stays shared.
                 if held != nearest {
-                    self.tile_mut(there).nearest[index..index + 4].copy_from_slice(&nearest);
+                    self.tile_mut(there).nearest[index] = nearest;
                 }
             }
         }
     }
 
-    /// The means in cells up to `reach` from `cell`, row by row.
-    fn means_around(&self, cell: [i32; 2], reach: i32, means: &mut Vec<Mean>) {
-        means.clear();
-        let [x, y] = cell;
-        let mut take = |dx: i32, dy: i32, hits: Hits| {
-            if hits.count > 0 {
-                let [mx, my] = hits.mean.map(i32::from);
-                means.push(Mean { cell: [dx, dy], at: [dx * CELL + mx, dy * CELL + my] });
-            }
-        };
-        let inside = |v: i32| (reach..TILE - reach).contains(&(v & (TILE - 1)));
-        if let (Some(tile), true) = (self.tile(cell), inside(x) && inside(y)) {
-            for dy in -reach..=reach {
-                let first = in_tile([x - reach, y + dy]);
-                for (dx, hits) in (-reach..=reach).zip(&tile.hits[first..]) {
-                    take(dx, dy, *hits);
-                }
-            }
-        } else {
-            for dy in -reach..=reach {
-                for dx in -reach..=reach {
-                    take(dx, dy, self.hits([x + dx, y + dy]));
+    /// The nearest mean as seen from a quarter of `cell`, found afresh.
+    fn nearest_to(&self, [x, y]: [i32; 2], quarter: usize) -> Offset {
+        let (k, mut nearest) = (self.kernel, NONE);
+        for dy in -k..=k {
+            for dx in -k..=k {
+                if let Some([mx, my]) = self.hits([x + dx, y + dy]).mean() {
+                    let seen = offset([mx + dx * STEPS, my + dy * STEPS]);
+                    if rank(quarter, seen) < rank(quarter, nearest) {
+                        nearest = seen;
+                    }
                 }
             }
         }
+        nearest
     }
 
     fn hits(&self, cell: [i32; 2]) -> Hits {
@@ -242,47 +239,26 @@ impl HitMap {
     }
 }
 
-/// A mean in sight of a cell: the cell it is of, counted from there, and where it is, in units from that cell's corner.
-#[derive(Debug)]
-struct Mean {
-    cell: [i32; 2],
-    at: [i32; 2],
+/// Steps that fit: those of a mean within the largest window.
+#[expect(clippy::cast_possible_truncation, reason = "at most 3 cells of 32 steps")]
+fn offset(steps: [i32; 2]) -> Offset {
+    steps.map(|v| v as i8)
 }
 
-/// The nearest of `means` to `from`; the first of those equally near.
-fn nearest(means: &[[i32; 2]], from: [i32; 2]) -> [i16; 2] {
-    let (mut found, mut lowest) = (NONE, i32::MAX);
-    for mean in means {
-        let (dx, dy) = (mean[0] - from[0], mean[1] - from[1]);
-        let squared = dx * dx + dy * dy;
-        if squared < lowest {
-            lowest = squared;
-            #[expect(clippy::cast_possible_truncation, reason = "within the window")]
-            let offset = mean.map(|v| v as i16);
-            found = offset;
-        }
-    }
-    found
+/// Lower is nearer to the middle of the quarter; the offset itself decides between equally near ones, so that what is nearest
+/// does not depend on who came first.
+fn rank(quarter: usize, offset: Offset) -> (i32, Offset) {
+    let middle = |is_far: bool| if is_far { 3 * STEPS / 4 } else { STEPS / 4 };
+    let dx = i32::from(offset[0]) - middle(quarter & 1 != 0);
+    let dy = i32::from(offset[1]) - middle(quarter & 2 != 0);
+    (dx * dx + dy * dy, offset)
 }
-
-/// Larger windows than this many cells to either side have no use: GMapping's are 1.
-pub(super) const MAX_KERNEL: u32 = 10;
-/// A squared distance beyond any window.
-pub(super) const FAR: u32 = u32::MAX;
 
 /// Index of `cell` within its tile.
 fn in_tile(cell: [i32; 2]) -> usize {
-    let [x, y] = cell.map(|v| usize::try_from(v & (TILE - 1)).unwrap_or(0));
-    y << TILE_BITS | x
-}
-
-/// Index of the quarter of a cell that holds `place`, within the tile.
-fn quarter(place: Place) -> usize {
-    let cell = ((place.y >> CELL_BITS & (TILE - 1)) << TILE_BITS) | (place.x >> CELL_BITS & (TILE - 1));
-    let half = |v: i32| v >> (CELL_BITS - 1) & 1;
     #[expect(clippy::cast_sign_loss, reason = "masked")]
-    let index = (cell << 2 | half(place.y) << 1 | half(place.x)) as usize;
-    index
+    let [x, y] = cell.map(|v| (v & (TILE - 1)) as usize);
+    y << TILE_BITS | x
 }
 
 #[cfg(test)]
@@ -295,12 +271,13 @@ mod tests {
         (-2000..2000, -2000..2000).prop_map(|(x, y)| Place { x, y })
     }
 
-    /// The nearest mean to the middle of the quarter of `at`, over all cells of the window.
+    /// Squared distance (units) from `at` to the mean, rounded to steps, that is nearest to its quarter of a cell, over all
+    /// cells of the window.
     fn by_definition(places: &[Place], at: Place, kernel: i32) -> Option<u32> {
         let cell = |p: Place| [p.x >> CELL_BITS, p.y >> CELL_BITS];
         let [x, y] = cell(at);
-        let half = |v: i32| (v >> 7) * 128 + 64;
-        let mut best: Option<(i32, i32)> = None;
+        let half = |v: i32| (v >> 7) * 16 + 8;
+        let mut best: Option<((i32, i32, i32), i32)> = None;
         for cy in y - kernel..=y + kernel {
             for cx in x - kernel..=x + kernel {
                 let here: Vec<_> = places.iter().filter(|p| cell(**p) == [cx, cy]).collect();
@@ -309,13 +286,13 @@ mod tests {
                     continue;
                 }
                 let mean = |of: fn(&Place) -> i32, c: i32| {
-                    c * CELL + here.iter().map(|p| of(p) - c * CELL).sum::<i32>() / n
+                    (c * CELL + here.iter().map(|p| of(p) - c * CELL).sum::<i32>() / n) >> 3
                 };
                 let (mx, my) = (mean(|p| p.x, cx), mean(|p| p.y, cy));
-                let squared = |px: i32, py: i32| (mx - px).pow(2) + (my - py).pow(2);
-                let to_quarter = squared(half(at.x), half(at.y));
-                if best.is_none_or(|(d, _)| to_quarter < d) {
-                    best = Some((to_quarter, squared(at.x, at.y)));
+                let to_quarter = (mx - half(at.x)).pow(2) + (my - half(at.y)).pow(2);
+                let squared = (mx * 8 + 4 - at.x).pow(2) + (my * 8 + 4 - at.y).pow(2);
+                if best.is_none_or(|(rank, _)| (to_quarter, mx, my) < rank) {
+                    best = Some(((to_quarter, mx, my), squared));
                 }
             }
         }

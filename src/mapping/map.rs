@@ -41,7 +41,10 @@ pub struct OccupancyMap {
     grid: OccupancyGrid,
     /// Lattice cell of the grid's cell (0, 0).
     offset: Cell,
+    /// Each cell that changed since `flipped` was empty, once, with what it held then.
     changes: Vec<Change>,
+    /// A bit for each cell of the grid, set where the cell is among `changes`.
+    flipped: Vec<u64>,
 }
 
 /// Cells added beyond what is needed when the map grows, so that it grows seldom.
@@ -58,6 +61,7 @@ impl OccupancyMap {
             grid: OccupancyGrid::filled(frame, Occupancy::Unknown),
             offset: Cell::new(0, 0),
             changes: Vec::new(),
+            flipped: Vec::new(),
         }
     }
 
@@ -134,18 +138,19 @@ impl OccupancyMap {
         }
     }
 
-    /// The cells that are different from what they were when `changes` was empty.
+    /// The cells that are different from what they were when `changes` was empty, row by row.
     fn tell(&mut self) -> &[Change] {
-        // A cell may have changed back and forth in between: its first report tells what it held before
-        // (sorting is stable), and only what is different in the end is told.
-        self.changes.sort_by_key(|c| (c.cell.y, c.cell.x));
-        self.changes.dedup_by_key(|c| c.cell);
-        let (grid, offset) = (&self.grid, self.offset);
-        self.changes.retain_mut(|change| {
-            let cell = Cell::new(change.cell.x - offset.x, change.cell.y - offset.y);
-            change.to = grid.at(cell);
-            change.to != change.from
-        });
+        // A cell may have changed back and forth in between: only what is different in the end is told.
+        for i in 0..self.changes.len() {
+            let change = &mut self.changes[i];
+            let cell = Cell::new(change.cell.x - self.offset.x, change.cell.y - self.offset.y);
+            change.to = self.grid.at(cell);
+            if let Some(index) = self.grid.frame().index(cell) {
+                self.flipped[index / 64] = 0;
+            }
+        }
+        self.changes.retain(|change| change.to != change.from);
+        self.changes.sort_unstable_by_key(|c| (c.cell.y, c.cell.x));
         &self.changes
     }
 
@@ -194,7 +199,11 @@ impl OccupancyMap {
             *value = now;
             let cell = self.grid.frame().cell_of(index);
             let lattice = Cell::new(cell.x + self.offset.x, cell.y + self.offset.y);
-            self.changes.push(Change { cell: lattice, from: was, to: now });
+            let (word, bit) = (&mut self.flipped[index / 64], 1 << (index % 64));
+            if *word & bit == 0 {
+                *word |= bit;
+                self.changes.push(Change { cell: lattice, from: was, to: now });
+            }
         }
     }
 
@@ -252,6 +261,14 @@ impl OccupancyMap {
             }
         }
         (self.counts, self.grid, self.offset) = (counts, grid, offset);
+        // What changed in this round so far has got other indices.
+        self.flipped = vec![0; frame.len().div_ceil(64)];
+        for change in &self.changes {
+            let cell = Cell::new(change.cell.x - offset.x, change.cell.y - offset.y);
+            if let Some(index) = frame.index(cell) {
+                self.flipped[index / 64] |= 1 << (index % 64);
+            }
+        }
     }
 }
 
