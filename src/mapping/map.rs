@@ -1,5 +1,6 @@
 //! Hits and visits per cell, and the occupancy they mean.
 
+use super::beam_ends::BeamEnds;
 use crate::geometry::{Bounds, Point, Pose};
 use crate::grid::{Cell, Grid, GridFrame, Occupancy, OccupancyGrid};
 use crate::robot::Scan;
@@ -40,7 +41,10 @@ pub struct OccupancyMap {
     grid: OccupancyGrid,
     /// Lattice cell of the grid's cell (0, 0).
     offset: Cell,
+    /// Each cell that changed since `flipped` was empty, once, with what it held then.
     changes: Vec<Change>,
+    /// A bit for each cell of the grid, set where the cell is among `changes`.
+    flipped: Vec<u64>,
 }
 
 /// Cells added beyond what is needed when the map grows, so that it grows seldom.
@@ -57,6 +61,7 @@ impl OccupancyMap {
             grid: OccupancyGrid::filled(frame, Occupancy::Unknown),
             offset: Cell::new(0, 0),
             changes: Vec::new(),
+            flipped: Vec::new(),
         }
     }
 
@@ -75,26 +80,44 @@ impl OccupancyMap {
         self.grid.at(Cell::new(cell.x - self.offset.x, cell.y - self.offset.y))
     }
 
+    /// The cells that the last scan taken in changed.
+    pub(super) fn changes(&self) -> &[Change] {
+        &self.changes
+    }
+
     /// Takes in `scan`, taken with the robot at `pose`, and tells the cells that changed.
     ///
     /// Per beam: nothing within the sensor's range marks nothing; otherwise the cells before the end are
     /// visited, and the end is hit unless the beam was cut (prior-map facts, section 4).
     pub fn integrate(&mut self, pose: Pose, scan: &Scan) -> &[Change] {
         self.changes.clear();
-        let sensor = pose.compose(scan.mount);
-        let ends: Vec<(Point, bool)> = (0..scan.ranges.len())
-            .filter_map(|i| {
-                let range = scan.ranges[i];
-                if !range.is_finite() {
-                    return None;
-                }
-                let cut = range.min(self.rule.clip_range);
-                let angle = scan.angle(i);
-                let local =
-                    Point::new(cut * crate::math::cos(angle), cut * crate::math::sin(angle));
-                Some((sensor.transform(local), range < self.rule.clip_range))
-            })
-            .collect();
+        self.add(pose, &BeamEnds::of(scan, self.rule.clip_range));
+        self.tell()
+    }
+
+    /// Takes out the scans of `removed` and takes in those of `added`, and tells the cells that changed.
+    ///
+    /// Counts add up, so the map is then as if it had never seen what was taken out. A count that is full (65,535
+    /// visits of a cell) stays as it is.
+    pub(super) fn redraw<'a>(
+        &mut self,
+        removed: impl IntoIterator<Item = (Pose, &'a BeamEnds)>,
+        added: impl IntoIterator<Item = (Pose, &'a BeamEnds)>,
+    ) -> &[Change] {
+        self.changes.clear();
+        for (pose, beams) in removed {
+            self.remove(pose, beams);
+        }
+        for (pose, beams) in added {
+            self.add(pose, beams);
+        }
+        self.tell()
+    }
+
+    fn add(&mut self, pose: Pose, beams: &BeamEnds) {
+        let sensor = pose.compose(beams.mount);
+        let ends: Vec<(Point, bool)> =
+            beams.ends.iter().map(|&(end, is_hit)| (sensor.transform(end), is_hit)).collect();
         let reach =
             ends.iter().fold(Bounds::EMPTY.including(sensor.position()), |b, e| b.including(e.0));
         self.grow_to(reach);
@@ -103,44 +126,43 @@ impl OccupancyMap {
         for (end, is_hit) in ends {
             self.beam(from, frame.cell_at(end), is_hit);
         }
-        // A cell may have changed back and forth within the scan: its first report tells what it held before
-        // (sorting is stable), and only what is different in the end is told.
-        self.changes.sort_by_key(|c| (c.cell.y, c.cell.x));
-        self.changes.dedup_by_key(|c| c.cell);
-        let (grid, offset) = (&self.grid, self.offset);
-        self.changes.retain_mut(|change| {
-            let cell = Cell::new(change.cell.x - offset.x, change.cell.y - offset.y);
-            change.to = grid.at(cell);
-            change.to != change.from
-        });
+    }
+
+    fn remove(&mut self, pose: Pose, beams: &BeamEnds) {
+        let sensor = pose.compose(beams.mount);
+        let frame = *self.grid.frame();
+        let from = frame.cell_at(sensor.position());
+        for &(end, is_hit) in &beams.ends {
+            let to = frame.cell_at(sensor.transform(end));
+            walk(&frame, from, to, is_hit, |index, is_hit| self.unvisit(index, is_hit));
+        }
+    }
+
+    /// The cells that are different from what they were when `changes` was empty, row by row.
+    fn tell(&mut self) -> &[Change] {
+        // A cell may have changed back and forth in between: only what is different in the end is told.
+        for i in 0..self.changes.len() {
+            let change = &mut self.changes[i];
+            let cell = Cell::new(change.cell.x - self.offset.x, change.cell.y - self.offset.y);
+            change.to = self.grid.at(cell);
+            if let Some(index) = self.grid.frame().index(cell) {
+                self.flipped[index / 64] = 0;
+            }
+        }
+        self.changes.retain(|change| change.to != change.from);
+        self.changes.sort_unstable_by_key(|c| (c.cell.y, c.cell.x));
         &self.changes
     }
 
-    /// Visits the cells of the line `from` .. `to`, its end only where that is a hit. Both are within the grid, and so is
-    /// what lies between; the walk is that of [`crate::grid::line`], over indices.
     fn beam(&mut self, from: Cell, to: Cell, is_hit: bool) {
         let frame = *self.grid.frame();
-        let (Some(mut index), Some(_)) = (frame.index(from), frame.index(to)) else { return };
-        let (dx, dy) = ((to.x - from.x).abs(), -(to.y - from.y).abs());
-        let aside = if to.x < from.x { -1 } else { 1 };
-        let width = isize::try_from(frame.width).unwrap_or(0);
-        let up = if to.y < from.y { -width } else { width };
-        let mut error = dx + dy;
-        for _ in 0..dx.max(-dy) {
-            self.pass(index);
-            let doubled = 2 * error;
-            if doubled >= dy {
-                error += dy;
-                index = index.wrapping_add_signed(aside);
+        walk(&frame, from, to, is_hit, |index, is_hit| {
+            if is_hit {
+                self.visit(index, true);
+            } else {
+                self.pass(index);
             }
-            if doubled <= dx {
-                error += dx;
-                index = index.wrapping_add_signed(up);
-            }
-        }
-        if is_hit {
-            self.visit(index, true);
-        }
+        });
     }
 
     /// Visits a cell without a hit.
@@ -158,16 +180,43 @@ impl OccupancyMap {
         let count = &mut self.counts.values_mut()[index];
         count.visits = count.visits.saturating_add(1);
         count.hits = count.hits.saturating_add(u16::from(is_hit));
+        self.look(index);
+    }
+
+    /// Brings what the map says of a cell up to its counts.
+    fn look(&mut self, index: usize) {
+        let count = self.counts.values()[index];
         let is_occupied =
             count.hits > 0 && f64::from(count.hits) / f64::from(count.visits) > self.rule.hit_ratio;
-        let now = if is_occupied { Occupancy::Occupied } else { Occupancy::Free };
+        let now = match count.visits {
+            0 => Occupancy::Unknown,
+            _ if is_occupied => Occupancy::Occupied,
+            _ => Occupancy::Free,
+        };
         let value = &mut self.grid.values_mut()[index];
         let was = *value;
         if was != now {
             *value = now;
             let cell = self.grid.frame().cell_of(index);
             let lattice = Cell::new(cell.x + self.offset.x, cell.y + self.offset.y);
-            self.changes.push(Change { cell: lattice, from: was, to: now });
+            let (word, bit) = (&mut self.flipped[index / 64], 1 << (index % 64));
+            if *word & bit == 0 {
+                *word |= bit;
+                self.changes.push(Change { cell: lattice, from: was, to: now });
+            }
+        }
+    }
+
+    /// Undoes one visit of a cell.
+    fn unvisit(&mut self, index: usize, was_hit: bool) {
+        let count = &mut self.counts.values_mut()[index];
+        if count.visits == u16::MAX {
+            return;
+        }
+        count.visits = count.visits.saturating_sub(1);
+        if count.hits > 0 || count.visits == 0 {
+            count.hits = count.hits.saturating_sub(u16::from(was_hit));
+            self.look(index);
         }
     }
 
@@ -212,6 +261,46 @@ impl OccupancyMap {
             }
         }
         (self.counts, self.grid, self.offset) = (counts, grid, offset);
+        // What changed in this round so far has got other indices.
+        self.flipped = vec![0; frame.len().div_ceil(64)];
+        for change in &self.changes {
+            let cell = Cell::new(change.cell.x - offset.x, change.cell.y - offset.y);
+            if let Some(index) = frame.index(cell) {
+                self.flipped[index / 64] |= 1 << (index % 64);
+            }
+        }
+    }
+}
+
+/// Visits the cells of the line `from` .. `to` by index, its end only where that is a hit. Both are within the grid, and
+/// so is what lies between; the walk is that of [`crate::grid::line`], over indices.
+fn walk(
+    frame: &GridFrame,
+    from: Cell,
+    to: Cell,
+    is_hit: bool,
+    mut visit: impl FnMut(usize, bool),
+) {
+    let (Some(mut index), Some(_)) = (frame.index(from), frame.index(to)) else { return };
+    let (dx, dy) = ((to.x - from.x).abs(), -(to.y - from.y).abs());
+    let aside = if to.x < from.x { -1 } else { 1 };
+    let width = isize::try_from(frame.width).unwrap_or(0);
+    let up = if to.y < from.y { -width } else { width };
+    let mut error = dx + dy;
+    for _ in 0..dx.max(-dy) {
+        visit(index, false);
+        let doubled = 2 * error;
+        if doubled >= dy {
+            error += dy;
+            index = index.wrapping_add_signed(aside);
+        }
+        if doubled <= dx {
+            error += dx;
+            index = index.wrapping_add_signed(up);
+        }
+    }
+    if is_hit {
+        visit(index, true);
     }
 }
 

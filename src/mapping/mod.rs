@@ -1,11 +1,25 @@
 //! Building an occupancy map from scans, in GMapping's manner (Grisetti, Stachniss, Burgard 2007).
 //!
-//! With one particle and trusted odometry this is mapping with known poses at keyframes, which is what the
-//! prior-knowledge study's simulated runs really did. The map's frame is the odometry frame: the pose the
-//! robot began in.
+//! [`Mapper`] is the way in. With one particle, no motion noise and no matching this is mapping with known poses at
+//! keyframes, which is what the prior-knowledge study's simulated runs really did; with other numbers it is the full
+//! Rao-Blackwellised particle filter. The map's frame is the odometry frame at the beginning: the pose the robot began in.
 
+mod beam_ends;
+mod hit_map;
 mod keyframe;
 mod map;
+mod mapper;
+mod motion_model;
+mod particle_filter;
+mod resampling;
+#[cfg(test)]
+mod room;
+mod scan_matcher;
+mod trajectories;
 
-pub use keyframe::{KeyframeMapper, KeyframeRule};
+pub use keyframe::KeyframeRule;
 pub use map::{Change, OccupancyMap, ScanRule};
+pub use mapper::Mapper;
+pub use motion_model::MotionNoise;
+pub use particle_filter::FilterRule;
+pub use scan_matcher::MatchRule;

@@ -1,7 +1,8 @@
 //! The robot's mind: perceive, find frontiers, choose, go (section 3.1, steps a to d).
 //!
-//! It sees odometry and scans and answers with velocities; it never sees the world. Its map's frame is the
-//! odometry frame.
+//! It sees odometry and scans and answers with velocities; it never sees the world. Locations, ways and waves are in the
+//! map's frame, where the mapper tells it to be ([`Mapper::pose`]): with trusted odometry that is the odometry frame. The
+//! operator and its local map stay in the odometry frame, which does not jump, as in ROS.
 
 use super::choice::{Choice, Chooser, Sight};
 use super::frontier::Frontier;
@@ -11,7 +12,7 @@ use super::tour::Tour;
 use super::utility::ranked;
 use crate::geometry::{Point, Pose};
 use crate::grid::{Cell, GridFrame, Occupancy, OccupancyGrid};
-use crate::mapping::{Change, KeyframeMapper, KeyframeRule, OccupancyMap, ScanRule};
+use crate::mapping::{Change, Mapper, OccupancyMap};
 use crate::math;
 use crate::navigation::{
     CostGrid, InflatedMap, LocalMap, LocalRule, Operator, OperatorRule, Steering, Wavefront,
@@ -87,7 +88,7 @@ struct Decided {
 pub struct Explorer {
     parameters: Parameters,
     chooser: Chooser,
-    mapper: KeyframeMapper,
+    mapper: Mapper,
     local: LocalMap,
     operator: Operator,
     phase: Phase,
@@ -110,30 +111,23 @@ pub struct Explorer {
 
 impl Explorer {
     /// A mind that has seen nothing, with the prior on the lattice of its map. `delays` is drawn from where choices take
-    /// time (`exploration.decision-jitter-s`).
+    /// time (`exploration.decision-jitter-s`), `particles` where odometry is not trusted.
     pub fn new(
         parameters: &Parameters,
         lidar: &Lidar,
         prior: Option<AlignedPrior>,
         delays: Stream,
+        particles: Stream,
     ) -> Self {
         let mapping = &parameters.mapping;
         let navigation = &parameters.navigation;
-        let scan_rule = ScanRule {
-            resolution: mapping.resolution_m,
-            // A beam at exactly the sensor's range still hit something.
-            clip_range: mapping.clip_range_m.unwrap_or(f64::INFINITY),
-            hit_ratio: mapping.hit_ratio,
-        };
-        let keyframes =
-            KeyframeRule { distance: mapping.keyframe_distance_m, turn: mapping.keyframe_turn_rad };
         let local_rule = LocalRule {
             median_beams: navigation.obstacle_median_beams as usize,
             ..LocalRule::default()
         };
         Self {
             chooser: Chooser::new(parameters, lidar, prior),
-            mapper: KeyframeMapper::new(keyframes, scan_rule),
+            mapper: Mapper::new(mapping.keyframes(), mapping.scans(), mapping.filter(), particles),
             local: LocalMap::new(local_rule),
             operator: Operator::new(OperatorRule {
                 max_linear: navigation.max_linear_m_s,
@@ -172,18 +166,27 @@ impl Explorer {
         self.keyframe_wanted || odometry.stamp >= self.next_local_map
     }
 
-    /// Looks at `scan`, taken at `odometry`, and tells the map cells that changed.
-    pub fn take_scan(&mut self, odometry: Odometry, scan: &Scan) -> &[Change] {
+    /// Looks at `scan`, taken at `odometry`, and tells the map cells that changed where it was taken into the map.
+    pub fn take_scan(&mut self, odometry: Odometry, scan: &Scan) -> Option<&[Change]> {
         if odometry.stamp >= self.next_local_map {
             self.next_local_map = odometry.stamp + LOCAL_MAP_PERIOD;
             self.local.update(odometry.pose, scan);
         }
         if !self.keyframe_wanted {
-            return &[];
+            return None;
         }
         self.keyframe_wanted = false;
         self.map_changed = true;
-        self.mapper.integrate(odometry.pose, scan)
+        let before = self.mapper.pose(odometry.pose);
+        self.mapper.integrate(odometry.pose, scan);
+        let after = self.mapper.pose(odometry.pose);
+        if let Phase::Driving(journey) = &mut self.phase
+            && before.position().distance(after.position()) > PROGRESS
+        {
+            // It is elsewhere than it thought: what it came closer to so far says nothing.
+            journey.closest = (f64::INFINITY, odometry.stamp);
+        }
+        Some(self.mapper.changes())
     }
 
     /// The velocity for the next control cycle.
@@ -223,8 +226,24 @@ impl Explorer {
         self.given_up.len()
     }
 
-    /// How many frontiers there are as seen from `pose`, given up or not.
-    pub fn open_frontiers(&self, pose: Pose) -> usize {
+    /// Where in the map it is, when odometry tells `odometry`.
+    pub fn pose(&self, odometry: Pose) -> Pose {
+        self.mapper.pose(odometry)
+    }
+
+    /// Whether it estimates its pose, as odometry is not trusted.
+    pub fn estimates(&self) -> bool {
+        self.mapper.estimates()
+    }
+
+    /// Where it was at each scan taken into the map, as it looks from now; empty where odometry is trusted.
+    pub fn way(&self) -> Vec<Pose> {
+        self.mapper.way()
+    }
+
+    /// How many frontiers there are as seen from where odometry tells `odometry`, given up or not.
+    pub fn open_frontiers(&self, odometry: Pose) -> usize {
+        let pose = self.mapper.pose(odometry);
         let radius = self.parameters.navigation.inflation_radius_cells;
         let costs = inflate(&self.map_with_place(pose), radius);
         self.chooser.frontiers(Sight { map: self.map(), costs: &costs, pose }).len()
@@ -235,11 +254,12 @@ impl Explorer {
         self.last_choice.take()
     }
 
-    /// The planned way (odometry frame) from `pose`, if it changed since this was last asked.
-    pub fn take_path(&mut self, pose: Pose) -> Option<Vec<Point>> {
+    /// The planned way (map frame) from where odometry tells `odometry`, if it changed since this was last asked.
+    pub fn take_path(&mut self, odometry: Pose) -> Option<Vec<Point>> {
         if !std::mem::take(&mut self.path_changed) {
             return None;
         }
+        let pose = self.mapper.pose(odometry);
         let frame = *self.map().grid().frame();
         let wave = self.wave.as_mut()?;
         let start = nearest_reached(wave, frame.cell_at(pose.position()))?;
@@ -247,6 +267,7 @@ impl Explorer {
     }
 
     fn navigate(&mut self, odometry: Odometry) {
+        let odometry = Odometry { pose: self.mapper.pose(odometry.pose), ..odometry };
         if let Some(decided) = self.decided.take_if(|decided| decided.due <= odometry.stamp) {
             // Its way was planned on the map of then, whose cells may have got other numbers since.
             self.map_changed = true;

@@ -2,6 +2,7 @@
 //! leaves out have what its authors' released configuration sets (measured facts), and a manifest that
 //! relies on one says so with a `why`.
 
+use crate::mapping::{FilterRule, KeyframeRule, MatchRule, MotionNoise, ScanRule};
 use crate::studies::parameters;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -54,8 +55,9 @@ parameters!(
 parameters!(
     /// Building the map from scans, in GMapping's manner.
     Mapping {
-        /// Number of particles: 1, mapping with known poses, as the simulated study really ran. More are not there yet.
-        #[schemars(range(min = 1, max = 1))]
+        /// Number of particles, 1 to 1000. With 1, no motion noise and no matching, maps are made with the poses of odometry,
+        /// as the simulated study really ran.
+        #[schemars(range(min = 1, max = 1000))]
         particles: u32 = 1,
         /// Side of a map cell (m), above 0.
         #[schemars(extend("exclusiveMinimum" = 0))]
@@ -72,8 +74,106 @@ parameters!(
         /// A visited cell is occupied where more than this share of its visits were hits, 0 to 1.
         #[schemars(range(min = 0.0, max = 1.0))]
         hit_ratio: f64 = 0.05,
+        /// Particles scatter in position by this share of the way, at each scan (GMapping's `srr`), 0 or more.
+        #[serde(skip_serializing_if = "is_default")]
+        #[schemars(range(min = 0.0))]
+        motion_noise_srr: f64 = 0.0,
+        /// ... in heading by this (rad) per metre (`srt`), 0 or more.
+        #[serde(skip_serializing_if = "is_default")]
+        #[schemars(range(min = 0.0))]
+        motion_noise_srt: f64 = 0.0,
+        /// ... in position by this (m) per radian (`str`), 0 or more.
+        #[serde(skip_serializing_if = "is_default")]
+        #[schemars(range(min = 0.0))]
+        motion_noise_str: f64 = 0.0,
+        /// ... in heading by this share of the turn (`stt`), 0 or more.
+        #[serde(skip_serializing_if = "is_default")]
+        #[schemars(range(min = 0.0))]
+        motion_noise_stt: f64 = 0.0,
+        /// First step of the search for where a scan fits (m), 0 or more; 0 with `match-angular-step-rad` 0 is no search (`lstep`).
+        #[serde(skip_serializing_if = "is_default")]
+        #[schemars(range(min = 0.0))]
+        match_linear_step_m: f64 = 0.0,
+        /// ... of heading (rad), 0 or more (`astep`).
+        #[serde(skip_serializing_if = "is_default")]
+        #[schemars(range(min = 0.0))]
+        match_angular_step_rad: f64 = 0.0,
+        /// How often these steps are halved, 0 to 20 (`iterations`).
+        #[serde(skip_serializing_if = "is::<5>")]
+        #[schemars(range(min = 0, max = 20))]
+        match_iterations: u32 = 5,
+        /// In the search, a beam that ends d m off scores exp(-d^2 / this) (m^2), above 0 (`sigma`).
+        #[serde(skip_serializing_if = "is_thousandths::<50>")]
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        match_sigma_m2: f64 = 0.05,
+        /// How many cells to either side a beam looks for the obstacle it hit, 0 to 10 (`kernelSize`).
+        #[serde(skip_serializing_if = "is::<1>")]
+        #[schemars(range(min = 0, max = 10))]
+        match_kernel_cells: u32 = 1,
+        /// A scan whose score, at most its number of beams, is not above this leaves a particle where it moved to, 0 or more
+        /// (`minimumScore`).
+        #[serde(skip_serializing_if = "is_default")]
+        #[schemars(range(min = 0.0))]
+        match_minimum_score: f64 = 0.0,
+        /// Beams left out between two that are matched and weighed, 0 or more (`lskip`).
+        #[serde(skip_serializing_if = "is_default")]
+        match_skip_beams: u32 = 0,
+        /// In weights, a beam that ends d m off counts -d^2 / this (m^2), above 0 (`lsigma`).
+        #[serde(skip_serializing_if = "is_thousandths::<75>")]
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        likelihood_sigma_m2: f64 = 0.075,
+        /// Log weights are divided by this and the number of particles, above 0 (`ogain`).
+        #[serde(skip_serializing_if = "is_thousandths::<3000>")]
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        likelihood_gain: f64 = 3.0,
+        /// Particles are drawn anew where their effective number falls below this share, 0 to 1 (`resampleThreshold`).
+        #[serde(skip_serializing_if = "is_thousandths::<500>")]
+        #[schemars(range(min = 0.0, max = 1.0))]
+        resample_threshold: f64 = 0.5,
     }
 );
+
+impl Mapping {
+    /// When a scan is taken into the map.
+    pub fn keyframes(&self) -> KeyframeRule {
+        KeyframeRule { distance: self.keyframe_distance_m, turn: self.keyframe_turn_rad }
+    }
+
+    /// How a scan is taken in.
+    pub fn scans(&self) -> ScanRule {
+        ScanRule {
+            resolution: self.resolution_m,
+            // A beam at exactly the sensor's range still hit something.
+            clip_range: self.clip_range_m.unwrap_or(f64::INFINITY),
+            hit_ratio: self.hit_ratio,
+        }
+    }
+
+    /// Where it is taken to have been.
+    pub fn filter(&self) -> FilterRule {
+        FilterRule {
+            particles: self.particles,
+            motion: MotionNoise {
+                srr: self.motion_noise_srr,
+                srt: self.motion_noise_srt,
+                str: self.motion_noise_str,
+                stt: self.motion_noise_stt,
+            },
+            matching: MatchRule {
+                linear_step: self.match_linear_step_m,
+                angular_step: self.match_angular_step_rad,
+                iterations: self.match_iterations,
+                sigma: self.match_sigma_m2,
+                kernel: self.match_kernel_cells,
+                minimum_score: self.match_minimum_score,
+                likelihood_sigma: self.likelihood_sigma_m2,
+                skip: self.match_skip_beams,
+            },
+            likelihood_gain: self.likelihood_gain,
+            resample_threshold: self.resample_threshold,
+        }
+    }
+}
 
 parameters!(
     /// Planning on the inflated map and driving, after Nav2D's behaviour.
@@ -298,4 +398,10 @@ fn is_default<T: Default + PartialEq>(value: &T) -> bool {
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over references")]
 fn is<const N: u32>(value: &u32) -> bool {
     *value == N
+}
+
+/// Whether a parameter is `N` / 1000.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over references")]
+fn is_thousandths<const N: u32>(value: &f64) -> bool {
+    *value == f64::from(N) / 1000.0
 }

@@ -1,6 +1,7 @@
 //! One trial: the simulator on one end, the mind on the other, and what is measured in between.
 
 mod plan_figure;
+mod pose_errors;
 mod recorder;
 mod reference;
 mod start;
@@ -22,6 +23,7 @@ use crate::sim::{Distribution, DriveNoise, OdometryNoise, Scene, Simulator, Step
 use crate::studies::recording::Recording;
 use crate::studies::{Outcome, Stopwatch, TrialRecord, TrialSpec};
 use crate::units::{Seconds, Tick};
+use pose_errors::PoseErrors;
 use recorder::Recorder;
 use reference::Reference;
 use std::collections::BTreeMap;
@@ -155,8 +157,10 @@ fn enact(
             &prepared.lidar,
             prepared.prior.clone(),
             spec.seeds.stream("decision-delay"),
+            spec.seeds.stream("slam"),
         )
         .with_tour(tour),
+        errors: PoseErrors::default(),
         trace: Trace::new(
             prepared.reference.total(),
             measurement.crossing,
@@ -181,6 +185,8 @@ struct Mission<'a> {
     recorder: Option<Recorder<'a>>,
     /// Further measures taken on the way.
     further: BTreeMap<String, f64>,
+    /// How far off poses are, where they are estimated.
+    errors: PoseErrors,
     /// Where the robot starts in the frame of the manifest's start, where that is not the origin. The mind knows it: its
     /// map, its prior and what coverage is measured against share that one frame.
     known_start: Option<Pose>,
@@ -226,11 +232,13 @@ impl Mission<'_> {
         #[expect(clippy::cast_precision_loss, reason = "few")]
         measure("frontiers-given-up", self.mind.given_up() as f64);
         measure("contacts", f64::from(self.sim.contacts()));
+        for (name, value) in self.errors.measures(&self.mind.way()) {
+            measure(name, value);
+        }
         if self.setup.parameters.measurement.mean_speed {
             let (distance, time) = (self.sim.travelled(), self.sim.now().seconds().get());
-            record
-                .measures
-                .insert("mean-speed-m-s".to_owned(), (time > 0.0).then(|| distance / time));
+            let mean = (time > 0.0).then(|| distance / time);
+            record.measures.insert("mean-speed-m-s".to_owned(), mean);
         }
         if self.setup.parameters.measurement.further {
             let distance = self.sim.travelled();
@@ -254,18 +262,25 @@ impl Mission<'_> {
             return;
         }
         self.sim.read_scan(&mut self.scan);
-        let changes = self.mind.take_scan(odometry, &self.scan);
-        if changes.is_empty() {
-            return;
-        }
+        let Some(changes) = self.mind.take_scan(odometry, &self.scan) else { return };
+        let is_new = !changes.is_empty();
         for change in changes {
             let reference = &self.prepared.reference;
             let was = reference.covers(change.cell, change.from);
             let is = reference.covers(change.cell, change.to);
             self.trace.cover(i64::from(is) - i64::from(was));
         }
-        if let Some(recorder) = &mut self.recorder {
+        if let Some(recorder) = &mut self.recorder
+            && is_new
+        {
             recorder.map_changed(changes, &self.scan, self.sim.true_pose());
+        }
+        if self.mind.estimates() {
+            let truth = self.setup.start.relative(self.sim.true_pose());
+            self.errors.note(truth, self.mind.pose(odometry.pose), odometry.pose);
+        }
+        if !is_new {
+            return;
         }
         let crossed = self.trace.note_coverage(self.sim.now(), self.sim.travelled());
         if self.setup.parameters.measurement.further {

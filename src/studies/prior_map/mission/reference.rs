@@ -5,7 +5,7 @@
 
 use crate::geometry::{Bounds, Outline, Point, Pose};
 use crate::grid::{Cell, Grid, GridFrame, Occupancy};
-use crate::mapping::{OccupancyMap, ScanRule};
+use crate::mapping::OccupancyMap;
 use crate::robot::{Lidar, Scan};
 use crate::sim::WallSweep;
 use crate::studies::prior_map::{Coverage, Setup};
@@ -36,11 +36,7 @@ impl Reference {
         let resolution = mapping.resolution_m;
         let ideal = all_round(lidar);
         let sweep = WallSweep::new(visible, &ideal);
-        let mut map = OccupancyMap::new(ScanRule {
-            resolution,
-            clip_range: mapping.clip_range_m.unwrap_or(f64::INFINITY),
-            hit_ratio: mapping.hit_ratio,
-        });
+        let mut map = OccupancyMap::new(mapping.scans());
         let mut scan = Scan {
             stamp: Tick(0),
             mount: ideal.mount,

@@ -1,0 +1,36 @@
+//! Where the beams of a scan end.
+
+use crate::geometry::{Point, Pose};
+use crate::math;
+use crate::robot::Scan;
+
+/// The beams of one scan that tell something, cut to the usable range.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct BeamEnds {
+    /// Where the sensor sits on the robot (m, rad).
+    pub(super) mount: Pose,
+    /// Where beams end in the sensor's frame (m), and whether something was hit there: not where the beam was cut.
+    pub(super) ends: Vec<(Point, bool)>,
+}
+
+impl BeamEnds {
+    /// The beams of `scan`, cut to `clip_range` m. Beams without return tell nothing (prior-map facts, section 4).
+    pub(super) fn of(scan: &Scan, clip_range: f64) -> Self {
+        let end = |(i, &range): (usize, &f64)| {
+            if !range.is_finite() {
+                return None;
+            }
+            let cut = range.min(clip_range);
+            let angle = scan.angle(i);
+            let local = Point::new(cut * math::cos(angle), cut * math::sin(angle));
+            Some((local, range < clip_range))
+        };
+        Self { mount: scan.mount, ends: scan.ranges.iter().enumerate().filter_map(end).collect() }
+    }
+
+    /// Where something was hit, in the robot's frame (m), every `every`th of them.
+    pub(super) fn hits(&self, every: usize) -> impl Iterator<Item = Point> {
+        let hits = self.ends.iter().filter(|(_, is_hit)| *is_hit).step_by(every.max(1));
+        hits.map(|(end, _)| self.mount.transform(*end))
+    }
+}

@@ -1,0 +1,274 @@
+//! From scans and odometry to where the robot is and the map.
+
+use super::beam_ends::BeamEnds;
+use super::keyframe::{KeyframeRule, Keyframes};
+use super::particle_filter::{FilterRule, ParticleFilter};
+use super::trajectories::NodeId;
+use super::{Change, OccupancyMap, ScanRule};
+use crate::geometry::Pose;
+use crate::rng::Stream;
+use crate::robot::Scan;
+
+/// Builds a map from the scans at keyframes, with the poses of odometry where the filter's rule trusts it, and else with those
+/// of the best particle.
+#[derive(Debug)]
+pub struct Mapper {
+    keyframes: Keyframes,
+    rule: ScanRule,
+    map: OccupancyMap,
+    slam: Option<Slam>,
+}
+
+/// What there is besides a map where odometry is not trusted.
+#[derive(Debug)]
+struct Slam {
+    filter: ParticleFilter,
+    /// Odometry since the last scan that was taken in, in the robot's frame at each step.
+    increments: Vec<Pose>,
+    /// Odometry at the last scan that was taken in.
+    odometry: Pose,
+    /// All scans taken in: the map is drawn anew from them where another particle becomes best.
+    scans: Vec<BeamEnds>,
+    /// Where the way ends that the map shows.
+    shown: Option<NodeId>,
+}
+
+impl Mapper {
+    /// A mapper that has seen nothing; particles draw from `stream`.
+    pub fn new(
+        keyframes: KeyframeRule,
+        scan_rule: ScanRule,
+        filter: FilterRule,
+        stream: Stream,
+    ) -> Self {
+        let slam = (!filter.trusts_odometry()).then(|| Slam {
+            filter: ParticleFilter::new(filter, scan_rule.resolution, stream),
+            increments: Vec::new(),
+            odometry: Pose::default(),
+            scans: Vec::new(),
+            shown: None,
+        });
+        let map = OccupancyMap::new(scan_rule);
+        Self { keyframes: Keyframes::new(keyframes), rule: scan_rule, map, slam }
+    }
+
+    /// The map so far: that of the best particle.
+    pub fn map(&self) -> &OccupancyMap {
+        &self.map
+    }
+
+    /// Whether poses are estimated: odometry is not trusted.
+    pub fn estimates(&self) -> bool {
+        self.slam.is_some()
+    }
+
+    /// Where in the map the robot is, when odometry tells `odometry`: the best particle's pose at the last scan taken in,
+    /// moved on as odometry did since.
+    pub fn pose(&self, odometry: Pose) -> Pose {
+        match &self.slam {
+            Some(slam) if slam.shown.is_some() => {
+                slam.filter.pose().compose(slam.odometry.relative(odometry))
+            }
+            _ => odometry,
+        }
+    }
+
+    /// Where the robot was at each scan taken in, as it looks from now: the way of the best particle. Empty where odometry
+    /// is trusted.
+    pub fn way(&self) -> Vec<Pose> {
+        let shown = self.slam.as_ref().and_then(|slam| Some((slam, slam.shown?)));
+        shown.map_or_else(Vec::new, |(slam, node)| slam.filter.trajectories().way_to(node))
+    }
+
+    /// The cells that the last scan taken in changed.
+    pub fn changes(&self) -> &[Change] {
+        self.map.changes()
+    }
+
+    /// Whether a scan taken at `odometry` is to be taken into the map. To be told of every scan, as particles move with the
+    /// increments in between.
+    pub fn wants(&mut self, odometry: Pose) -> bool {
+        if let (Some(slam), Some(last)) = (&mut self.slam, self.keyframes.last())
+            && last != odometry
+        {
+            slam.increments.push(last.relative(odometry));
+        }
+        self.keyframes.wants(odometry)
+    }
+
+    /// Takes `scan`, taken at `odometry`, into the map and tells the cells that changed, those among them that are different
+    /// because another particle became best.
+    pub fn integrate(&mut self, odometry: Pose, scan: &Scan) -> &[Change] {
+        self.keyframes.taken(odometry);
+        let Some(slam) = &mut self.slam else { return self.map.integrate(odometry, scan) };
+        let beams = BeamEnds::of(scan, self.rule.clip_range);
+        if slam.shown.is_none() {
+            slam.filter.begin(odometry, &beams);
+        } else {
+            slam.filter.advance(&slam.increments, &beams);
+        }
+        slam.increments.clear();
+        slam.odometry = odometry;
+        slam.scans.push(beams);
+        let Some(node) = slam.filter.node() else { return &[] };
+        let ways = slam.filter.trajectories();
+        let (removed, added) = ways.between(slam.shown.replace(node), node);
+        let scan_at = |&node: &NodeId| {
+            let (pose, scan) = ways.at(node);
+            (pose, &slam.scans[scan])
+        };
+        self.map.redraw(removed.iter().map(scan_at), added.iter().map(scan_at))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::{Cell, Occupancy};
+    use crate::mapping::{MatchRule, MotionNoise, room};
+    use crate::rng::Seeds;
+    use std::collections::BTreeMap;
+
+    const KEYFRAMES: KeyframeRule = KeyframeRule { distance: 0.3, turn: 0.3 };
+    const SCANS: ScanRule = ScanRule { resolution: 0.05, clip_range: 9.0, hit_ratio: 0.25 };
+    const GMAPPING: FilterRule = FilterRule {
+        particles: 12,
+        motion: MotionNoise { srr: 0.1, srt: 0.2, str: 0.1, stt: 0.2 },
+        matching: MatchRule {
+            linear_step: 0.05,
+            angular_step: 0.05,
+            iterations: 5,
+            sigma: 0.05,
+            kernel: 1,
+            minimum_score: 0.0,
+            likelihood_sigma: 0.075,
+            skip: 0,
+        },
+        likelihood_gain: 3.0,
+        resample_threshold: 0.5,
+    };
+    /// Nothing moves a particle but odometry.
+    const STILL: FilterRule = FilterRule {
+        particles: 1,
+        motion: MotionNoise { srr: 0.0, srt: 0.0, str: 0.0, stt: 0.0 },
+        matching: MatchRule { linear_step: 0.0, angular_step: 0.0, ..GMAPPING.matching },
+        ..GMAPPING
+    };
+
+    fn mapper(filter: FilterRule) -> Mapper {
+        Mapper::new(KEYFRAMES, SCANS, filter, Seeds::new(5, vec![]).stream("slam"))
+    }
+
+    /// True poses on rounds in the room, and odometry's, which drift.
+    fn rounds() -> Vec<(Pose, Pose)> {
+        let mut drift = Seeds::new(3, vec![]).stream("odometry");
+        let (mut truth, mut odometry) = (Pose::default(), Pose::default());
+        (0..300)
+            .map(|_| {
+                let step = Pose::new(0.05, 0.0, 0.05);
+                let (along, around) = drift.normal_pair();
+                truth = truth.compose(step);
+                odometry = odometry.compose(Pose::new(
+                    step.x + 0.006 * along,
+                    0.0,
+                    step.heading + 0.004 * around - 0.001,
+                ));
+                (truth, odometry)
+            })
+            .collect()
+    }
+
+    /// Drives the rounds and shows `each` the mapper, the true pose and odometry after every scan that was taken in.
+    fn drive(mapper: &mut Mapper, mut each: impl FnMut(&Mapper, Pose, Pose)) {
+        for (truth, odometry) in rounds() {
+            if mapper.wants(odometry) {
+                mapper.integrate(odometry, &room::scan(truth));
+                each(mapper, truth, odometry);
+            }
+        }
+    }
+
+    fn known(map: &OccupancyMap) -> BTreeMap<Cell, Occupancy> {
+        let grid = map.grid();
+        let lattice = |cell: Cell| Cell::new(cell.x + map.offset().x, cell.y + map.offset().y);
+        let cells = grid.frame().cells().map(|cell| (lattice(cell), grid.at(cell)));
+        cells.filter(|(_, value)| *value != Occupancy::Unknown).collect()
+    }
+
+    #[test]
+    fn a_filter_that_may_not_move_is_mapping_with_odometry() {
+        assert!(STILL.trusts_odometry() && !GMAPPING.trusts_odometry());
+        // Two particles go through the filter, one does not: with nothing to tell them apart all are odometry.
+        let (mut trusting, mut filtering) = (mapper(STILL), mapper(FilterRule { particles: 2, ..STILL }));
+        assert!(!trusting.estimates() && filtering.estimates());
+        let mut poses = Vec::new();
+        drive(&mut trusting, |mapper, _, odometry| {
+            assert_eq!(mapper.pose(odometry), odometry);
+            poses.push(odometry);
+        });
+        drive(&mut filtering, |mapper, _, odometry| {
+            assert!(mapper.pose(odometry).position().distance(odometry.position()) < 1e-9);
+        });
+        assert!(trusting.way().is_empty());
+        assert_eq!(filtering.way().len(), poses.len());
+        assert_eq!(known(trusting.map()), known(filtering.map()));
+    }
+
+    #[test]
+    fn particles_find_where_odometry_loses_the_way() {
+        let (mut worst, mut drifted) = (0.0_f64, 0.0_f64);
+        // The map's frame is where odometry began, and the first pose is one step from there.
+        let start = rounds()[0];
+        let mut mapper = mapper(GMAPPING);
+        drive(&mut mapper, |mapper, truth, odometry| {
+            let expected = start.1.compose(start.0.relative(truth));
+            worst = worst.max(mapper.pose(odometry).position().distance(expected.position()));
+            drifted = drifted.max(odometry.position().distance(expected.position()));
+        });
+        assert!(worst < 0.1 && drifted > 0.3, "{worst} m, odometry {drifted} m");
+    }
+
+    /// What is told adds up to the map, and the map is what the best particle's way makes of the scans: also where another
+    /// particle became best.
+    #[test]
+    fn changes_tell_the_whole_story_across_changes_of_the_best_particle() {
+        let vague = FilterRule {
+            matching: MatchRule { skip: 29, iterations: 1, ..GMAPPING.matching },
+            ..GMAPPING
+        };
+        let mut told = BTreeMap::new();
+        let (mut scans, mut ways) = (Vec::new(), Vec::new());
+        let mut mapper = mapper(vague);
+        drive(&mut mapper, |mapper, truth, _| {
+            scans.push(room::scan(truth));
+            ways.push(mapper.way());
+            for change in mapper.changes() {
+                let was = told.insert(change.cell, change.to).unwrap_or(Occupancy::Unknown);
+                assert_eq!(was, change.from);
+                assert_ne!(change.from, change.to);
+            }
+            told.retain(|_, value| *value != Occupancy::Unknown);
+            assert_eq!(known(mapper.map()), told);
+            let mut afresh = OccupancyMap::new(SCANS);
+            for (pose, scan) in mapper.way().into_iter().zip(&scans) {
+                afresh.integrate(pose, scan);
+            }
+            assert_eq!(known(&afresh), told);
+        });
+        let switches = ways.windows(2).filter(|pair| !pair[1].starts_with(&pair[0])).count();
+        assert!(switches > 3, "another particle became best {switches} times");
+    }
+
+    #[test]
+    fn the_same_again_to_the_bit_and_another_stream_differs() {
+        let ends = |stream: &str| {
+            let stream = Seeds::new(5, vec![]).stream(stream);
+            let mut mapper = Mapper::new(KEYFRAMES, SCANS, GMAPPING, stream);
+            drive(&mut mapper, |_, _, _| {});
+            let bits = |pose: &Pose| [pose.x, pose.y, pose.heading].map(f64::to_bits);
+            mapper.way().iter().map(bits).collect::<Vec<_>>()
+        };
+        assert_eq!(ends("slam"), ends("slam"));
+        assert_ne!(ends("slam"), ends("other"));
+    }
+}

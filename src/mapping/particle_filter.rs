@@ -1,0 +1,171 @@
+//! The Rao-Blackwellised particle filter: each particle is a way of the robot with the map that follows from it
+//! (Grisetti, Stachniss, Burgard 2007; GMapping's `GridSlamProcessor`).
+
+use super::beam_ends::BeamEnds;
+use super::hit_map::{HitMap, Place};
+use super::motion_model::MotionNoise;
+use super::resampling::{effective, normalised, systematic};
+use super::scan_matcher::{Beams, MatchRule, ScanMatcher};
+use super::trajectories::{NodeId, Trajectories};
+use crate::geometry::Pose;
+use crate::rng::Stream;
+
+/// The numbers of the filter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FilterRule {
+    /// How many particles, at least 1.
+    pub particles: u32,
+    /// How they move.
+    pub motion: MotionNoise,
+    /// How each matches scans to its map.
+    pub matching: MatchRule,
+    /// Weights are smoothed by this (above 0); GMapping's `ogain`.
+    pub likelihood_gain: f64,
+    /// Particles are drawn anew where their effective number falls below this share; `resampleThreshold`.
+    pub resample_threshold: f64,
+}
+
+impl FilterRule {
+    /// Whether odometry is trusted: then there is one way, and it is known.
+    pub fn trusts_odometry(&self) -> bool {
+        self.particles <= 1 && self.motion.is_none() && !self.matching.searches()
+    }
+}
+
+#[derive(Debug, Clone)]
+struct Particle {
+    pose: Pose,
+    map: HitMap,
+    /// Since particles were last drawn.
+    log_weight: f64,
+    /// Since the beginning.
+    total: f64,
+    node: Option<NodeId>,
+}
+
+/// The filter.
+#[derive(Debug)]
+pub(super) struct ParticleFilter {
+    rule: FilterRule,
+    matcher: ScanMatcher,
+    particles: Vec<Particle>,
+    trajectories: Trajectories,
+    best: usize,
+    scans: u64,
+    stream: Stream,
+    beams: Beams,
+}
+
+impl ParticleFilter {
+    /// A filter over maps with cells of `resolution` m that has seen nothing.
+    pub(super) fn new(rule: FilterRule, resolution: f64, stream: Stream) -> Self {
+        let nobody = Particle {
+            pose: Pose::default(),
+            map: HitMap::new(rule.matching.kernel),
+            log_weight: 0.0,
+            total: 0.0,
+            node: None,
+        };
+        Self {
+            matcher: ScanMatcher::new(rule.matching, resolution),
+            particles: vec![nobody; rule.particles.max(1) as usize],
+            rule,
+            trajectories: Trajectories::default(),
+            best: 0,
+            scans: 0,
+            stream,
+            beams: Beams::default(),
+        }
+    }
+
+    /// The first scan, taken at `pose`: all particles are there.
+    pub(super) fn begin(&mut self, pose: Pose, scan: &BeamEnds) {
+        for particle in &mut self.particles {
+            particle.pose = pose;
+        }
+        self.register(scan);
+    }
+
+    /// A further scan, taken after odometry told `increments`.
+    pub(super) fn advance(&mut self, increments: &[Pose], scan: &BeamEnds) {
+        let Self { rule, matcher, beams, stream, scans, .. } = self;
+        beams.take(scan.hits(rule.matching.skip as usize + 1));
+        for (i, particle) in (0..).zip(&mut self.particles) {
+            let stream = stream.at(*scans << PARTICLE_BITS | i);
+            for &increment in increments {
+                particle.pose = if rule.motion.is_none() {
+                    particle.pose.compose(increment)
+                } else {
+                    rule.motion.draw(particle.pose, increment, stream)
+                };
+            }
+            if rule.matching.searches() {
+                let (pose, fits) = matcher.climb(&particle.map, beams, particle.pose);
+                if fits {
+                    particle.pose = pose;
+                }
+            }
+            let log_likelihood = matcher.log_likelihood(&particle.map, beams, particle.pose);
+            particle.log_weight += log_likelihood;
+            particle.total += log_likelihood;
+        }
+        self.resample();
+        self.register(scan);
+    }
+
+    /// The pose of the best particle: the one whose scans were likeliest, all in all.
+    pub(super) fn pose(&self) -> Pose {
+        self.particles[self.best].pose
+    }
+
+    /// Where the way of the best particle ends.
+    pub(super) fn node(&self) -> Option<NodeId> {
+        self.particles[self.best].node
+    }
+
+    /// The ways of all particles.
+    pub(super) fn trajectories(&self) -> &Trajectories {
+        &self.trajectories
+    }
+
+    /// Draws particles anew where too few of them count (Grisetti et al. 2007, section 4.2).
+    fn resample(&mut self) {
+        let log_weights: Vec<f64> = self.particles.iter().map(|p| p.log_weight).collect();
+        let weights = normalised(&log_weights, self.rule.likelihood_gain);
+        #[expect(clippy::cast_precision_loss, reason = "few")]
+        let enough = self.rule.resample_threshold * weights.len() as f64;
+        if effective(&weights) >= enough {
+            return;
+        }
+        let everyone = weights.len() as u64;
+        let offset = self.stream.at(self.scans << PARTICLE_BITS | everyone).uniform();
+        let chosen = systematic(&weights, offset);
+        let mut old: Vec<Option<Particle>> = self.particles.drain(..).map(Some).collect();
+        for (n, &i) in chosen.iter().enumerate() {
+            let is_last = chosen.get(n + 1) != Some(&i);
+            let particle = if is_last { old[i].take() } else { old[i].clone() };
+            self.particles.extend(particle.map(|p| Particle { log_weight: 0.0, ..p }));
+        }
+    }
+
+    /// Takes the scan into every particle's map, and tells which is best.
+    fn register(&mut self, scan: &BeamEnds) {
+        let scale = self.matcher.scale();
+        let hits: Vec<_> = scan.hits(1).collect();
+        for particle in &mut self.particles {
+            let pose = particle.pose;
+            particle.map.register(hits.iter().map(|&hit| Place::of(pose.transform(hit), scale)));
+            particle.node = Some(self.trajectories.extend(particle.node, pose));
+        }
+        self.scans += 1;
+        self.best = 0;
+        for (i, particle) in self.particles.iter().enumerate() {
+            if particle.total > self.particles[self.best].total {
+                self.best = i;
+            }
+        }
+    }
+}
+
+/// Streams are numbered by scan, then by particle: at most a million of these.
+const PARTICLE_BITS: u32 = 20;

@@ -1,0 +1,342 @@
+//! Where in a particle's map a scan fits best, and how likely the scan is there (GMapping's `ScanMatcher`).
+
+use super::hit_map::{CELL_BITS, HitMap, MAX_KERNEL, Place};
+use crate::geometry::{Point, Pose};
+use crate::math;
+
+/// How scans are matched to maps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MatchRule {
+    /// First step of the search along x and y (m); GMapping's `lstep`.
+    pub linear_step: f64,
+    /// First step of the search in heading (rad); `astep`.
+    pub angular_step: f64,
+    /// How often steps are halved; `iterations`.
+    pub iterations: u32,
+    /// A beam that ends d m from the nearest mean scores exp(-d^2 / this) (m^2, above 0); `sigma`.
+    pub sigma: f64,
+    /// Cells to either side in which a mean is sought, 10 at most; `kernelSize`.
+    pub kernel: u32,
+    /// The found pose is taken where the scan's score there is above this (0 to the number of beams); `minimumScore`.
+    pub minimum_score: f64,
+    /// ... and its log likelihood is the sum of -d^2 / this (m^2, above 0); `lsigma`.
+    pub likelihood_sigma: f64,
+    /// Beams left out between two that are looked at; `lskip`.
+    pub skip: u32,
+}
+
+impl MatchRule {
+    /// Whether the search can move at all.
+    pub fn searches(&self) -> bool {
+        self.linear_step > 0.0 || self.angular_step > 0.0
+    }
+}
+
+/// A beam without a mean in its window counts in the likelihood as if it were this far off (m^2); GMapping's constant.
+const NO_HIT: f64 = 0.5;
+/// What a beam scores at most.
+const FULL: u16 = u16::MAX;
+/// Beams between two looks at whether a pose can still win.
+const CHUNK: usize = 16;
+const TABLE: usize = 4096;
+
+/// Scores and likelihoods of beams, as whole numbers.
+#[derive(Debug)]
+pub(super) struct ScanMatcher {
+    rule: MatchRule,
+    /// Units in a metre.
+    scale: f64,
+    /// Score by squared distance (units), shifted down; 0 beyond the window.
+    scores: Box<[u16; TABLE]>,
+    shift: u32,
+    /// Squared distances (units) up to this are within the window.
+    window: u32,
+}
+
+/// The beams of a scan as the search uses them, and memory that it needs.
+#[derive(Debug, Default)]
+pub(super) struct Beams {
+    /// Ends in the robot's frame (m).
+    ends: Vec<Point>,
+    /// ... turned to the current heading (units).
+    turned: Vec<Place>,
+    tried: Vec<Place>,
+    best: Vec<Place>,
+}
+
+impl Beams {
+    /// Takes the `ends` of a scan, in the robot's frame (m).
+    pub(super) fn take(&mut self, ends: impl Iterator<Item = Point>) {
+        let ends: Vec<Point> = ends.collect();
+        self.ends.clear();
+        // Far neighbours first, so that few beams tell whether a pose can win. The sum is of whole numbers: no order
+        // changes it.
+        for first in 0..CHUNK {
+            self.ends.extend(ends.iter().skip(first).step_by(CHUNK));
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Move {
+    Front,
+    Back,
+    Left,
+    Right,
+    TurnLeft,
+    TurnRight,
+}
+
+impl Move {
+    /// In GMapping's order: of equal moves the first wins.
+    const ALL: [Self; 6] =
+        [Self::Front, Self::Back, Self::Left, Self::Right, Self::TurnLeft, Self::TurnRight];
+
+    fn back(self) -> Self {
+        match self {
+            Self::Front => Self::Back,
+            Self::Back => Self::Front,
+            Self::Left => Self::Right,
+            Self::Right => Self::Left,
+            Self::TurnLeft => Self::TurnRight,
+            Self::TurnRight => Self::TurnLeft,
+        }
+    }
+
+    fn turns(self) -> bool {
+        matches!(self, Self::TurnLeft | Self::TurnRight)
+    }
+
+    /// The pose after the move; x and y are the map's.
+    fn from(self, pose: Pose, linear: f64, angular: f64) -> Pose {
+        let Pose { x, y, heading } = pose;
+        match self {
+            Self::Front => Pose { x: x + linear, ..pose },
+            Self::Back => Pose { x: x - linear, ..pose },
+            Self::Left => Pose { y: y - linear, ..pose },
+            Self::Right => Pose { y: y + linear, ..pose },
+            Self::TurnLeft => Pose::new(x, y, heading + angular),
+            Self::TurnRight => Pose::new(x, y, heading - angular),
+        }
+    }
+}
+
+impl ScanMatcher {
+    /// A matcher for maps with cells of `resolution` m.
+    pub(super) fn new(rule: MatchRule, resolution: f64) -> Self {
+        let cell = f64::from(1_u32 << CELL_BITS);
+        let scale = cell / resolution;
+        let side = (rule.kernel.min(MAX_KERNEL) + 1) << CELL_BITS;
+        let window = 2 * side * side;
+        let shift = (0..32).find(|shift| ((window >> shift) as usize) < TABLE - 1).unwrap_or(0);
+        let mut scores = Box::new([0; TABLE]);
+        for (index, score) in (0_u32..).zip(scores.iter_mut()) {
+            if index << shift <= window {
+                // The middle of the squared distances that share the entry.
+                let squared = (f64::from(index << shift) + f64::from((1_u32 << shift) - 1) / 2.0)
+                    / (scale * scale);
+                #[expect(
+                    clippy::cast_possible_truncation,
+                    clippy::cast_sign_loss,
+                    reason = "between 0 and the full score"
+                )]
+                let value = (f64::from(FULL) * math::exp(-squared / rule.sigma) + 0.5) as u16;
+                *score = value;
+            }
+        }
+        Self { rule, scale, scores, shift, window }
+    }
+
+    /// Units in a metre.
+    pub(super) fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// The pose near `from` where the scan's score is highest, by climbing: each step goes to the best of six
+    /// neighbours, and where none is better, steps are halved. And whether the score there is high enough.
+    pub(super) fn climb(&self, map: &HitMap, beams: &mut Beams, from: Pose) -> (Pose, bool) {
+        let Beams { ends, turned, tried, best } = beams;
+        let mut pose = from;
+        self.turn(ends, pose.heading, turned);
+        let mut score = self.score(map, turned, self.place(pose), None);
+        let (mut linear, mut angular) = (self.rule.linear_step, self.rule.angular_step);
+        let (mut before, mut halved) = (None, 0);
+        let mut came_by: Option<Move> = None;
+        loop {
+            if before.is_some_and(|before| before >= score) {
+                halved += 1;
+                linear *= 0.5;
+                angular *= 0.5;
+                came_by = None;
+            }
+            before = Some(score);
+            let (start, mut found) = (pose, None);
+            for step in Move::ALL {
+                // Where it came from by a step of this size is known to be worse.
+                if came_by.is_some_and(|came_by| step == came_by.back()) {
+                    continue;
+                }
+                let there = step.from(start, linear, angular);
+                let rotated = if step.turns() {
+                    self.turn(ends, there.heading, tried);
+                    &*tried
+                } else {
+                    &*turned
+                };
+                let reached = self.score(map, rotated, self.place(there), Some(score));
+                if reached > score {
+                    (score, pose, found) = (reached, there, Some(step));
+                    if step.turns() {
+                        std::mem::swap(tried, best);
+                    }
+                }
+            }
+            if found.is_some_and(Move::turns) {
+                std::mem::swap(turned, best);
+            }
+            came_by = found;
+            if before.is_some_and(|before| score <= before) && halved >= self.rule.iterations {
+                let matched = f64::from(score) / f64::from(FULL);
+                return (pose, matched > self.rule.minimum_score);
+            }
+        }
+    }
+
+    /// Log likelihood of the scan with the robot at `pose`.
+    pub(super) fn log_likelihood(&self, map: &HitMap, beams: &mut Beams, pose: Pose) -> f64 {
+        self.turn(&beams.ends, pose.heading, &mut beams.turned);
+        let at = self.place(pose);
+        let (mut squares, mut missed) = (0_u64, 0_u32);
+        for end in &beams.turned {
+            let squared = map.squared_distance(end.plus(at));
+            if squared <= self.window {
+                squares += u64::from(squared);
+            } else {
+                missed += 1;
+            }
+        }
+        #[expect(clippy::cast_precision_loss, reason = "far below 2^53")]
+        let squared_metres = squares as f64 / (self.scale * self.scale);
+        -(squared_metres + NO_HIT * f64::from(missed)) / self.rule.likelihood_sigma
+    }
+
+    fn place(&self, pose: Pose) -> Place {
+        Place::of(pose.position(), self.scale)
+    }
+
+    /// The `ends` turned to `heading`, in units.
+    fn turn(&self, ends: &[Point], heading: f64, turned: &mut Vec<Place>) {
+        let (sin, cos) = math::sin_cos(heading);
+        let turn = |end: &Point| {
+            let point = Point::new(cos * end.x - sin * end.y, sin * end.x + cos * end.y);
+            Place::of(point, self.scale)
+        };
+        turned.clear();
+        turned.extend(ends.iter().map(turn));
+    }
+
+    /// The score of beams that end at `ends` from `at`. Where it can no longer be above `floor`, something not above it.
+    fn score(&self, map: &HitMap, ends: &[Place], at: Place, floor: Option<u32>) -> u32 {
+        let mut sum = 0;
+        let mut left = u32::try_from(ends.len()).unwrap_or(u32::MAX).saturating_mul(u32::from(FULL));
+        for chunk in ends.chunks(CHUNK) {
+            for end in chunk {
+                let squared = map.squared_distance(end.plus(at));
+                let index = ((squared >> self.shift) as usize).min(TABLE - 1);
+                sum += u32::from(self.scores[index]);
+            }
+            left -= u32::try_from(chunk.len()).unwrap_or(0) * u32::from(FULL);
+            if floor.is_some_and(|floor| sum + left <= floor) {
+                break;
+            }
+        }
+        sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mapping::room;
+    use proptest::prelude::*;
+
+    const RULE: MatchRule = MatchRule {
+        linear_step: 0.05,
+        angular_step: 0.05,
+        iterations: 5,
+        sigma: 0.05,
+        kernel: 1,
+        minimum_score: 0.0,
+        likelihood_sigma: 0.075,
+        skip: 0,
+    };
+
+    /// A map of the room, and the beams of a scan taken at `pose` in it.
+    fn seen(pose: Pose) -> (ScanMatcher, HitMap, Beams) {
+        let matcher = ScanMatcher::new(RULE, 0.05);
+        let mut map = HitMap::new(RULE.kernel);
+        for place in [Pose::new(0.3, 0.1, 0.4), Pose::new(-1.0, 0.5, 2.0), Pose::new(1.0, -0.6, -1.0)] {
+            let hits = room::ends(place);
+            map.register(hits.iter().map(|&hit| Place::of(place.transform(hit), matcher.scale())));
+        }
+        let mut beams = Beams::default();
+        beams.take(room::ends(pose).into_iter());
+        (matcher, map, beams)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(40))]
+        #[test]
+        fn a_scan_in_a_known_room_tells_where_it_was_taken(
+            x in -1.0..1.0, y in -0.8..0.8, heading in -3.0..3.0,
+            dx in -0.08..0.08, dy in -0.08..0.08, turn in -0.08..0.08,
+        ) {
+            let truth = Pose::new(x, y, heading);
+            let (matcher, map, mut beams) = seen(truth);
+            let from = Pose::new(x + dx, y + dy, heading + turn);
+            let (found, fits) = matcher.climb(&map, &mut beams, from);
+            prop_assert!(fits);
+            // Within a cell: the map is of three scans that met the walls at different places.
+            let off = found.position().distance(truth.position());
+            prop_assert!(off < 0.05, "{off} m off");
+            prop_assert!(math::wrap_angle(found.heading - heading).abs() < 0.02);
+            let likelihood = |pose| matcher.log_likelihood(&map, &mut beams, pose);
+            let [there, here] = [from, found].map(likelihood);
+            prop_assert!(off >= from.position().distance(truth.position()) || here > there);
+        }
+
+        #[test]
+        fn giving_up_early_never_hides_a_winner(
+            dx in -0.1..0.1, dy in -0.1..0.1, turn in -0.1..0.1, floor in 0_u32..12_000_000,
+        ) {
+            let (matcher, map, mut beams) = seen(Pose::default());
+            let pose = Pose::new(dx, dy, turn);
+            matcher.turn(&beams.ends, pose.heading, &mut beams.turned);
+            let whole = matcher.score(&map, &beams.turned, matcher.place(pose), None);
+            let early = matcher.score(&map, &beams.turned, matcher.place(pose), Some(floor));
+            let right = if whole > floor { early == whole } else { early <= floor };
+            prop_assert!(right, "{early} of {whole}, floor {floor}");
+        }
+    }
+
+    #[test]
+    fn the_score_is_the_sum_of_the_formula_and_a_poor_one_is_told() {
+        let (matcher, map, mut beams) = seen(Pose::default());
+        matcher.turn(&beams.ends, 0.0, &mut beams.turned);
+        let score = matcher.score(&map, &beams.turned, matcher.place(Pose::default()), None);
+        let expected: f64 = beams
+            .turned
+            .iter()
+            .map(|&end| map.squared_distance(end))
+            .filter(|&squared| squared <= matcher.window)
+            .map(|squared| math::exp(-f64::from(squared) / matcher.scale / matcher.scale / RULE.sigma))
+            .sum();
+        let found = f64::from(score) / f64::from(FULL);
+        assert!((found / expected - 1.0).abs() < 1e-3, "{found}, expected {expected}");
+        // Of 180 beams 179 score less than 179: a bar above what can be had is never passed.
+        let strict = ScanMatcher::new(MatchRule { minimum_score: 180.0, ..RULE }, 0.05);
+        assert!(!strict.climb(&map, &mut beams, Pose::default()).1);
+        let far = Pose::new(50.0, 0.0, 0.0);
+        assert_eq!(matcher.log_likelihood(&map, &mut beams, far), -0.5 / 0.075 * beams.ends.len() as f64);
+    }
+}

@@ -1,0 +1,74 @@
+//! How far the robot was from where it took itself to be: absolute trajectory errors, with nothing aligned but the start.
+
+use crate::geometry::Pose;
+
+/// Poses at the scans that were taken into the map, in the frame of the manifest's start.
+#[derive(Debug, Default)]
+pub(super) struct PoseErrors {
+    truth: Vec<Pose>,
+    /// Squared errors of position (m^2) of what was known at the time, and of odometry.
+    online: Vec<f64>,
+    odometry: Vec<f64>,
+}
+
+impl PoseErrors {
+    /// A scan was taken into the map at `truth`, where the mind took itself to be at `estimate` and odometry told `odometry`.
+    pub(super) fn note(&mut self, truth: Pose, estimate: Pose, odometry: Pose) {
+        self.truth.push(truth);
+        self.online.push(squared(truth, estimate));
+        self.odometry.push(squared(truth, odometry));
+    }
+
+    /// The measures of a trial whose mind says in the end that its scans were taken along `way`. None where no poses were
+    /// estimated.
+    pub(super) fn measures(&self, way: &[Pose]) -> Vec<(&'static str, f64)> {
+        if way.is_empty() || way.len() != self.truth.len() {
+            return Vec::new();
+        }
+        let in_the_end: Vec<f64> =
+            self.truth.iter().zip(way).map(|(&truth, &pose)| squared(truth, pose)).collect();
+        let mut sorted = self.online.clone();
+        sorted.sort_by(f64::total_cmp);
+        let max = sorted.last().copied().unwrap_or(0.0).sqrt();
+        vec![
+            ("pose-error-m-rms", root_mean(&self.online)),
+            ("pose-error-m-median", sorted[sorted.len() / 2].sqrt()),
+            ("pose-error-m-max", max),
+            ("pose-error-m-rms-in-the-end", root_mean(&in_the_end)),
+            ("odometry-error-m-rms", root_mean(&self.odometry)),
+        ]
+    }
+}
+
+fn squared(a: Pose, b: Pose) -> f64 {
+    let off = a.position() - b.position();
+    off.x * off.x + off.y * off.y
+}
+
+fn root_mean(squares: &[f64]) -> f64 {
+    #[expect(clippy::cast_precision_loss, reason = "thousands")]
+    let n = squares.len().max(1) as f64;
+    (squares.iter().sum::<f64>() / n).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_are_told_of_the_time_and_of_the_end() {
+        let at = |x: f64, y: f64| Pose::new(x, y, 0.3);
+        let mut errors = PoseErrors::default();
+        errors.note(at(0.0, 0.0), at(0.0, 0.0), at(0.0, 0.0));
+        errors.note(at(1.0, 0.0), at(1.3, 0.4), at(1.0, 2.0));
+        errors.note(at(2.0, 0.0), at(2.0, -0.2), at(5.0, 4.0));
+        assert!(errors.measures(&[]).is_empty(), "nothing was estimated");
+        let measures = errors.measures(&[at(0.0, 0.0), at(1.0, 0.1), at(2.0, 0.0)]);
+        let of = |name: &str| measures.iter().find(|(n, _)| *n == name).unwrap().1;
+        assert!((of("pose-error-m-rms") - (0.29_f64 / 3.0).sqrt()).abs() < 1e-12);
+        assert!((of("pose-error-m-median") - 0.2).abs() < 1e-12);
+        assert!((of("pose-error-m-max") - 0.5).abs() < 1e-12);
+        assert!((of("pose-error-m-rms-in-the-end") - (0.01_f64 / 3.0).sqrt()).abs() < 1e-12);
+        assert!((of("odometry-error-m-rms") - (29.0_f64 / 3.0).sqrt()).abs() < 1e-12);
+    }
+}
