@@ -125,7 +125,8 @@ impl HitMap {
         let cell = in_tile([place.x >> CELL_BITS, place.y >> CELL_BITS]);
         let half = |v: i32| usize::from(v & (CELL / 2) != 0);
         let offset = tile.nearest[cell % CELLS][half(place.y) << 1 | half(place.x)];
-        let [x, y] = offset.map(|step| (i32::from(step) << (CELL_BITS - STEP_BITS)) + CELL / STEPS / 2);
+        let [x, y] =
+            offset.map(|step| (i32::from(step) << (CELL_BITS - STEP_BITS)) + CELL / STEPS / 2);
         let (dx, dy) = ((place.x & (CELL - 1)) - x, (place.y & (CELL - 1)) - y);
         #[expect(clippy::cast_sign_loss, reason = "a sum of squares")]
         let squared = (dx * dx + dy * dy) as u32;

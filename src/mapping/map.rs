@@ -274,13 +274,7 @@ impl OccupancyMap {
 
 /// Visits the cells of the line `from` .. `to` by index, its end only where that is a hit. Both are within the grid, and
 /// so is what lies between; the walk is that of [`crate::grid::line`], over indices.
-fn walk(
-    frame: &GridFrame,
-    from: Cell,
-    to: Cell,
-    is_hit: bool,
-    mut visit: impl FnMut(usize, bool),
-) {
+fn walk(frame: &GridFrame, from: Cell, to: Cell, is_hit: bool, mut visit: impl FnMut(usize, bool)) {
     let (Some(mut index), Some(_)) = (frame.index(from), frame.index(to)) else { return };
     let (dx, dy) = ((to.x - from.x).abs(), -(to.y - from.y).abs());
     let aside = if to.x < from.x { -1 } else { 1 };

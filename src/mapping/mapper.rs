@@ -199,7 +199,8 @@ mod tests {
     fn a_filter_that_may_not_move_is_mapping_with_odometry() {
         assert!(STILL.trusts_odometry() && !GMAPPING.trusts_odometry());
         // Two particles go through the filter, one does not: with nothing to tell them apart all are odometry.
-        let (mut trusting, mut filtering) = (mapper(STILL), mapper(FilterRule { particles: 2, ..STILL }));
+        let (mut trusting, mut filtering) =
+            (mapper(STILL), mapper(FilterRule { particles: 2, ..STILL }));
         assert!(!trusting.estimates() && filtering.estimates());
         let mut poses = Vec::new();
         drive(&mut trusting, |mapper, _, odometry| {

@@ -63,7 +63,8 @@ mod tests {
                 *sum += off * off / f64::from(n);
             }
         }
-        let expected = [0.1 * 0.5 + 0.05 * 0.2, 0.05 * 0.2 + 0.3 * 0.1 * 0.5, 0.3 * 0.2 + 0.2 * 0.5];
+        let expected =
+            [0.1 * 0.5 + 0.05 * 0.2, 0.05 * 0.2 + 0.3 * 0.1 * 0.5, 0.3 * 0.2 + 0.2 * 0.5];
         for (found, expected) in squares.map(f64::sqrt).into_iter().zip(expected) {
             assert!((found / expected - 1.0).abs() < 0.03, "{found}, expected {expected}");
         }

@@ -44,7 +44,8 @@ pub(super) fn scan(pose: Pose) -> Scan {
         ranges: vec![0.0; 180],
     };
     let sensor = pose.compose(scan.mount);
-    scan.ranges = (0..180).map(|i| cast(sensor.position(), sensor.heading + scan.angle(i))).collect();
+    scan.ranges =
+        (0..180).map(|i| cast(sensor.position(), sensor.heading + scan.angle(i))).collect();
     scan
 }
 

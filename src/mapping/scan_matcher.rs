@@ -238,7 +238,8 @@ impl ScanMatcher {
     /// The score of beams that end at `ends` from `at`. Where it can no longer be above `floor`, something not above it.
     fn score(&self, map: &HitMap, ends: &[Place], at: Place, floor: Option<u32>) -> u32 {
         let mut sum = 0;
-        let mut left = u32::try_from(ends.len()).unwrap_or(u32::MAX).saturating_mul(u32::from(FULL));
+        let mut left =
+            u32::try_from(ends.len()).unwrap_or(u32::MAX).saturating_mul(u32::from(FULL));
         for chunk in ends.chunks(CHUNK) {
             for end in chunk {
                 let squared = map.squared_distance(end.plus(at));
@@ -275,7 +276,9 @@ mod tests {
     fn seen(pose: Pose) -> (ScanMatcher, HitMap, Beams) {
         let matcher = ScanMatcher::new(RULE, 0.05);
         let mut map = HitMap::new(RULE.kernel);
-        for place in [Pose::new(0.3, 0.1, 0.4), Pose::new(-1.0, 0.5, 2.0), Pose::new(1.0, -0.6, -1.0)] {
+        for place in
+            [Pose::new(0.3, 0.1, 0.4), Pose::new(-1.0, 0.5, 2.0), Pose::new(1.0, -0.6, -1.0)]
+        {
             let hits = room::ends(place);
             map.register(hits.iter().map(|&hit| Place::of(place.transform(hit), matcher.scale())));
         }
@@ -329,7 +332,9 @@ mod tests {
             .iter()
             .map(|&end| map.squared_distance(end))
             .filter(|&squared| squared <= matcher.window)
-            .map(|squared| math::exp(-f64::from(squared) / matcher.scale / matcher.scale / RULE.sigma))
+            .map(|squared| {
+                math::exp(-f64::from(squared) / matcher.scale / matcher.scale / RULE.sigma)
+            })
             .sum();
         let found = f64::from(score) / f64::from(FULL);
         assert!((found / expected - 1.0).abs() < 1e-3, "{found}, expected {expected}");
@@ -337,6 +342,9 @@ mod tests {
         let strict = ScanMatcher::new(MatchRule { minimum_score: 180.0, ..RULE }, 0.05);
         assert!(!strict.climb(&map, &mut beams, Pose::default()).1);
         let far = Pose::new(50.0, 0.0, 0.0);
-        assert_eq!(matcher.log_likelihood(&map, &mut beams, far), -0.5 / 0.075 * beams.ends.len() as f64);
+        assert_eq!(
+            matcher.log_likelihood(&map, &mut beams, far),
+            -0.5 / 0.075 * beams.ends.len() as f64
+        );
     }
 }

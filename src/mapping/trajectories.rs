@@ -46,11 +46,15 @@ impl Trajectories {
         while from != to {
             // `None` is the beginning of all, before scan 0.
             let (behind, ahead) = (scan(from), scan(to));
-            if behind >= ahead && let Some(node) = from {
+            if behind >= ahead
+                && let Some(node) = from
+            {
                 left.push(node);
                 from = self.nodes[node].parent;
             }
-            if ahead >= behind && let Some(node) = to {
+            if ahead >= behind
+                && let Some(node) = to
+            {
                 right.push(node);
                 to = self.nodes[node].parent;
             }

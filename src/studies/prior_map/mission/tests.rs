@@ -303,6 +303,69 @@ fn recording_changes_no_bit_and_shows_the_map_that_was_made() {
     );
 }
 
+/// Odometry that loses the way, and a mind that does not trust it.
+fn lost() -> Parameters {
+    let mut parameters = Parameters::default();
+    parameters.sensing.odometry_noise_distance = 0.03;
+    parameters.sensing.odometry_noise_heading = 0.05;
+    let mapping = &mut parameters.mapping;
+    (mapping.particles, mapping.resolution_m) = (8, 0.1);
+    (mapping.motion_noise_srr, mapping.motion_noise_srt) = (0.1, 0.1);
+    (mapping.motion_noise_str, mapping.motion_noise_stt) = (0.05, 0.2);
+    (mapping.match_linear_step_m, mapping.match_angular_step_rad) = (0.05, 0.05);
+    mapping.match_skip_beams = 3;
+    parameters
+}
+
+#[test]
+fn a_robot_that_estimates_its_pose_explores_where_one_that_trusts_odometry_is_lost() {
+    for prior in [false, true] {
+        let record = studies::execute(&spec(0, prior, lost()));
+        assert_eq!(record.outcome, Outcome::Explored, "{prior}: {}", record.cause);
+        let measure = |name: &str| record.measures[name].unwrap();
+        assert!(measure("coverage-percent") > 95.0, "{}", measure("coverage-percent"));
+        assert_eq!(measure("contacts"), 0.0);
+        let (found, drifted) = (measure("pose-error-m-rms"), measure("odometry-error-m-rms"));
+        assert!(found < 0.12 && found < drifted / 2.0, "{found} m, odometry {drifted} m");
+        assert!(measure("pose-error-m-rms-in-the-end") < 0.12);
+        assert!(measure("pose-error-m-median") <= measure("pose-error-m-max"));
+        // Recording changes nothing, and shows the map as it is in the end.
+        let (again, recording) = studies::reenact(&spec(0, prior, lost()));
+        assert_eq!(again.to_line(), record.to_line());
+        let mut map = OccupancyGrid::filled(recording.map_frame, Occupancy::Unknown);
+        for (cell, value) in recording.frames.iter().flat_map(|f| &f.map_changes) {
+            map.set(*cell, *value);
+        }
+        let inside = |cell: &crate::grid::Cell| {
+            let p = recording.map_pose.transform(map.frame().center(*cell));
+            p.x.abs() < 3.8 && (0.2..1.8).contains(&p.y) && p.x.abs() > 0.3
+        };
+        let cells: Vec<_> = map.frame().cells().filter(inside).collect();
+        let free = cells.iter().filter(|&&c| map.at(c) == Occupancy::Free).count();
+        assert!(free * 100 > cells.len() * 97, "{free} of {} cells of floor are free", cells.len());
+    }
+    let trusting = Parameters { mapping: Parameters::default().mapping, ..lost() };
+    let record = studies::execute(&spec(0, false, trusting));
+    assert!(!record.measures.contains_key("pose-error-m-rms"), "nothing was estimated");
+}
+
+/// The golden trial of a mind that estimates its pose, also on other threads.
+#[test]
+fn the_golden_estimating_trial_has_not_changed() {
+    let line = || {
+        let mut parameters = lost();
+        parameters.mission.time_limit_s = 20.0;
+        studies::execute(&spec(0, true, parameters)).to_line()
+    };
+    let lines = std::thread::scope(|scope| {
+        let threads = [0, 1, 2].map(|_| scope.spawn(line));
+        threads.map(|thread| thread.join().unwrap())
+    });
+    assert!(lines.iter().all(|l| *l == lines[0]), "threads leave no mark");
+    let found = (lines[0].len(), Sha256Digest::of(&lines[0]).short());
+    assert_eq!(found, (0, String::new()), "see `the_golden_trial_has_not_changed`");
+}
+
 #[test]
 fn records_survive_their_text() {
     let record = studies::execute(&spec(2, false, Parameters::default()));
