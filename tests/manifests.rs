@@ -5,6 +5,7 @@ use reenact::cmdp::build::{Expectation, Maneuvers};
 use reenact::document::{Diagnostic, Source};
 use reenact::manifest::{self, Experiment, Inputs, WrittenIn};
 use reenact::plan::{ENGINE_VERSION, Plan, Selection};
+use reenact::studies::TrialSpec;
 use reenact::studies::deadline::Calibration;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -15,7 +16,9 @@ struct Beside(PathBuf);
 impl Inputs for Beside {
     fn read(&self, as_written: &str, written_in: WrittenIn) -> Result<Vec<u8>, String> {
         match written_in {
-            WrittenIn::CommandLine | WrittenIn::Calibration => Err("no such file".to_owned()),
+            WrittenIn::CommandLine | WrittenIn::Calibration | WrittenIn::PreviousMap => {
+                Err("no such file".to_owned())
+            }
             WrittenIn::Manifest => {
                 std::fs::read(self.0.join(as_written)).map_err(|_| "no such file".to_owned())
             }
@@ -27,6 +30,11 @@ impl Inputs for Beside {
         let pair = [Expectation { time_s: 10.0, failure: 0.01 }; 2];
         let pairs = Maneuvers { corridor: pair, door_left: pair, door_right: pair };
         Ok(Calibration::assumed(&pairs).to_csv().into_bytes())
+    }
+
+    /// Floor plans that stand in for explorations.
+    fn explore(&self, spec: &TrialSpec, sealed_as: &[String; 2]) -> Result<[Vec<u8>; 2], String> {
+        manifest::unexplored(spec, sealed_as)
     }
 }
 

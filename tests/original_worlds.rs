@@ -15,7 +15,9 @@ impl Inputs for Disk {
     fn read(&self, as_written: &str, written_in: WrittenIn) -> Result<Vec<u8>, String> {
         let path = match written_in {
             WrittenIn::Manifest => self.0.join(as_written),
-            WrittenIn::CommandLine | WrittenIn::Calibration => PathBuf::from(as_written),
+            WrittenIn::CommandLine | WrittenIn::Calibration | WrittenIn::PreviousMap => {
+                PathBuf::from(as_written)
+            }
         };
         std::fs::read(&path).map_err(|e| format!("{}: {e}", path.display()))
     }

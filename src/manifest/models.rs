@@ -7,7 +7,7 @@ use super::inputs::{InputFiles, WrittenIn, joined, normalised};
 use super::pinned::Pins;
 use super::resolve::Resolver;
 use crate::digest::Sha256Digest;
-use crate::world::sdf::{Found, Models};
+use crate::world::sdf::{Found, Models, Place, place_of};
 use crate::world::{Solid, document, mesh};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -30,29 +30,10 @@ pub(super) struct Shelf<'r, 'a> {
 impl Shelf<'_, '_> {
     /// The path of the file that `uri` names.
     fn path_of(&self, uri: &str) -> Result<(String, WrittenIn), String> {
-        let model = uri.strip_prefix("model://");
-        let path = model.or_else(|| uri.strip_prefix("file://")).unwrap_or(uri);
-        if path.contains("://") {
-            return Err(String::new());
-        }
-        if path.split(['/', '\\']).any(|step| step == "..") {
-            return Err("its path leads out of the folder".to_owned());
-        }
-        if model.is_none() {
-            if path.starts_with('/') {
-                return Err("a path from the root of some machine is not followed".to_owned());
-            }
-            return Ok((joined(&self.world.0, path), self.world.1));
-        }
-        if self.doc.models.is_empty() {
-            return Err(String::new());
-        }
-        let path = path.trim_start_matches('/');
-        let (name, rest) = path.split_once('/').unwrap_or((path, ""));
-        match self.doc.models.get(name) {
-            Some(folder) => Ok((normalised(&format!("{folder}/{rest}")), self.folders)),
-            None => Err(format!("`models` gives no folder for `{name}`")),
-        }
+        Ok(match place_of(uri, &self.doc.models)? {
+            Place::Model(path) => (normalised(&path), self.folders),
+            Place::Beside(path) => (joined(&self.world.0, &path), self.world.1),
+        })
     }
 
     fn look_up(&mut self, uri: &str) -> Found {

@@ -1,9 +1,12 @@
 //! Settings beneath parameters; the study's own worlds and priors, where a test finds them.
 
 use super::*;
-use crate::document::Source;
-use crate::studies::{Setup, prior_map};
+use crate::document::{Diagnostic, Source};
+use crate::geometry::{Outline, Point};
+use crate::grid::{Occupancy, OccupancyGrid};
+use crate::studies::{Setup, TrialSpec, prior_map};
 use crate::world::originals;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// What `settings` and the manifest's own `parameters` make of the range, the noise and the resolution.
@@ -102,4 +105,191 @@ fn the_authors_floor_plan_lies_on_their_world_in_the_frame_of_the_start() {
     assert_eq!(basic(folder.clone(), &format!("{{map: {footprint}, frame: start}}")).0, "");
     let (told, _) = basic(folder, &format!("{{map: {yaml}, frame: world}}"));
     assert!(told.starts_with("the prior map fits the world badly: "), "{told}");
+}
+
+/// Files in memory, and a count of the explorations that were asked for.
+struct Workshop {
+    files: BTreeMap<String, Vec<u8>>,
+    explored: std::cell::RefCell<Vec<[String; 2]>>,
+}
+
+impl Inputs for Workshop {
+    fn read(&self, as_written: &str, _: WrittenIn) -> Result<Vec<u8>, String> {
+        self.files.get(as_written).cloned().ok_or_else(|| "no such file".to_owned())
+    }
+
+    fn explore(&self, spec: &TrialSpec, sealed_as: &[String; 2]) -> Result<[Vec<u8>; 2], String> {
+        self.explored.borrow_mut().push(sealed_as.clone());
+        explored(spec, sealed_as)
+    }
+}
+
+/// Two rooms that change: a box stands elsewhere at every time.
+const ROOMS: &str = "reenact-world: 1\nname: rooms\nsource: test\nlayers:\n  walls:\n    walls:\n      \
+    - {path-m: [[0, 0], [8, 0], [8, 4], [0, 4], [0, 0]], thickness-m: 0.2}\n      \
+    - {path-m: [[4, 0], [4, 2.5]], thickness-m: 0.2}\n  \
+    t0: {boxes: [{center-m: [6, 1], size-m: [0.6, 0.6]}]}\n  t1: {boxes: [{center-m: [7, 3], size-m: [0.6, 0.6]}]}\n  \
+    t2: {boxes: [{center-m: [2, 3], size-m: [0.6, 0.6]}]}\nstarts: {a: {at-m: [1, 1], heading-deg: 0}}\n";
+
+fn changing(
+    prior_maps: &str,
+    overrides: &[&str],
+) -> (Result<Experiment, String>, Vec<[String; 2]>) {
+    let text = format!(
+        "reenact: 1\nname: a\ntitle: A\nstudy: prior-map\nseed: 1\ntrials: 1\nrobot: kobuki.urdf\n\
+         world: {{file: rooms.yaml, layers: [walls, t2]}}\nstart: a\nprior: m1\nprior-maps:\n{prior_maps}\n\
+         parameters: {{sensing: {{range-m: 10}}}}\n"
+    );
+    let robot = std::fs::read(PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("robots/kobuki.urdf"));
+    let files = [("rooms.yaml", ROOMS.as_bytes().to_vec()), ("kobuki.urdf", robot.unwrap())];
+    let workshop = Workshop {
+        files: files.map(|(name, bytes)| (name.to_owned(), bytes)).into(),
+        explored: std::cell::RefCell::default(),
+    };
+    let overrides: Vec<String> = overrides.iter().map(|&o| o.to_owned()).collect();
+    let resolved = match resolve(&Source::new("a.yaml", text), &overrides, &workshop) {
+        Ok((experiment, warnings)) => {
+            assert_eq!(warnings, []);
+            Ok(experiment)
+        }
+        Err(faults) => Err(faults.iter().map(|f| f.render(false)).collect()),
+    };
+    (resolved, workshop.explored.into_inner())
+}
+
+const CHAIN: &str = "  m0: {previous-map: {world: {file: rooms.yaml, layers: [walls, t0]}, prior: none, why: first}}\n  \
+    m1: {previous-map: {world: {file: rooms.yaml, layers: [walls, t1]}, prior: m0, why: second}}";
+
+fn prior_of(experiment: &Experiment) -> OccupancyGrid {
+    let Setup::PriorMap(setup) = &experiment.conditions[0].1 else {
+        panic!("a study of another kind")
+    };
+    setup.prior.as_deref().cloned().unwrap()
+}
+
+#[test]
+fn a_previous_map_is_what_the_robot_before_ended_with_in_the_worlds_frame() {
+    let (experiment, explored) = changing(CHAIN, &[]);
+    let experiment = experiment.unwrap();
+    assert_eq!(explored.len(), 2, "each exploration once");
+    let map = prior_of(&experiment);
+    let at = |x: f64, y: f64| map.at(map.frame().cell_at(Point::new(x, y)));
+    // The walls and the box of t1 are drawn where they stood; the box of t0 left no trace, nor that of t2.
+    assert_eq!(at(7.0, 2.72), Occupancy::Occupied);
+    assert_eq!([at(6.0, 1.0), at(2.0, 3.0), at(1.0, 1.0)], [Occupancy::Free; 3]);
+    assert_eq!([at(7.0, 3.0), at(-0.3, -0.3)], [Occupancy::Unknown; 2], "inside and outside");
+    let sealed: Vec<&Input> =
+        experiment.inputs.iter().filter(|i| i.written_in == WrittenIn::PreviousMap).collect();
+    assert_eq!(sealed.len(), 4, "descriptor and image of each");
+    let yaml = String::from_utf8(sealed[1].bytes.to_vec()).unwrap();
+    assert!(
+        sealed[1].name.ends_with(".yaml")
+            && yaml.starts_with(&format!("image: {}\n", sealed[0].name)),
+        "{yaml}"
+    );
+    let whys: Vec<&str> = experiment.assumptions.iter().map(|a| a.why.as_str()).collect();
+    assert_eq!(whys, ["first", "second"]);
+
+    let free = CHAIN.replace("prior: m0,", "prior: m0, unknown: free,");
+    let map = prior_of(&changing(&free, &[]).0.unwrap());
+    assert_eq!(map.count(Occupancy::Unknown), 0);
+    let keys = |maps: &str| changing(maps, &[]).0.unwrap().meanings[0].prior;
+    assert_eq!(keys(CHAIN), keys(CHAIN), "a function of the manifest");
+    assert_ne!(
+        keys(CHAIN),
+        keys(
+            &CHAIN
+                .replace("prior: m0,", "prior: none,")
+                .replace("  m0", "  m1x")
+                .replace("m1x:", "m0:")
+        )
+    );
+    assert_ne!(
+        changing(CHAIN, &[]).1,
+        changing(CHAIN, &["seed=2"]).1,
+        "the experiment's seed is that of its explorations"
+    );
+    let seeded = CHAIN.replace("why: ", "seed: 5, why: ");
+    assert_eq!(changing(&seeded, &[]).1, changing(&seeded, &["seed=2"]).1);
+}
+
+#[test]
+fn a_previous_map_that_cannot_be_is_told() {
+    let told = |maps: &str| changing(maps, &[]).0.unwrap_err();
+    let circle = told(&CHAIN.replace("prior: none", "prior: m1"));
+    assert!(circle.contains("error: `m1` from `m0` is made from `m1` again"), "{circle}");
+    assert!(circle.contains("no exploration can be the first"), "{circle}");
+    let near = told(&CHAIN.replace("prior: m0", "prior: mo"));
+    assert!(
+        near.contains("error: unknown prior map `mo`") && near.contains("did you mean `m0`?"),
+        "{near}"
+    );
+    let turned = told(
+        &CHAIN.replace("prior: none", "start: {x-m: 1, y-m: 1, heading-deg: 90}, prior: none"),
+    );
+    assert!(turned.contains("a previous map needs a start that faces along x"), "{turned}");
+    assert!(turned.contains("this start is turned by 90 degrees"), "{turned}");
+    let silent = told(&CHAIN.replace(", why: first", ""));
+    assert!(silent.contains("why"), "{silent}");
+}
+
+/// A world whose table is a mesh, and its lamp another.
+const MESHED: &str = "<sdf version='1.6'><world name='w'><model name='house'><static>1</static><link name='l'>\
+    <collision name='wall'><pose>0 3 1 0 0 0</pose><geometry><box><size>9 0.2 2</size></box></geometry></collision>\
+    <collision name='table'><pose>2 0 0 0 0 0</pose><geometry><mesh><uri>model://shop/table.stl</uri></mesh></geometry></collision>\
+    <collision name='lamp'><pose>0 2 0 0 0 0</pose><geometry><mesh><uri>model://shop/lamp.dae</uri></mesh></geometry></collision>\
+    </link></model></world></sdf>";
+
+fn meshed(world: &str, files: &[(&str, &str)]) -> Result<(Experiment, String), String> {
+    let text = format!(
+        "reenact: 1\nname: a\ntitle: A\nstudy: prior-map\nseed: 1\ntrials: 1\nrobot: kobuki.urdf\n\
+         world: {world}\nstart: {{x-m: -2, y-m: 0}}\n"
+    );
+    let robot = std::fs::read(PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("robots/kobuki.urdf"));
+    let all = [("w.world", MESHED)].iter().chain(files);
+    let mut files: BTreeMap<String, Vec<u8>> =
+        all.map(|(name, text)| ((*name).to_owned(), text.as_bytes().to_vec())).collect();
+    files.insert("kobuki.urdf".to_owned(), robot.unwrap());
+    let workshop = Workshop { files, explored: std::cell::RefCell::default() };
+    let told = |faults: &[Diagnostic]| faults.iter().map(|f| f.render(false)).collect::<String>();
+    match resolve(&Source::new("a.yaml", text), &[], &workshop) {
+        Ok((experiment, warnings)) => Ok((experiment, told(&warnings))),
+        Err(faults) => Err(told(&faults)),
+    }
+}
+
+const TABLE: &str = "solid t\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0.4\nvertex 0 0 0.4\nendloop\n\
+    endfacet\nendsolid t\n";
+
+#[test]
+fn meshes_in_the_folders_of_models_are_sealed_and_others_are_named() {
+    let plain = meshed("{file: w.world}", &[("m/table.stl", TABLE)]).unwrap();
+    assert!(plain.1.contains("`w.world` is incomplete (things missing: 2)"), "{}", plain.1);
+    let (experiment, told) =
+        meshed("{file: w.world, models: {shop: m}}", &[("m/table.stl", TABLE)]).unwrap();
+    assert!(told.contains("`w.world` is incomplete (things missing: 1)"), "{told}");
+    assert!(
+        told.contains(
+            "is a mesh `model://shop/lamp.dae`; `m/lamp.dae`: no such file: it is missing"
+        ),
+        "{told}"
+    );
+    let names: Vec<&str> = experiment.inputs.iter().map(|i| i.as_written.as_str()).collect();
+    assert_eq!(names, ["kobuki.urdf", "m/table.stl", "w.world"]);
+    assert_ne!(experiment.meanings[0].world, plain.0.meanings[0].world);
+    assert!(experiment.resolved_text("1").contains("\"models\":{\"shop\":\"m\"}"));
+    assert!(!plain.0.resolved_text("1").contains("\"models\""), "nothing changes for others");
+
+    let stand_in = "{file: w.world, models: {shop: m}, stand-ins: {\"model://shop/lamp.dae\": {circles: \
+        [{center-m: [0, 0], radius-m: 0.1, z-m: [0, 1.5]}]}, \"model://shop/lamb.dae\": {}}}";
+    let (experiment, told) = meshed(stand_in, &[("m/table.stl", TABLE)]).unwrap();
+    assert!(!told.contains("incomplete") && told.contains("this stands in for nothing"), "{told}");
+    let lamp = experiment.conditions[0].1.world().solids.last().unwrap().body.slice(0.2);
+    assert_eq!(lamp, [Outline::Circle { center: Point::new(0.0, 2.0), radius: 0.1 }]);
+
+    let broken = meshed(&stand_in.replace("radius-m: 0.1", "radius-m: -1"), &[]).unwrap_err();
+    assert!(broken.contains("error: length out of range"), "{broken}");
+    let torn = TABLE.replace("vertex 1 0 0.4", "vertex 1 0");
+    let torn = meshed("{file: w.world, models: {shop: m}}", &[("m/table.stl", &torn)]).unwrap_err();
+    assert!(torn.contains("error: cannot read the mesh `m/table.stl`: "), "{torn}");
 }

@@ -7,8 +7,13 @@ use crate::cli::terminal::Terminal;
 use crate::document::Diagnostic;
 use crate::geometry::Point;
 use crate::report::show::{self, Derived, Drawing, Over};
+use crate::store;
 use crate::world::generate::{self, Family};
+use crate::world::mesh;
+use crate::world::sdf::{Found, Models, Place, place_of};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// A generated building as the world file that it would be.
 fn building(family: FamilyArg, seed: u64) -> Result<(PathBuf, Vec<u8>), Failure> {
@@ -16,6 +21,27 @@ fn building(family: FamilyArg, seed: u64) -> Result<(PathBuf, Vec<u8>), Failure>
     let doc = generate::document(Family::OfficeFloor, seed)
         .map_err(|problem| Failure::not_understood(problem.to_string()))?;
     Ok((PathBuf::from(format!("{}.yaml", doc.name)), doc.to_yaml().into_bytes()))
+}
+
+/// The meshes of a world: files in folders of the command line, or beside the world.
+struct Shelf {
+    beside: PathBuf,
+    folders: BTreeMap<String, String>,
+}
+
+impl Models for Shelf {
+    fn find(&mut self, uri: &str) -> Found {
+        let path = match place_of(uri, &self.folders) {
+            Ok(Place::Model(path)) => PathBuf::from(path),
+            Ok(Place::Beside(path)) => self.beside.join(path),
+            Err(why) => return Found::Missing(why),
+        };
+        let name = path.display().to_string();
+        match store::read(&path) {
+            Ok(bytes) => Found::Mesh(Arc::new(mesh::read(&name, &bytes))),
+            Err(error) => Found::Missing(format!("`{name}`: {}", store::reason(&error))),
+        }
+    }
 }
 
 /// What is asked for of the file `name`.
@@ -34,7 +60,16 @@ fn draw(
         terminal.diagnostics(&faults);
         Failure::not_understood(format!("{name}: {}", Terminal::count(&faults)))
     };
-    let world = || show::read_world(name, bytes, args.layers.as_deref()).map_err(told);
+    let folder_of = |written: &String| match written.split_once('=') {
+        Some((name, folder)) => Ok((name.to_owned(), folder.to_owned())),
+        None => Err(Failure::not_understood(format!(
+            "--models: expected NAME=FOLDER, found `{written}`"
+        ))),
+    };
+    let folders: BTreeMap<_, _> = args.models.iter().map(folder_of).collect::<Result<_, _>>()?;
+    let mut shelf = Shelf { beside: beside(file), folders };
+    let mut world =
+        || show::read_world(name, bytes, args.layers.as_deref(), &mut shelf).map_err(told);
     match (args.derive, &args.over) {
         (Some(kind), _) => {
             let kind = match kind {
@@ -61,7 +96,7 @@ fn draw(
         }
         (None, None) if args.layers.is_some() => Ok(show::draw_world(&world()?, height)),
         (None, None) => {
-            show::draw(name, bytes, height, &mut fetch_from(beside(file))).map_err(told)
+            show::draw(name, bytes, height, &mut shelf, &mut fetch_from(beside(file))).map_err(told)
         }
     }
 }

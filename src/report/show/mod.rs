@@ -41,7 +41,7 @@ pub struct Drawing {
 /// Draws the robot, world or map in the file `name`, told apart by content: URDF, SDF, `map_server` YAML (with an
 /// `image:`) or world YAML. Worlds are cut at `height` m; all their layers are drawn.
 ///
-/// `fetch` is asked for a map's image, by its path relative to the descriptor's folder; its error is a fragment
+/// `models` is asked for a world's meshes, `fetch` for a map's image, by its path relative to the descriptor's folder; its error is a fragment
 /// that says why not.
 ///
 /// # Errors
@@ -50,6 +50,7 @@ pub fn draw(
     name: &str,
     bytes: &[u8],
     height: f64,
+    models: &mut dyn sdf::Models,
     fetch: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
 ) -> Result<Drawing, Vec<Diagnostic>> {
     let Ok(text) = std::str::from_utf8(bytes) else {
@@ -65,7 +66,7 @@ pub fn draw(
             let (svg, text) = (robot_svg(&robot), describe_robot(&robot));
             return Ok(Drawing { svg, png: None, text, warnings });
         }
-        return Ok(drawn_world(&sdf::read(&source)?, height));
+        return Ok(drawn_world(&sdf::read_with(&source, models)?, height));
     }
     if text.lines().any(|line| line.starts_with("image:")) {
         let map = read_map(name, &source, fetch)?;

@@ -33,7 +33,7 @@ pub struct Over<'a> {
     pub start: Point,
 }
 
-/// The world in the file `name` with its walls and `layers` (all where `None`), and what it lacks.
+/// The world in the file `name` with its walls and `layers` (all where `None`), the meshes that `models` knows, and what it lacks.
 ///
 /// # Errors
 /// Every fault of the file.
@@ -41,13 +41,14 @@ pub fn read_world(
     name: &str,
     bytes: &[u8],
     layers: Option<&[String]>,
+    models: &mut dyn sdf::Models,
 ) -> Result<World, Vec<Diagnostic>> {
     let text = text_of(name, bytes)?;
     let source = Source::new(name, text);
     if !text.trim_start().starts_with('<') {
         return document::read(&source, layers);
     }
-    let world = sdf::read(&source)?;
+    let world = sdf::read_with(&source, models)?;
     match layers.and_then(|layers| layers.iter().find(|layer| *layer != sdf::LAYER)) {
         None => Ok(world),
         Some(layer) => Err(vec![

@@ -1,6 +1,7 @@
 use super::*;
 use crate::document::mutation::{edits, mutate};
 use crate::geometry::Point;
+use crate::world::sdf::NoModels;
 use proptest::prelude::*;
 
 const KOBUKI: &str = include_str!("../../../robots/kobuki.urdf");
@@ -14,8 +15,10 @@ const WORLD: &str = "<!-- a box --><sdf version='1.6'><world name='w'><model nam
                      </collision></link></model></world></sdf>";
 
 fn drawn(name: &str, text: &str) -> Drawing {
-    draw(name, text.as_bytes(), CUT_HEIGHT, &mut |_| Ok(b"P2 2 2 255\n0 254 205 254".to_vec()))
-        .unwrap()
+    draw(name, text.as_bytes(), CUT_HEIGHT, &mut NoModels, &mut |_| {
+        Ok(b"P2 2 2 255\n0 254 205 254".to_vec())
+    })
+    .unwrap()
 }
 
 fn texts(svg: &str) -> Vec<String> {
@@ -175,7 +178,8 @@ fn of_a_mostly_unknown_map_the_known_part_is_drawn() {
 fn what_cannot_be_drawn_is_said() {
     let fault = |name: &str, bytes: &[u8]| {
         let faults =
-            draw(name, bytes, CUT_HEIGHT, &mut |_| Err("no such file".to_owned())).unwrap_err();
+            draw(name, bytes, CUT_HEIGHT, &mut NoModels, &mut |_| Err("no such file".to_owned()))
+                .unwrap_err();
         faults[0].render(false)
     };
     assert_eq!(
@@ -187,7 +191,7 @@ fn what_cannot_be_drawn_is_said() {
 
 #[test]
 fn a_map_is_laid_over_the_world_that_it_is_to_fit() {
-    let world = read_world("w.world", WORLD.as_bytes(), None).unwrap();
+    let world = read_world("w.world", WORLD.as_bytes(), None, &mut NoModels).unwrap();
     // One occupied pixel, the upper left of four of 0.1 m: its middle is at (-0.95, 2.15) from the start.
     let over = |start: Point| Over { name: "m.yaml", bytes: MAP.as_bytes(), start };
     let mut image = |_: &str| Ok(b"P2 2 2 255\n0 254 254 254".to_vec());
@@ -205,7 +209,7 @@ fn a_map_is_laid_over_the_world_that_it_is_to_fit() {
 fn priors_are_derived_from_the_layers_asked_for() {
     let read = |layers: &[&str]| {
         let layers: Vec<String> = layers.iter().map(|l| (*l).to_owned()).collect();
-        read_world("worlds/basic.yaml", BASIC.as_bytes(), Some(&layers)).unwrap()
+        read_world("worlds/basic.yaml", BASIC.as_bytes(), Some(&layers), &mut NoModels).unwrap()
     };
     let occupied = |layers: &[&str], kind: Derived| {
         let drawing = draw_derived(&read(layers), kind, CUT_HEIGHT, 0.1).unwrap();
@@ -219,7 +223,9 @@ fn priors_are_derived_from_the_layers_asked_for() {
     assert_eq!(occupied(&["furniture"], Derived::Footprint).0, footprint);
     let bounds = occupied(&[], Derived::BoundingBox).1;
     assert!(bounds.contains("bounding box of basic"), "{bounds}");
-    let faults = read_world("w.world", WORLD.as_bytes(), Some(&["doors".to_owned()])).unwrap_err();
+    let faults =
+        read_world("w.world", WORLD.as_bytes(), Some(&["doors".to_owned()]), &mut NoModels)
+            .unwrap_err();
     assert_eq!(
         faults[0].render(false),
         "error: `w.world` has no layer `doors`\n |\n = help: all of a Gazebo world is its layer `walls`\n"
@@ -232,7 +238,7 @@ proptest! {
         for text in [KOBUKI, BASIC, ENGINEERING, MAP, WORLD] {
             let bytes = mutate(text.as_bytes(), &edits);
             let image = |_: &str| Ok(b"P2 2 2 255\n0 254 205 254".to_vec());
-            if let Ok(drawing) = draw("x", &bytes, CUT_HEIGHT, &mut { image }) {
+            if let Ok(drawing) = draw("x", &bytes, CUT_HEIGHT, &mut NoModels, &mut { image }) {
                 prop_assert!(roxmltree::Document::parse(&drawing.svg).is_ok());
             }
         }

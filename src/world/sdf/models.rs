@@ -3,6 +3,7 @@
 use crate::document::Diagnostic;
 use crate::world::Solid;
 use crate::world::mesh::Part;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// What stands for a URI.
@@ -20,6 +21,45 @@ pub enum Found {
 pub trait Models {
     /// What `uri` stands for.
     fn find(&mut self, uri: &str) -> Found;
+}
+
+/// Where the file that a URI names lies.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Place {
+    /// In the folder of a model: that folder and the way from there.
+    Model(String),
+    /// By a path from the folder of the world's file.
+    Beside(String),
+}
+
+/// Where the file `uri` lies, when `folders` are those of the models: `NAME` of `model://NAME/mesh.dae` to its folder.
+///
+/// # Errors
+/// Why it lies nowhere, to end a sentence; nothing to say where no folder is given at all.
+pub fn place_of(uri: &str, folders: &BTreeMap<String, String>) -> Result<Place, String> {
+    let model = uri.strip_prefix("model://");
+    let path = model.or_else(|| uri.strip_prefix("file://")).unwrap_or(uri);
+    if path.contains("://") || path.is_empty() {
+        return Err(String::new());
+    }
+    if path.split(['/', '\\']).any(|step| step == "..") {
+        return Err("its path leads out of the folder".to_owned());
+    }
+    if model.is_none() {
+        if path.starts_with('/') {
+            return Err("a path from the root of some machine is not followed".to_owned());
+        }
+        return Ok(Place::Beside(path.to_owned()));
+    }
+    if folders.is_empty() {
+        return Err(String::new());
+    }
+    let path = path.trim_start_matches('/');
+    let (name, rest) = path.split_once('/').unwrap_or((path, ""));
+    match folders.get(name) {
+        Some(folder) => Ok(Place::Model(format!("{folder}/{rest}"))),
+        None => Err(format!("no folder is given for the model `{name}`")),
+    }
 }
 
 /// No mesh is at hand.
