@@ -138,7 +138,6 @@ fn furniture_covers_as_much_of_the_floor_as_is_said() {
     }
 }
 
-<<<<<<< HEAD
 /// Section 4.6: of 30 m2, 9 m2 are static furniture and 2 m2 chairs and the like.
 #[test]
 fn the_house_is_as_full_as_is_said() {
@@ -151,7 +150,9 @@ fn the_house_is_as_full_as_is_said() {
         let covered = floor.share_covered(&world.contact(0.0, 0.4)) * floor.area();
         println!("house: {layer} covers {covered:.2} m2 of {:.1} m2", floor.area());
         assert!((covered - expected).abs() < 0.2, "{layer}: {covered} m2");
-=======
+    }
+}
+
 /// Section 4.2: "the structure of the walls remains static", and the furniture stands elsewhere.
 #[test]
 fn the_apartment_changes_its_furniture_and_keeps_its_walls() {
@@ -219,7 +220,6 @@ fn the_changed_apartments_are_those_of_the_authors_maps() {
         );
         assert!(precision >= 0.95, "{map}: {precision}");
         assert!((area / free - 1.0).abs() < 0.1, "{map}: {area} m2 of {free} m2");
->>>>>>> helper/meshes
     }
 }
 
