@@ -336,7 +336,7 @@ fn a_robot_that_estimates_its_pose_explores_where_one_that_trusts_odometry_is_lo
         for (cell, value) in recording.frames.iter().flat_map(|f| &f.map_changes) {
             map.set(*cell, *value);
         }
-        let inside = |cell: &crate::grid::Cell| {
+        let inside = |cell: &Cell| {
             let p = recording.map_pose.transform(map.frame().center(*cell));
             p.x.abs() < 3.8 && (0.2..1.8).contains(&p.y) && p.x.abs() > 0.3
         };
