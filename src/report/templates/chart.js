@@ -15,7 +15,7 @@ const curves = trials.map((trial) => {
   list.push([trial.time.at(-1) ?? 0, list.at(-1)[1]]);
   return list;
 });
-const top = racing ? Math.max(4, ...curves.flat().map(([, value]) => value)) : 100;
+const highest = racing ? Math.max(4, ...curves.flat().map(([, value]) => value)) : 100;
 
 function drawChart() {
   const ratio = window.devicePixelRatio || 1, width = chart.clientWidth, height = chart.clientHeight;
@@ -24,10 +24,10 @@ function drawChart() {
   const context = chart.getContext("2d");
   context.scale(ratio, ratio);
   const px = (t) => inset.left + (width - inset.left - inset.right) * t / (end || 1);
-  const py = (c) => height - inset.bottom - (height - inset.top - inset.bottom) * c / top;
+  const py = (c) => height - inset.bottom - (height - inset.top - inset.bottom) * c / highest;
   context.font = "12px system-ui, sans-serif";
   context.textAlign = "right";
-  for (const c of racing ? [0, top] : [0, 50, 100]) {
+  for (const c of racing ? [0, highest] : [0, 50, 100]) {
     context.strokeStyle = colour.edge;
     context.lineWidth = 1;
     trace(context, [[0, c], [end, c]], ([t, v]) => [px(t), py(v)], false);
@@ -65,7 +65,7 @@ function drawChart() {
   });
   context.strokeStyle = colour.ink;
   context.lineWidth = 1;
-  trace(context, [[now, 0], [now, top]], ([t, c]) => [px(t), py(c)], false);
+  trace(context, [[now, 0], [now, highest]], ([t, c]) => [px(t), py(c)], false);
   context.stroke();
 }
 

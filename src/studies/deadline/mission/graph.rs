@@ -75,18 +75,19 @@ fn doing(mind: &Explorer) -> String {
     format!("{motion}, {speed}")
 }
 
-/// What the mind is about to do, in words.
+/// What the mind is about to do and why, in words.
 pub(super) fn told(mind: &Explorer) -> String {
     let Some(last) = mind.moves().last() else { return String::new() };
     let map = mind.map();
-    let from = map.label(last.from);
-    let plan = mind.decisions().last().map_or_else(String::new, |decision| {
-        format!(
-            " to {}, {} edges within {} s",
+    let why = match (last.purpose, mind.decisions().last()) {
+        (Purpose::Initial, _) => "at random, to know the first vertices".to_owned(),
+        (Purpose::Navigate, Some(decision)) => format!(
+            "towards {}, {} edges within {} s",
             map.label(decision.target()),
             decision.deadline.edges,
             decision.deadline.seconds
-        )
-    });
-    format!("at {from}: {:?} {:?}{plan}", last.leave.motion, last.leave.speed)
+        ),
+        (Purpose::Explore | Purpose::Navigate, _) => "into the unexplored".to_owned(),
+    };
+    format!("at {}: {}, {why}", map.label(last.from), doing(mind))
 }
