@@ -260,6 +260,12 @@ pub(super) struct ReplayArgs {
     /// Write a still picture
     #[arg(long, value_name = "FILE")]
     pub(super) svg: Option<PathBuf>,
+    /// Write the first trial as a bag of ROS 2 messages (MCAP), as Foxglove and `ros2 bag` read it
+    #[arg(long, value_name = "FILE")]
+    pub(super) mcap: Option<PathBuf>,
+    /// Scans per second in the bag, at most [default: all that were taken]
+    #[arg(long, value_name = "HZ", requires = "mcap", value_parser = rate)]
+    pub(super) scan_rate: Option<f64>,
     /// Deadline study: write the constrained MDP of every plan of the first trial into this folder, for `solve-cmdp`
     #[arg(long, value_name = "DIR")]
     pub(super) plans: Option<PathBuf>,
@@ -278,6 +284,12 @@ pub(super) struct ReplayArgs {
     /// Which candidate of that choice, from 1 [default: the chosen one]
     #[arg(long, value_name = "CANDIDATE", requires = "decision")]
     pub(super) gain: Option<usize>,
+}
+
+/// A rate in Hz.
+fn rate(text: &str) -> Result<f64, String> {
+    let rate = text.parse().ok().filter(|rate: &f64| rate.is_finite() && *rate > 0.0);
+    rate.ok_or_else(|| "expected a number above 0".to_owned())
 }
 
 #[derive(Debug, Args)]

@@ -95,7 +95,7 @@ pub(super) fn recording(frames: usize) -> Recording {
         map_frame: frame,
         map_pose,
         frames: out,
-        plans: Vec::new(),
+        ..Recording::default()
     }
 }
 

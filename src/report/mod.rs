@@ -4,6 +4,7 @@
 //! style and script inside and forbid everything else by their own content security policy.
 
 mod agreement;
+pub mod bag;
 mod content;
 mod difference;
 mod gain_still;
@@ -19,6 +20,7 @@ mod tables;
 mod template;
 
 pub use agreement::Agreement;
+pub use bag::{Bag, bag};
 pub use content::{
     Assumption, Citation, ClaimRow, Command, Figure, Headline, InputRow, Measured, OutcomeCount,
     ReportCell, ReportContent, ReportRow, ReportTable,

@@ -3,7 +3,7 @@
 use super::pack::{deltas, grid, points, runs, whole};
 use crate::geometry::{Bounds, Outline, Point};
 use crate::grid::{GridFrame, Occupancy, OccupancyGrid};
-use crate::studies::recording::{Decision, Frame, Recording};
+use crate::studies::recording::{Decision, Frame, GraphView, Recording};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -42,6 +42,9 @@ pub(super) struct Recorded<'a> {
     paths: Vec<(usize, String)>,
     decisions: Vec<(usize, Choice)>,
     events: Vec<(usize, &'a str)>,
+    /// Deadline study: T (s).
+    deadline: Option<f64>,
+    graphs: Vec<(usize, &'a GraphView)>,
 }
 
 #[derive(Debug, Serialize)]
@@ -108,6 +111,8 @@ impl<'a> Recorded<'a> {
             paths: each(frames, |f| f.path.as_ref().map(|path| points(path, MILLI))),
             decisions: each(frames, |f| f.decision.as_ref().map(choice)),
             events: each(frames, |f| f.event.as_deref()),
+            deadline: recording.deadline_s,
+            graphs: each(frames, |f| f.graph.as_ref()),
         }
     }
 }

@@ -10,6 +10,9 @@ const SCRIPT: &str = concat!(
     "\n",
     include_str!("templates/unpack.js"),
     include_str!("templates/draw.js"),
+    include_str!("templates/graph.js"),
+    include_str!("templates/panels.js"),
+    include_str!("templates/chart.js"),
     include_str!("templates/replay.js")
 );
 
@@ -74,6 +77,9 @@ mod tests {
         let parts = [
             include_str!("templates/unpack.js"),
             include_str!("templates/draw.js"),
+            include_str!("templates/graph.js"),
+            include_str!("templates/panels.js"),
+            include_str!("templates/chart.js"),
             include_str!("templates/replay.js"),
         ];
         assert!(parts.iter().all(|part| part.lines().count() <= 300));

@@ -202,9 +202,21 @@ pub fn execute_timed(spec: &TrialSpec, watch: &mut dyn Stopwatch) -> TrialRecord
     }
 }
 
-/// Runs a trial and writes everything down. The record is the one that [`execute`] yields.
+/// Runs a trial and writes down what a replay shows. The record is the one that [`execute`] yields.
 pub fn reenact(spec: &TrialSpec) -> (TrialRecord, recording::Recording) {
-    let mut recording = recording::Recording::default();
+    reenact_into(spec, recording::Recording::default())
+}
+
+/// Runs a trial and writes down what a replay shows and every scan. The record is the one that [`execute`] yields.
+pub fn reenact_sensing(spec: &TrialSpec) -> (TrialRecord, recording::Recording) {
+    let sensed = Some(Vec::new());
+    reenact_into(spec, recording::Recording { sensed, ..recording::Recording::default() })
+}
+
+fn reenact_into(
+    spec: &TrialSpec,
+    mut recording: recording::Recording,
+) -> (TrialRecord, recording::Recording) {
     let record = match &spec.setup {
         Setup::PriorMap(setup) => prior_map::run(spec, setup, Some(&mut recording), &mut ()),
         Setup::Deadline(setup) => deadline::run(spec, setup, Some(&mut recording), &mut ()),

@@ -2,6 +2,7 @@
 
 use crate::geometry::{Outline, Point, Pose};
 use crate::grid::{Cell, GridFrame, Occupancy, OccupancyGrid};
+use crate::robot::{Odometry, Scan};
 use serde::Serialize;
 
 /// Everything that happened in one trial.
@@ -24,6 +25,23 @@ pub struct Recording {
     /// Deadline study: the constrained MDPs that were solved, as JSON that `solve-cmdp` reads, in order of time.
     #[serde(skip)]
     pub plans: Vec<SolvedPlan>,
+    /// Deadline study: T, the global deadline (s).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub deadline_s: Option<f64>,
+    /// Every scan that was taken, where a recording was asked for them, in order of time.
+    #[serde(skip)]
+    pub sensed: Option<Vec<Sensed>>,
+}
+
+/// A scan as the robot's sensors delivered it, with where the robot then believed to be.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sensed {
+    /// The scan, every beam of it.
+    pub scan: Scan,
+    /// Odometry when it was taken, in the odometry frame.
+    pub odometry: Odometry,
+    /// The robot's own estimate of its pose in the frame of its map.
+    pub believed: Pose,
 }
 
 /// A plan of the deadline study.
@@ -46,6 +64,8 @@ impl Default for Recording {
             map_pose: Pose::default(),
             frames: Vec::new(),
             plans: Vec::new(),
+            deadline_s: None,
+            sensed: None,
         }
     }
 }
@@ -74,6 +94,9 @@ pub struct Frame {
     /// The planned path (m, world frame), when it changed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub path: Option<Vec<Point>>,
+    /// Deadline study: the robot's map and what it is about to do, when either changed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub graph: Option<GraphView>,
     /// Something worth a line of text.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub event: Option<String>,
@@ -103,4 +126,55 @@ pub struct FrontierView {
     pub gain_m2: f64,
     /// u(p), in 0..=1.
     pub utility: f64,
+}
+
+/// Deadline study: the toposemantic map as the robot knows it, and its plan on it. The map itself has no positions:
+/// vertices are drawn where the robot was when it first arrived at them.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct GraphView {
+    /// V, in order of discovery.
+    pub vertices: Vec<VertexView>,
+    /// Explored edges, as pairs of vertices, the smaller first, each once.
+    pub edges: Vec<(usize, usize)>,
+    /// v_c.
+    pub current: usize,
+    /// v, where the robot is on its way to one.
+    pub target: Option<usize>,
+    /// t_d, as an instant of the trial (s), while a plan is followed.
+    pub leg_deadline_s: Option<f64>,
+    /// π*: what it may do at each vertex of the plan.
+    pub policy: Vec<ActionView>,
+    /// What it does now: `door left, fast`.
+    pub doing: String,
+}
+
+/// One vertex.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct VertexView {
+    /// L(v), as in Figure 1: `R1`, `c1a`.
+    pub label: String,
+    /// Whether it is a room.
+    pub room: bool,
+    /// Whether it is the goal.
+    pub goal: bool,
+    /// Where the robot was when it came there first (m, world frame).
+    pub at: Point,
+    /// Headings (rad) of its edges to unexplored space.
+    pub unexplored: Vec<f64>,
+}
+
+/// One action of a policy.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct ActionView {
+    /// Where it is taken.
+    pub from: usize,
+    /// Where it leads.
+    pub to: usize,
+    /// With which probability, 0 to 1.
+    pub probability: f64,
+    /// Whether it is done fast.
+    pub fast: bool,
 }

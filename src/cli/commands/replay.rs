@@ -5,17 +5,18 @@ use crate::cli::exit::{Exit, Failure};
 use crate::cli::load;
 use crate::cli::terminal::{Terminal, counted};
 use crate::plan::Plan;
-use crate::report::{GainView, Shown, gain_svg, replay_page, still_svg};
+use crate::report::{GainView, Shown, bag, gain_svg, replay_page, still_svg};
 use crate::studies::recording::Recording;
 use crate::studies::{self, Setup, TrialRecord};
 use crate::verify::plan_of;
 
 /// Re-enacts one trial or two.
 pub(in crate::cli) fn run(args: &ReplayArgs, terminal: Terminal) -> Result<Exit, Failure> {
-    if args.html.is_none() && args.svg.is_none() && args.plans.is_none() {
+    let asked = [&args.html, &args.svg, &args.mcap, &args.plans];
+    if asked.iter().all(|file| file.is_none()) {
         return Err(Failure::not_understood(
-            "say what to write: `--html FILE` for a page in which the trial plays, `--svg FILE` for a still, `--plans DIR` \
-             for the plans of a deadline study",
+            "say what to write: `--html FILE` for a page in which the trial plays, `--svg FILE` for a still, `--mcap FILE` \
+             for a bag of ROS 2 messages, `--plans DIR` for the plans of a deadline study",
         ));
     }
     let bundle = load::bundle(&args.bundle)?;
@@ -30,7 +31,10 @@ pub(in crate::cli) fn run(args: &ReplayArgs, terminal: Terminal) -> Result<Exit,
     for wanted in &args.trials {
         let spec = plan.find(wanted).map_err(Failure::not_understood)?;
         let name = format!("{}/{}", spec.condition.slug(), spec.trial);
-        let (record, recording) = studies::reenact(spec);
+        let (record, recording) = match args.mcap {
+            Some(_) if played.is_empty() => studies::reenact_sensing(spec),
+            _ => studies::reenact(spec),
+        };
         let same = archived
             .iter()
             .find(|r| r.key == spec.key)
@@ -64,6 +68,14 @@ pub(in crate::cli) fn run(args: &ReplayArgs, terminal: Terminal) -> Result<Exit,
         };
         load::write(path, still.as_bytes())?;
         terminal.note(&format!("wrote {}", path.display()));
+    }
+    if let (Some(path), Some((_, recording))) = (&args.mcap, played.first()) {
+        let bag = bag(recording, args.scan_rate).map_err(Failure::failed)?;
+        load::write(path, &bag.bytes)?;
+        terminal.note(&format!("wrote {}", path.display()));
+        for (topic, count) in &bag.counts {
+            terminal.note(&format!("  {topic}: {}", counted(*count as usize, "message")));
+        }
     }
     if let (Some(folder), Some((_, recording))) = (&args.plans, played.first()) {
         for (i, plan) in recording.plans.iter().enumerate() {

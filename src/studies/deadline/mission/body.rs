@@ -3,7 +3,7 @@
 
 use super::Prepared;
 use crate::cmdp::build::Speed;
-use crate::geometry::{Cardinal, Pose};
+use crate::geometry::{Cardinal, Point, Pose};
 use crate::navigation::maneuver::{self, CONTROL_PERIOD, Leg, Pilot, Sense, SpeedLimits};
 use crate::rng::Seeds;
 use crate::robot::{CompassReading, Detection, Scan, Twist};
@@ -13,7 +13,7 @@ use crate::sim::{
 };
 use crate::studies::deadline::intersection::{Intersection, Opening};
 use crate::studies::deadline::{ErrorShape, Hiding, IntersectionDetectionSystem, Setup};
-use crate::studies::recording::{Frame, Recording};
+use crate::studies::recording::{Frame, GraphView, Recording, Sensed};
 use crate::studies::state_chain::StateChain;
 use crate::units::{Radians, Seconds, Tick};
 
@@ -94,6 +94,7 @@ impl<'a> Body<'a> {
         if let Some(recording) = &mut recording {
             recording.world.clone_from(&prepared.visible);
             recording.footprint = robot.footprint.clone();
+            recording.map_pose = start;
         }
         let rule = setup.parameters.pilot;
         Self {
@@ -159,17 +160,36 @@ impl<'a> Body<'a> {
         self.recording.as_deref_mut()
     }
 
-    /// Writes a line of text into the recording.
-    pub(super) fn note(&mut self, event: impl FnOnce() -> String) {
+    /// Whether the trial is written down.
+    pub(super) fn is_recorded(&self) -> bool {
+        self.recording.is_some()
+    }
+
+    /// The true position, for drawing.
+    pub(super) fn position(&self) -> Point {
+        self.sim.true_pose().position()
+    }
+
+    /// Writes what the mind knows and is about to do into the recording, and the same in words.
+    pub(super) fn note(&mut self, graph: GraphView, event: String) {
         let frame = self.frame();
         if let Some(recording) = &mut self.recording {
-            recording.frames.push(Frame { event: Some(event()), ..frame });
+            recording.frames.push(Frame { graph: Some(graph), event: Some(event), ..frame });
+        }
+    }
+
+    fn note_sensed(&mut self) {
+        if let Some(sensed) = self.recording.as_mut().and_then(|r| r.sensed.as_mut()) {
+            let odometry = self.sim.odometry_at_scan();
+            let believed = odometry.pose;
+            sensed.push(Sensed { scan: self.scan.clone(), odometry, believed });
         }
     }
 
     /// Drives for one control period: sense, steer, move.
     pub(super) fn step(&mut self) -> Happening {
         self.sim.read_scan(&mut self.scan);
+        self.note_sensed();
         self.sim.read_detections(&mut self.detections);
         let blind = CompassReading { stamp: self.sim.now(), heading: 0.0 };
         let compass = self.sim.read_compass().unwrap_or(blind);

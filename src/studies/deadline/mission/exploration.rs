@@ -2,8 +2,9 @@
 
 use super::body::{Body, Happening};
 use super::tally::{self, Tally};
-use super::{Ending, Prepared, record};
+use super::{Ending, Prepared, graph, record};
 use crate::cmdp::build::Maneuvers;
+use crate::geometry::Point;
 use crate::studies::deadline::Setup;
 use crate::studies::deadline::exploration::{Explorer, Next};
 use crate::studies::deadline::planner::Plan;
@@ -43,6 +44,8 @@ struct Exploration<'a> {
     patience: Tick,
     /// When a vertex was last new.
     discovered: Tick,
+    /// Where the robot was when it came to each vertex first, for drawing.
+    places: Vec<Point>,
 }
 
 impl<'a> Exploration<'a> {
@@ -66,6 +69,7 @@ impl<'a> Exploration<'a> {
             deadline: Tick::at_or_after(Seconds(mission.deadline_s)),
             patience: Tick::at_or_after(Seconds(mission.stalled_after_s)),
             discovered: Tick(0),
+            places: Vec::new(),
         }
     }
 
@@ -94,6 +98,7 @@ impl<'a> Exploration<'a> {
                     }
                     if self.mind.map().len() > known {
                         self.discovered = now;
+                        self.places.push(self.body.position());
                     }
                     match next {
                         Next::GlobalSuccess => return Ending::plain(Outcome::Reached, now),
@@ -105,8 +110,12 @@ impl<'a> Exploration<'a> {
                         Next::Leave(leave) => {
                             self.tally.begin(leave.motion, leave.speed, now);
                             self.body.leave(leave.exit, leave.opening, leave.speed);
-                            let mind = &self.mind;
-                            self.body.note(|| told(mind));
+                            if self.body.is_recorded() {
+                                self.body.note(
+                                    graph::view(&self.mind, &self.places),
+                                    graph::told(&self.mind),
+                                );
+                            }
                         }
                     }
                 }
@@ -125,6 +134,7 @@ impl Exploration<'_> {
     /// Where the trial is written down, the constrained MDPs that were solved are too.
     fn write_plans_down(&mut self) {
         let Some(recording) = self.body.recording() else { return };
+        recording.deadline_s = Some(self.deadline.seconds().get());
         for decision in self.mind.decisions() {
             // A plan without a programme (an ablation's, or one that is already there) has no model to show.
             if let Some(Ok(Some(document))) = decision.plan().map(Plan::document) {
@@ -132,20 +142,4 @@ impl Exploration<'_> {
             }
         }
     }
-}
-
-/// What the mind is about to do, in words.
-fn told(mind: &Explorer) -> String {
-    let Some(last) = mind.moves().last() else { return String::new() };
-    let map = mind.map();
-    let from = map.label(last.from);
-    let plan = mind.decisions().last().map_or_else(String::new, |decision| {
-        format!(
-            " to {}, {} edges within {} s",
-            map.label(decision.target()),
-            decision.deadline.edges,
-            decision.deadline.seconds
-        )
-    });
-    format!("at {from}: {:?} {:?}{plan}", last.leave.motion, last.leave.speed)
 }

@@ -2,6 +2,7 @@
 
 mod body;
 mod exploration;
+mod graph;
 mod passage;
 mod tally;
 #[cfg(test)]

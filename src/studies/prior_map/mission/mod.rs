@@ -258,10 +258,17 @@ impl Mission<'_> {
     /// Step (a): shows the mind the scan just taken, where it wants it.
     fn perceive(&mut self) {
         let odometry = self.known(self.sim.odometry_at_scan());
-        if !self.mind.wants_scan(odometry) {
+        let wanted = self.mind.wants_scan(odometry);
+        if wanted || self.recorder.as_ref().is_some_and(Recorder::wants_scans) {
+            self.sim.read_scan(&mut self.scan);
+        }
+        if let Some(recorder) = &mut self.recorder {
+            let believed = self.mind.pose(odometry.pose);
+            recorder.sensed(&self.scan, self.sim.odometry_at_scan(), believed);
+        }
+        if !wanted {
             return;
         }
-        self.sim.read_scan(&mut self.scan);
         let Some(changes) = self.mind.take_scan(odometry, &self.scan) else { return };
         let is_new = !changes.is_empty();
         for change in changes {

@@ -4,10 +4,10 @@ use crate::geometry::{Outline, Point, Pose};
 use crate::grid::{Cell, GridFrame};
 use crate::mapping::Change;
 use crate::math;
-use crate::robot::Scan;
+use crate::robot::{Odometry, Scan};
 use crate::studies::prior_map::Setup;
 use crate::studies::prior_map::choice::Choice;
-use crate::studies::recording::{Decision, Frame, FrontierView, Recording};
+use crate::studies::recording::{Decision, Frame, FrontierView, Recording, Sensed};
 use crate::units::Tick;
 
 /// A recording in the making.
@@ -25,6 +25,7 @@ impl<'a> Recorder<'a> {
         recording.world = visible.to_vec();
         recording.footprint = setup.robot.footprint.clone();
         recording.prior = setup.prior.as_deref().cloned();
+        recording.map_pose = setup.start;
         let resolution = setup.parameters.mapping.resolution_m;
         Self {
             recording,
@@ -33,6 +34,18 @@ impl<'a> Recorder<'a> {
             pending: Frame::default(),
             low: Cell::new(i32::MAX, i32::MAX),
             high: Cell::new(i32::MIN, i32::MIN),
+        }
+    }
+
+    /// Whether every scan is to be written down, also those that the mind does not look at.
+    pub(super) fn wants_scans(&self) -> bool {
+        self.recording.sensed.is_some()
+    }
+
+    /// Writes `scan` down where scans are wanted, taken where the robot `believed` to be.
+    pub(super) fn sensed(&mut self, scan: &Scan, odometry: Odometry, believed: Pose) {
+        if let Some(sensed) = &mut self.recording.sensed {
+            sensed.push(Sensed { scan: scan.clone(), odometry, believed });
         }
     }
 
@@ -91,7 +104,6 @@ impl Drop for Recorder<'_> {
             return;
         }
         let low = self.low;
-        self.recording.map_pose = self.start;
         self.recording.map_frame = GridFrame {
             resolution: self.resolution,
             origin: Point::new(f64::from(low.x), f64::from(low.y)) * self.resolution,

@@ -1,0 +1,125 @@
+use super::super::fixtures::recording;
+use super::*;
+use crate::robot::{self, Scan, Twist};
+use crate::studies::recording::{ActionView, GraphView, VertexView};
+use crate::units::Tick;
+use mcap::MessageStream;
+
+/// Ten seconds of driving with a scan every 50 ms, and a graph.
+fn sensing() -> Recording {
+    let mut recording = recording(100);
+    let tick = Tick::period_of(20.0).unwrap();
+    let sensed = (0..200_u64).map(|i| {
+        let stamp = Tick(i * tick.0);
+        let x = 0.05 * stamp.seconds().get();
+        Sensed {
+            scan: Scan {
+                stamp,
+                mount: Pose::new(0.1, 0.0, 0.0),
+                min_angle: -1.0,
+                increment: 0.5,
+                min_range: 0.1,
+                max_range: 4.0,
+                ranges: vec![1.0, 2.5, f64::INFINITY, 0.5, 3.0],
+            },
+            odometry: robot::Odometry {
+                stamp,
+                pose: Pose::new(x, 0.0, 0.2),
+                twist: Twist { linear: 0.05, angular: 0.0 },
+            },
+            believed: Pose::new(x + 0.3, 0.1, 0.25),
+        }
+    });
+    recording.sensed = Some(sensed.collect());
+    let vertex = |label: &str, x: f64| VertexView {
+        label: label.into(),
+        room: label.starts_with('R'),
+        goal: false,
+        at: Point::new(x, 1.0),
+        unexplored: vec![0.0],
+    };
+    recording.frames[10].graph = Some(GraphView {
+        vertices: vec![vertex("R1", 0.0), vertex("c1a", 2.0)],
+        edges: vec![(0, 1)],
+        policy: vec![ActionView { from: 0, to: 1, probability: 0.5, fast: true }],
+        target: Some(1),
+        ..GraphView::default()
+    });
+    recording.frames[10].path = Some(vec![Point::ZERO, Point::new(1.0, 1.0)]);
+    recording
+}
+
+#[test]
+fn every_topic_is_there_with_its_type_and_in_order_of_time() {
+    let bag = bag(&sensing(), None).unwrap();
+    let (mut types, mut last) = (BTreeMap::new(), 0);
+    for message in MessageStream::new(&bag.bytes).unwrap() {
+        let message = message.unwrap();
+        let schema = message.channel.schema.as_ref().unwrap();
+        assert_eq!(
+            (schema.encoding.as_str(), message.channel.message_encoding.as_str()),
+            ("ros2msg", "cdr")
+        );
+        assert!(message.log_time >= last, "{}", message.channel.topic);
+        last = message.log_time;
+        assert_eq!(message.data[..4], [0, 1, 0, 0]);
+        *types.entry((message.channel.topic.clone(), schema.name.clone())).or_insert(0_u32) += 1;
+    }
+    let told: Vec<String> =
+        types.iter().map(|((topic, kind), count)| format!("{topic} {kind} {count}")).collect();
+    assert_eq!(
+        told,
+        [
+            "/clock rosgraph_msgs/msg/Clock 100",
+            "/frontiers visualization_msgs/msg/MarkerArray 10",
+            "/graph visualization_msgs/msg/MarkerArray 1",
+            "/ground_truth/pose geometry_msgs/msg/PoseStamped 100",
+            "/map nav_msgs/msg/OccupancyGrid 11",
+            "/odom nav_msgs/msg/Odometry 200",
+            "/plan nav_msgs/msg/Path 10",
+            "/prior_map nav_msgs/msg/OccupancyGrid 1",
+            "/rosout rcl_interfaces/msg/Log 10",
+            "/scan sensor_msgs/msg/LaserScan 200",
+            "/tf tf2_msgs/msg/TFMessage 200",
+            "/tf_static tf2_msgs/msg/TFMessage 1",
+            "/world visualization_msgs/msg/MarkerArray 1",
+        ]
+    );
+    let counted: u32 = bag.counts.values().sum();
+    assert_eq!(counted, types.values().sum::<u32>());
+}
+
+#[test]
+fn a_scan_is_laid_out_as_common_data_representation_has_it() {
+    let bag = bag(&sensing(), None).unwrap();
+    let scan = MessageStream::new(&bag.bytes)
+        .unwrap()
+        .map(Result::unwrap)
+        .find(|message| message.channel.topic == "/scan")
+        .unwrap();
+    let at = |i: usize| f32::from_le_bytes(scan.data[i..i + 4].try_into().unwrap());
+    // Encapsulation 4; stamp 8; "laser" with length and end 4 + 6, padded to 12; seven floats; the number of ranges.
+    assert_eq!(scan.data[12..16], 6_u32.to_le_bytes());
+    assert_eq!(&scan.data[16..22], b"laser\0");
+    assert_eq!((at(24), at(28), at(32)), (-1.0, 1.0, 0.5));
+    assert_eq!((at(44), at(48)), (0.1, 4.0));
+    assert_eq!(scan.data[52..56], 5_u32.to_le_bytes());
+    assert_eq!((at(56), at(60), at(64)), (1.0, 2.5, f32::INFINITY));
+    assert_eq!(scan.data.len(), 56 + 5 * 4 + 4);
+}
+
+#[test]
+fn thinned_scans_keep_their_rate_and_nothing_else_is_lost() {
+    let all = bag(&sensing(), None).unwrap();
+    let thinned = bag(&sensing(), Some(5.0)).unwrap();
+    assert_eq!((all.counts["/scan"], thinned.counts["/scan"]), (200, 50));
+    assert_eq!(all.counts["/odom"], thinned.counts["/odom"]);
+    assert!(thinned.bytes.len() < all.bytes.len());
+}
+
+#[test]
+fn the_same_recording_gives_the_same_bytes_and_an_empty_one_a_bag() {
+    assert_eq!(bag(&sensing(), None).unwrap().bytes, bag(&sensing(), None).unwrap().bytes);
+    let empty = bag(&Recording::default(), None).unwrap();
+    assert_eq!(empty.counts.keys().copied().collect::<Vec<_>>(), ["/tf_static", "/world"]);
+}

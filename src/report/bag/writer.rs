@@ -1,0 +1,67 @@
+//! MCAP with CDR messages: the one door to the container and to the encoding.
+
+use super::messages::{Message, nanoseconds};
+use byteorder::LittleEndian;
+use mcap::records::MessageHeader;
+use mcap::{WriteOptions, Writer};
+use std::collections::BTreeMap;
+use std::io::Cursor;
+
+/// Encapsulation header of little-endian plain CDR (DDSI-RTPS 2.5, section 10.2), as `rmw` writes it.
+const CDR_LE: [u8; 4] = [0, 1, 0, 0];
+
+/// A bag in the making.
+pub(super) struct BagWriter {
+    writer: Writer<Cursor<Vec<u8>>>,
+    channels: BTreeMap<&'static str, (u16, u32)>,
+}
+
+impl BagWriter {
+    /// An empty bag. Nothing in it tells of when or where it was written.
+    pub(super) fn new() -> Result<Self, String> {
+        let options = WriteOptions::new()
+            .profile("ros2")
+            .library(concat!("reenact ", env!("CARGO_PKG_VERSION")))
+            .compression(None);
+        let writer = options.create(Cursor::new(Vec::new())).map_err(|e| e.to_string())?;
+        Ok(Self { writer, channels: BTreeMap::new() })
+    }
+
+    /// Appends `message` on `topic`, at the simulated time `time_s`.
+    pub(super) fn write<M: Message>(
+        &mut self,
+        topic: &'static str,
+        time_s: f64,
+        message: &M,
+    ) -> Result<(), String> {
+        let (channel_id, sequence) = match self.channels.get(topic) {
+            Some((id, count)) => (*id, *count),
+            None => (self.open::<M>(topic)?, 0),
+        };
+        self.channels.insert(topic, (channel_id, sequence + 1));
+        let mut bytes = CDR_LE.to_vec();
+        let content =
+            cdr_encoding::to_vec::<M, LittleEndian>(message).map_err(|e| e.to_string())?;
+        bytes.extend(content);
+        let time = nanoseconds(time_s);
+        let header = MessageHeader { channel_id, sequence, log_time: time, publish_time: time };
+        self.writer.write_to_known_channel(&header, &bytes).map_err(|e| e.to_string())
+    }
+
+    fn open<M: Message>(&mut self, topic: &'static str) -> Result<u16, String> {
+        let definition = M::definition();
+        let schema = self
+            .writer
+            .add_schema(M::TYPE, "ros2msg", definition.as_bytes())
+            .map_err(|e| e.to_string())?;
+        let metadata = BTreeMap::new();
+        self.writer.add_channel(schema, topic, "cdr", &metadata).map_err(|e| e.to_string())
+    }
+
+    /// The file's bytes, and how many messages each topic has.
+    pub(super) fn finish(mut self) -> Result<(Vec<u8>, BTreeMap<&'static str, u32>), String> {
+        self.writer.finish().map_err(|e| e.to_string())?;
+        let counts = self.channels.into_iter().map(|(topic, (_, count))| (topic, count));
+        Ok((self.writer.into_inner().into_inner(), counts.collect()))
+    }
+}

@@ -1,0 +1,126 @@
+
+const trials = JSON.parse(document.getElementById("data").textContent).map(unpackTrial);
+const element = (id) => document.getElementById(id);
+const make = (name, className, text) => {
+  const node = document.createElement(name);
+  if (className) node.className = className;
+  if (text !== undefined) node.textContent = text;
+  return node;
+};
+
+// --- time ------------------------------------------------------------------------------------------------
+
+const end = Math.max(0, ...trials.map((trial) => trial.time.at(-1) ?? 0));
+const merged = (lists) => [...new Set(lists.flat())].sort((a, b) => a - b);
+const instants = merged(trials.map((trial) => trial.time));
+const chosenAt = (trial) => (trial.deadline ? trial.graphs : trial.decisions).map(([at]) => trial.time[at]);
+const decisions = merged(trials.map(chosenAt));
+let now = 0, playing = false, last = 0;
+
+// The number of the last of `count` ascending values `value(i)` that is at most `limit`; -1 for none.
+function lastAt(count, value, limit) {
+  let low = 0, high = count;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (value(middle) <= limit) low = middle + 1; else high = middle;
+  }
+  return low - 1;
+}
+const frameAt = (trial) => lastAt(trial.time.length, (i) => trial.time[i], now + 1e-6);
+const latest = (list, frame) => list[lastAt(list.length, (i) => list[i][0], frame)];
+
+// --- one panel per trial ---------------------------------------------------------------------------------
+
+function panelOf(trial) {
+  const section = make("section", "card trial");
+  section.setAttribute("aria-label", trial.name);
+  const view = make("div", "view"), side = make("div");
+  const canvas = make("canvas");
+  canvas.setAttribute("role", "img");
+  const status = make("p", "now");
+  const scroll = make("div", "scroll"), table = make("table", "decision"), events = make("ul", "events");
+  scroll.append(table);
+  side.append(status, scroll, events);
+  view.append(canvas, side);
+  const heading = make("h2", "", trial.name);
+  if (trials.length > 1) heading.prepend(swatch(trials.indexOf(trial)));
+  section.append(heading, view);
+  element("trials").append(section);
+  const cells = new Uint8Array(trial.frame.width * trial.frame.height);
+  return { trial, canvas, status, table, events, cells, map: picture(trial.frame), applied: -1, stale: true };
+}
+
+function drawPanel(panel) {
+  const { trial } = panel, frame = frameAt(trial), view = viewport(panel), { context } = view;
+  context.fillStyle = colour.unknown;
+  context.fillRect(0, 0, view.width, view.height);
+  const shown = (name) => document.querySelector(`[data-layer=${name}]`).checked;
+  const decision = latest(trial.decisions, frame), graph = latest(trial.graphs, frame);
+  if (shown("map")) {
+    advanceMap(panel, frame);
+    drawGrid(view, panel.map, trial.frame, trial.pose, 1);
+  }
+  if (shown("prior") && panel.prior) drawGrid(view, panel.prior, trial.prior.frame, [0, 0, 0], 0.6);
+  if (shown("world")) drawWorld(view, trial);
+  if (frame >= 0) {
+    if (shown("scan")) drawScan(view, trial, frame);
+    if (shown("path")) drawPath(view, trial, frame);
+    if (shown("frontiers") && decision) drawFrontiers(view, trial, decision[1]);
+    if (shown("graph") && graph) drawGraph(view, graph[1]);
+    drawRobot(view, trial, frame);
+  }
+  drawScale(view);
+  tell(panel, frame, decision, graph);
+}
+
+// --- the side panel --------------------------------------------------------------------------------------
+
+function tell(panel, frame, decision, graph) {
+  const { trial } = panel;
+  let text = "not begun";
+  if (frame >= 0) {
+    const [time, distance, coverage] = [trial.time[frame], trial.distance[frame], trial.coverage[frame]];
+    const ended = now > trial.time.at(-1) ? " · ended" : "";
+    const what = trial.deadline ? graphStatus(trial, graph?.[1], time) : `${coverage.toFixed(1)} % covered`;
+    text = `${time.toFixed(1)} s · ${distance.toFixed(2)} m · ${what}${ended}`;
+  }
+  panel.status.textContent = text;
+  panel.canvas.setAttribute("aria-label", `${trial.name}: map, frontiers, path and robot; ${text}`);
+  if (panel.decision !== decision) {
+    panel.decision = decision;
+    panel.table.replaceChildren(...(decision ? decisionRows(trial, decision) : []));
+  }
+  if (panel.graph !== graph) {
+    panel.graph = graph;
+    panel.table.replaceChildren(...(graph ? policyRows(trial, graph) : []));
+  }
+  const count = lastAt(trial.events.length, (i) => trial.events[i][0], frame) + 1;
+  if (panel.told !== count) {
+    panel.told = count;
+    const recent = trial.events.slice(Math.max(0, count - 4), count).reverse();
+    panel.events.replaceChildren(...recent.map(([at, event]) =>
+      make("li", "", `${trial.time[at].toFixed(1)} s  ${event}`)));
+  }
+}
+
+function decisionRows(trial, [at, decision]) {
+  const MOST = 8;
+  const row = (cells, name, className) => {
+    const line = make("tr", className);
+    line.append(...cells.map((text) => make(name, "", text)));
+    return line;
+  };
+  const when = `decision at ${trial.time[at].toFixed(1)} s`;
+  if (!decision.frontiers.length) return [make("caption", "", `${when}: no frontier is left`)];
+  const rows = [make("caption", "", `${when}: distance D, gain I, utility u`),
+    row(["", "D (m)", "I (m²)", "u"], "th")];
+  for (const i of decision.ranked) {
+    const { rank, distance, gain, utility } = decision.frontiers[i], chosen = i === decision.chosen;
+    if (rank > MOST && !chosen) continue;
+    const numbers = [distance.toFixed(2), gain.toFixed(2), utility.toFixed(3)];
+    rows.push(row([`${chosen ? "◆ " : ""}${rank}`, ...numbers], "td", chosen ? "chosen" : ""));
+  }
+  const more = decision.frontiers.length - rows.length + 2;
+  if (more > 0) rows.push(row(["", `and ${more} more`, "", ""], "td", "soft"));
+  return rows;
+}

@@ -1,0 +1,93 @@
+//! What the mind knows and is about to do, for those who look on.
+
+use crate::cmdp::build::{Motion, Place, Speed};
+use crate::geometry::Point;
+use crate::studies::deadline::exploration::{Decision, Explorer, Purpose};
+use crate::studies::deadline::planner::Plan;
+use crate::studies::deadline::toposemantic_map::{End, ToposemanticMap, VertexId};
+use crate::studies::recording::{ActionView, GraphView, VertexView};
+
+/// The map of `mind`, its vertices drawn at `places`, and its plan.
+pub(super) fn view(mind: &Explorer, places: &[Point]) -> GraphView {
+    let map = mind.map();
+    let vertices = map.ids().zip(places).map(|(v, at)| VertexView {
+        label: map.label(v).to_string(),
+        room: map.place(v) == Place::Room,
+        goal: map.is_goal(v),
+        at: *at,
+        unexplored: map.unexplored(v).map(|edge| edge.direction.heading()).collect(),
+    });
+    let mut edges: Vec<(usize, usize)> = map
+        .edges()
+        .filter_map(|edge| match edge.to {
+            End::Vertex(to) => {
+                Some((edge.from.index().min(to.index()), edge.from.index().max(to.index())))
+            }
+            End::Unexplored => None,
+        })
+        .collect();
+    edges.sort_unstable();
+    edges.dedup();
+    let leg = leg(mind);
+    GraphView {
+        vertices: vertices.collect(),
+        edges,
+        current: mind.current().map_or(0, VertexId::index),
+        target: leg.map(|decision| decision.target().index()),
+        leg_deadline_s: leg.map(|decision| decision.at_s + decision.deadline.seconds),
+        policy: leg.and_then(Decision::plan).map(|plan| policy(map, plan)).unwrap_or_default(),
+        doing: doing(mind),
+    }
+}
+
+/// The decision that the robot is following, if it is.
+fn leg(mind: &Explorer) -> Option<&Decision> {
+    let under_way = mind.moves().last()?;
+    (under_way.purpose == Purpose::Navigate).then(|| mind.decisions().last()).flatten()
+}
+
+/// π* as arrows between known vertices.
+fn policy(map: &ToposemanticMap, plan: &Plan) -> Vec<ActionView> {
+    let mut actions = Vec::new();
+    for v in map.ids() {
+        for (action, probability) in plan.choices(v) {
+            if let Some(End::Vertex(to)) = map.edge(v, action.exit).map(|edge| edge.to) {
+                let fast = action.speed == Speed::Fast;
+                actions.push(ActionView { from: v.index(), to: to.index(), probability, fast });
+            }
+        }
+    }
+    actions
+}
+
+/// The move under way, in words.
+fn doing(mind: &Explorer) -> String {
+    let Some(last) = mind.moves().last() else { return String::new() };
+    let motion = match last.leave.motion {
+        Motion::Corridor => "through the corridor",
+        Motion::DoorLeft => "door on the left",
+        Motion::DoorRight => "door on the right",
+    };
+    let speed = match last.leave.speed {
+        Speed::Slow => "slow",
+        Speed::Fast => "fast",
+    };
+    format!("{motion}, {speed}")
+}
+
+/// What the mind is about to do and why, in words.
+pub(super) fn told(mind: &Explorer) -> String {
+    let Some(last) = mind.moves().last() else { return String::new() };
+    let map = mind.map();
+    let why = match (last.purpose, mind.decisions().last()) {
+        (Purpose::Initial, _) => "at random, to know the first vertices".to_owned(),
+        (Purpose::Navigate, Some(decision)) => format!(
+            "towards {}, {} edges within {} s",
+            map.label(decision.target()),
+            decision.deadline.edges,
+            decision.deadline.seconds
+        ),
+        (Purpose::Explore | Purpose::Navigate, _) => "into the unexplored".to_owned(),
+    };
+    format!("at {}: {}, {why}", map.label(last.from), doing(mind))
+}
