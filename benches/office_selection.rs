@@ -73,7 +73,7 @@ fn selections(spec: &TrialSpec) -> (Vec<f64>, Vec<f64>) {
     );
     let delays = spec.seeds.stream("decision-delay");
     let mut mind = Explorer::new(&setup.parameters, &lidar, prior.clone(), delays);
-    let chooser = Chooser::new(&setup.parameters, &lidar, prior);
+    let mut chooser = Chooser::new(&setup.parameters, &lidar, prior);
     let mut scan = sim.blank_scan();
     let (mut times, mut frontiers) = (Vec::new(), Vec::new());
     let mut next_control = Tick(0);
