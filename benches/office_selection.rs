@@ -73,7 +73,7 @@ fn selections(spec: &TrialSpec) -> (Vec<f64>, Vec<f64>) {
     );
     let [delays, particles] = ["decision-delay", "slam"].map(|name| spec.seeds.stream(name));
     let mut mind = Explorer::new(&setup.parameters, &lidar, prior.clone(), delays, particles);
-    let chooser = Chooser::new(&setup.parameters, &lidar, prior);
+    let mut chooser = Chooser::new(&setup.parameters, &lidar, prior);
     let mut scan = sim.blank_scan();
     let (mut times, mut frontiers) = (Vec::new(), Vec::new());
     let mut next_control = Tick(0);
