@@ -182,11 +182,7 @@ fn a_previous_map_is_what_the_robot_before_ended_with_in_the_worlds_frame() {
         experiment.inputs.iter().filter(|i| i.written_in == WrittenIn::PreviousMap).collect();
     assert_eq!(sealed.len(), 4, "descriptor and image of each");
     let yaml = String::from_utf8(sealed[1].bytes.to_vec()).unwrap();
-    assert!(
-        sealed[1].name.ends_with(".yaml")
-            && yaml.starts_with(&format!("image: {}\n", sealed[0].name)),
-        "{yaml}"
-    );
+    assert!(yaml.starts_with(&format!("image: {}\n", sealed[0].name)), "{yaml}");
     let whys: Vec<&str> = experiment.assumptions.iter().map(|a| a.why.as_str()).collect();
     assert_eq!(whys, ["first", "second"]);
 
@@ -195,15 +191,8 @@ fn a_previous_map_is_what_the_robot_before_ended_with_in_the_worlds_frame() {
     assert_eq!(map.count(Occupancy::Unknown), 0);
     let keys = |maps: &str| changing(maps, &[]).0.unwrap().meanings[0].prior;
     assert_eq!(keys(CHAIN), keys(CHAIN), "a function of the manifest");
-    assert_ne!(
-        keys(CHAIN),
-        keys(
-            &CHAIN
-                .replace("prior: m0,", "prior: none,")
-                .replace("  m0", "  m1x")
-                .replace("m1x:", "m0:")
-        )
-    );
+    let second = |maps: &str| changing(maps, &[]).1.pop();
+    assert_ne!(second(CHAIN), second(&CHAIN.replace("t0", "t2")), "what it knew then counts");
     assert_ne!(
         changing(CHAIN, &[]).1,
         changing(CHAIN, &["seed=2"]).1,

@@ -152,8 +152,10 @@ impl Inputs for Afresh<'_> {
                 if sealed != *again {
                     let digest =
                         |bytes: &[u8]| format!("sha256:{}", Sha256Digest::of(bytes).short());
+                    // These names are flat and safe, and so what they are in the bundle.
+                    let path = format!("{}{}{name}", format::PAYLOAD, format::INPUTS);
                     let expected = format!("{} as explored again", digest(again));
-                    let fault = Fault::new(name.as_str(), expected, digest(&sealed));
+                    let fault = Fault::new(path, expected, digest(&sealed));
                     let hint = "the previous map that the study starts from is not what that exploration gives";
                     self.other.borrow_mut().push(fault.hint(hint));
                 }

@@ -1,6 +1,7 @@
 //! The tampering suite: every damage is found at the rung that should find it, and named.
 
 mod answers;
+mod previous;
 mod replicated;
 
 use super::*;

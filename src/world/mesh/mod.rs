@@ -26,7 +26,7 @@ pub type Triangle = [[f64; 3]; 3];
 /// A named part of a file: what SDF calls a submesh.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Part {
-    /// The names that it goes by: its node's and its geometry's in COLLADA, its object's in OBJ.
+    /// The names that it goes by: its node's and its geometry's in COLLADA, its group's in OBJ.
     pub names: Vec<String>,
     /// Its triangles, z up (m).
     pub triangles: Vec<Triangle>,

@@ -140,7 +140,7 @@ fn cube() -> String {
     let vertices =
         (0..8).map(|i| format!("v {} {} {}\n", corner(i, 0), corner(i, 1), corner(i, 2)));
     let faces = ["1 2 4 3", "5 7 8 6", "1 5 6 2", "3 4 8 7", "1 3 7 5", "2 6 8 4"];
-    vertices.chain(["o cube\n".to_owned()]).chain(faces.map(|face| format!("f {face}\n"))).collect()
+    vertices.chain(["g cube\n".to_owned()]).chain(faces.map(|face| format!("f {face}\n"))).collect()
 }
 
 fn mesh_of(name: &str, bytes: &[u8]) -> Found {
