@@ -72,7 +72,8 @@ fn selections(spec: &TrialSpec) -> (Vec<f64>, Vec<f64>) {
         &spec.seeds,
     );
     let delays = spec.seeds.stream("decision-delay");
-    let mut mind = Explorer::new(&setup.parameters, &lidar, prior.clone(), delays);
+    let particles = spec.seeds.stream("slam");
+    let mut mind = Explorer::new(&setup.parameters, &lidar, prior.clone(), delays, particles);
     let chooser = Chooser::new(&setup.parameters, &lidar, prior);
     let mut scan = sim.blank_scan();
     let (mut times, mut frontiers) = (Vec::new(), Vec::new());

@@ -34,7 +34,7 @@ use crate::robot::Robot;
 use crate::world::World;
 use std::sync::{Arc, OnceLock};
 
-pub use mission::{FURTHER_AT_MILESTONES, MILESTONES, Prepared, plan_figure, run};
+pub use mission::{FURTHER_AT_MILESTONES, MILESTONES, POSE_ERRORS, Prepared, plan_figure, run};
 
 /// Everything a trial of this study needs.
 #[derive(Debug)]
