@@ -4,7 +4,9 @@ use super::Experiment;
 use crate::claims::metric::WALL_TIME_COLUMNS;
 use crate::claims::{self, Claim};
 use crate::document::Diagnostic;
-use crate::studies::prior_map::{FURTHER_AT_MILESTONES, MILESTONES, coverage_at_distance};
+use crate::studies::prior_map::{
+    FURTHER_AT_MILESTONES, MILESTONES, POSE_ERRORS, coverage_at_distance,
+};
 use crate::studies::{Setup, StudyKind, deadline};
 
 /// Every fault of the experiment's claims.
@@ -72,6 +74,7 @@ fn prior_map_measures() -> Vec<String> {
         names.push(format!("time-s-at-{percent}"));
         names.extend(FURTHER_AT_MILESTONES.map(|name| format!("{name}-at-{percent}")));
     }
+    names.extend(POSE_ERRORS.map(str::to_owned));
     names.extend(WALL_TIME_COLUMNS.map(str::to_owned));
     names
 }

@@ -69,7 +69,7 @@ impl Hits {
         if self.count == u8::MAX {
             return self;
         }
-        #[expect(clippy::cast_sign_loss, clippy::cast_possible_truncation, reason = "masked")]
+        #[expect(clippy::cast_sign_loss, reason = "masked")]
         let within = |v: i32| (v & (CELL - 1)) as u16;
         Self { x: self.x + within(place.x), y: self.y + within(place.y), count: self.count + 1 }
     }

@@ -38,8 +38,8 @@ use std::sync::{Arc, OnceLock};
 use tour::TopoMetricMap;
 
 pub use mission::{
-    FURTHER_AT_MILESTONES, MILESTONES, Prepared, coverage_at_distance, explored_map, plan_figure,
-    run,
+    FURTHER_AT_MILESTONES, MILESTONES, POSE_ERRORS, Prepared, coverage_at_distance, explored_map,
+    plan_figure, run,
 };
 
 /// Everything a trial of this study needs.

@@ -10,6 +10,7 @@ mod tests;
 mod trace;
 
 pub use plan_figure::plan_figure;
+pub use pose_errors::POSE_ERRORS;
 pub use trace::{MILESTONES, coverage_at_distance};
 
 use super::explorer::{CONTROL_PERIOD, Ending, Explorer};

@@ -2,6 +2,17 @@
 
 use crate::geometry::Pose;
 
+/// Measures of a trial whose mind estimates its pose: the error of position (m) over the scans taken into the map, root mean
+/// square, median and largest, of the pose known at the time; root mean square of the way as it looks in the end; and of
+/// odometry alone.
+pub const POSE_ERRORS: [&str; 5] = [
+    "pose-error-m-rms",
+    "pose-error-m-median",
+    "pose-error-m-max",
+    "pose-error-m-rms-in-the-end",
+    "odometry-error-m-rms",
+];
+
 /// Poses at the scans that were taken into the map, in the frame of the manifest's start.
 #[derive(Debug, Default)]
 pub(super) struct PoseErrors {
@@ -29,14 +40,14 @@ impl PoseErrors {
             self.truth.iter().zip(way).map(|(&truth, &pose)| squared(truth, pose)).collect();
         let mut sorted = self.online.clone();
         sorted.sort_by(f64::total_cmp);
-        let max = sorted.last().copied().unwrap_or(0.0).sqrt();
-        vec![
-            ("pose-error-m-rms", root_mean(&self.online)),
-            ("pose-error-m-median", sorted[sorted.len() / 2].sqrt()),
-            ("pose-error-m-max", max),
-            ("pose-error-m-rms-in-the-end", root_mean(&in_the_end)),
-            ("odometry-error-m-rms", root_mean(&self.odometry)),
-        ]
+        let values = [
+            root_mean(&self.online),
+            sorted[sorted.len() / 2].sqrt(),
+            sorted.last().copied().unwrap_or(0.0).sqrt(),
+            root_mean(&in_the_end),
+            root_mean(&self.odometry),
+        ];
+        POSE_ERRORS.into_iter().zip(values).collect()
     }
 }
 
