@@ -69,7 +69,9 @@ impl Sketch {
                 if extent(&piece, across) > THICKEST_DOOR {
                     continue;
                 }
-                piece.iter().for_each(|cell| closed.set(*cell, true));
+                for cell in &piece {
+                    closed.set(*cell, true);
+                }
                 let width = extent(&piece, |cell| cell.x * along.x + cell.y * along.y);
                 doors += usize::from(width >= NARROWEST_DOOR);
             }

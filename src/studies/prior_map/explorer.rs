@@ -30,9 +30,7 @@ pub const CONTROL_PERIOD: Tick = Tick(300);
 const NAVIGATION_PERIOD: Tick = Tick(600);
 const LOCAL_MAP_PERIOD: Tick = Tick(900);
 
-/// A location the robot comes no closer to for this long is given up.
-const PATIENCE: Seconds = Seconds(15.0);
-/// Coming closer means by this much (m).
+/// Coming closer to a location means by this much (m).
 const PROGRESS: f64 = 0.1;
 /// A frontier whose candidate is this near (m) to one given up is given up too.
 const GIVEN_UP_RADIUS: f64 = 0.5;
@@ -335,10 +333,11 @@ impl Explorer {
             return;
         };
         let remaining = wave.metres(here).unwrap_or(f64::INFINITY);
+        let patience = Seconds(self.parameters.navigation.patience_s);
         journey.remaining = remaining;
         if remaining < journey.closest.0 - PROGRESS {
             journey.closest = (remaining, odometry.stamp);
-        } else if odometry.stamp > journey.closest.1 + Tick::at_or_after(PATIENCE) {
+        } else if odometry.stamp > journey.closest.1 + Tick::at_or_after(patience) {
             self.given_up.push(journey.target);
             self.steering = None;
             self.phase = Phase::Choosing;

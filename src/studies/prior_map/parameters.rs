@@ -205,6 +205,10 @@ parameters!(
         /// A target counts as reached within this distance (m), above 0.
         #[schemars(extend("exclusiveMinimum" = 0))]
         goal_tolerance_m: f64 = 0.3,
+        /// A location that the robot comes no closer to for this long (s), above 0, is given up. A turn on the spot has to fit.
+        #[serde(skip_serializing_if = "is_usual_patience")]
+        #[schemars(extend("exclusiveMinimum" = 0))]
+        patience_s: f64 = 15.0,
     }
 );
 
@@ -392,6 +396,13 @@ parameters!(
 /// Whether a parameter is at its type's default.
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
+}
+
+/// Whether a robot is as patient as it was before that was a parameter (s).
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over references")]
+#[expect(clippy::float_cmp, reason = "the very number")]
+fn is_usual_patience(value: &f64) -> bool {
+    *value == 15.0
 }
 
 /// Whether a parameter is `N`.
