@@ -299,6 +299,9 @@ impl Faults<'_> {
                 }
             }
             Expect::SignTest(_) => {}
+            Expect::Untestable(f) => self.unless(!f.because.trim().is_empty(), "because", || {
+                "expected the reason".to_owned()
+            }),
             Expect::Spread(f) => {
                 self.across(&f.across);
                 self.unless(f.than.is_some() != f.at_most.is_some(), "than", || {

@@ -189,10 +189,20 @@
 //!     at-most: 0.18
 //!     baseline: [start, strategy]
 //! ```
+//! `untestable`: nothing that this manifest runs could decide it, for the reason given. The claim stands among the
+//! others, so that nobody takes it for overlooked; its verdict is `cannot-be-tested`.
+//! ```yaml
+//! id: P22
+//! says: the improvement is more evident in the real world than in simulations
+//! paper-table: silent
+//! expect: {untestable: {because: there is no real world in a simulation}}
+//! ```
 
 use super::cells::{ForEach, Where};
 use super::comparing::{Comparison, Equivalence, Homogeneity, Ranking, Trend};
-use super::measuring::{Correlation, Every, Level, Rate, Rmse, Share, SignTest, Spread};
+use super::measuring::{
+    Correlation, Every, Level, Rate, Rmse, Share, SignTest, Spread, Untestable,
+};
 use super::terms::{Censored, Correction, Sides, Test, five_percent};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -230,6 +240,8 @@ pub enum Expect {
     CorrelationWithPublished(Correlation),
     /// Our cells lie near the published ones.
     RmseWithPublished(Rmse),
+    /// Nothing that is run could decide it.
+    Untestable(Untestable),
 }
 
 /// What all forms have in common, with the form's own defaults filled in.
@@ -282,6 +294,7 @@ impl Expect {
             Self::Rate(_) => "rate",
             Self::CorrelationWithPublished(_) => "correlation-with-published",
             Self::RmseWithPublished(_) => "rmse-with-published",
+            Self::Untestable(_) => "untestable",
         }
     }
 
@@ -306,6 +319,7 @@ impl Expect {
                 .collect(),
             Self::CorrelationWithPublished(f) => f.metric.0.clone(),
             Self::RmseWithPublished(f) => f.metric.0.clone(),
+            Self::Untestable(_) => Vec::new(),
         }
     }
 
@@ -364,6 +378,7 @@ impl Expect {
             Self::RmseWithPublished(f) => {
                 Terms { censored: f.censored, minimum_runs: 1, ..Terms::new(f.alpha, f.minimum_n) }
             }
+            Self::Untestable(_) => Terms::new(five_percent(), 1),
         }
     }
 
@@ -407,6 +422,7 @@ impl Expect {
             Self::CorrelationWithPublished(_) | Self::RmseWithPublished(_) => {
                 vec![Where::default()]
             }
+            Self::Untestable(_) => Vec::new(),
         }
     }
 
@@ -477,6 +493,7 @@ impl Expect {
                 add("where", &f.r#where);
                 f.ratio_to.iter().for_each(|cell| add("ratio-to", cell));
             }
+            Self::Untestable(_) => {}
         }
         for cell in repeated.iter().flat_map(|each| &each.0) {
             all.push(("for-each".to_owned(), cell));

@@ -84,6 +84,7 @@ pub fn judge_observations(
         Expect::Spread(form) => spread::spread(&bench, form),
         Expect::CorrelationWithPublished(form) => vec![agreement::correlation(&bench, form)],
         Expect::RmseWithPublished(form) => vec![agreement::rmse(&bench, form)],
+        Expect::Untestable(form) => vec![untestable("this study".to_owned(), form.because.clone())],
     };
     conclude(claim, &bench, drafts)
 }

@@ -190,6 +190,14 @@ pub struct Share {
     pub minimum_n: u64,
 }
 
+/// `untestable`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Untestable {
+    /// Why nothing that is run could decide the claim.
+    pub because: String,
+}
+
 /// `every`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]

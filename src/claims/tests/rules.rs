@@ -89,7 +89,8 @@ fn every_form_has_an_example_that_parses_and_checks() {
             "share",
             "sign-test",
             "spread",
-            "trend"
+            "trend",
+            "untestable"
         ]
     );
 }
