@@ -1,7 +1,7 @@
 //! Error and time of the particle filter on a tour of the office: 500 m along the way of an exploring robot, with odometry
 //! that ends metres off. Prints one line a seed, then median and worst.
 //!
-//! `cargo bench --bench slam_tour -- [seeds (10)] [range noise (m, 0.01)] [particles (30)]`
+//! `cargo bench --bench slam_tour -- [seeds (10)] [range noise (m, 0.01)] [particles (30)] [sigma (m^2, 0.01)]`
 //!
 //! Errors are absolute errors of position (root mean square over the scans taken in, in the start's frame, nothing aligned):
 //! of the pose known at the time, of the best particle's whole way in the end, and of odometry alone.
@@ -32,9 +32,8 @@ const RANGE: f64 = 25.0;
 /// Odometry's errors: 1 % of a metre per square root of metre, 0.012 rad per square root of radian.
 const ODOMETRY: OdometryNoise = OdometryNoise { distance: 0.01, heading: 0.012 };
 
-/// GMapping's numbers as the study's real robot had them, but for `sigma` (0.05 there): beams at the edge of the window
-/// are to count little, or where a wall ends decides where the scan goes.
-fn filter(particles: u32) -> FilterRule {
+/// GMapping's numbers as the study's real robot had them, but for `sigma` (0.05 there).
+fn filter(particles: u32, sigma: f64) -> FilterRule {
     FilterRule {
         particles,
         motion: MotionNoise { srr: 0.1, srt: 0.2, str: 0.1, stt: 0.2 },
@@ -42,7 +41,7 @@ fn filter(particles: u32) -> FilterRule {
             linear_step: 0.05,
             angular_step: 0.05,
             iterations: 5,
-            sigma: 0.01,
+            sigma,
             kernel: 1,
             minimum_score: 0.0,
             likelihood_sigma: 0.075,
@@ -121,14 +120,14 @@ struct Drive {
     contacts: u32,
 }
 
-fn drive(tour: &Tour, range_noise: f64, particles: u32, seed: u64) -> Drive {
+fn drive(tour: &Tour, range_noise: f64, filter: FilterRule, seed: u64) -> Drive {
     let seeds = Seeds::new(seed, vec![]);
     let mut sim = tour.simulator(range_noise, &seeds);
     let mut scan = sim.blank_scan();
     let mut mapper = Mapper::new(
         KeyframeRule { distance: 1.0, turn: 0.5 },
         ScanRule { resolution: RESOLUTION, clip_range: RANGE, hit_ratio: 0.25 },
-        filter(particles),
+        filter,
         seeds.stream("slam"),
     );
     let mut result = Drive::default();
@@ -211,9 +210,10 @@ fn main() {
     let seeds = numbers.first().map_or(10, |n| *n as u64);
     let range_noise = numbers.get(1).copied().unwrap_or(0.01);
     let particles = numbers.get(2).map_or(30, |n| *n as u32);
+    let sigma = numbers.get(3).copied().unwrap_or(0.01);
     let tour = Tour::of_an_explorer();
     println!(
-        "{particles} particles, range noise {range_noise} m, {} places on the way",
+        "{particles} particles, range noise {range_noise} m, sigma {sigma} m^2, {} places on the way",
         tour.way.len()
     );
     println!(
@@ -221,7 +221,7 @@ fn main() {
     );
     let mut results = Vec::new();
     for seed in 0..seeds {
-        let r = drive(&tour, range_noise, particles, seed);
+        let r = drive(&tour, range_noise, filter(particles, sigma), seed);
         let ms = |share| middle(r.milliseconds.clone(), share);
         println!(
             "{seed:4} {:6} {:11.3} {:11.3} {:9.2} ({:6.2}) {:9.2} {:5.2} {:5.2} {:6.1} {:4}",
