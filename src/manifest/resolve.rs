@@ -54,6 +54,7 @@ pub fn resolve(
         robots: BTreeMap::new(),
         worlds: BTreeMap::new(),
         priors: BTreeMap::new(),
+        references: BTreeMap::new(),
         aligned: BTreeSet::new(),
         calibration: None,
     };
@@ -103,6 +104,7 @@ pub(super) struct Resolver<'a> {
     robots: BTreeMap<(String, WrittenIn), Known<Robot>>,
     pub(super) worlds: BTreeMap<String, Known<World>>,
     pub(super) priors: BTreeMap<String, Known<OccupancyGrid>>,
+    references: BTreeMap<String, prior_map::SharedReference>,
     /// Pairs of world and prior that have been held against each other.
     aligned: BTreeSet<(MeaningDigest, MeaningDigest, String)>,
     /// What the calibration gave, once it was asked for.
@@ -273,6 +275,7 @@ impl Resolver<'_> {
         let Parts { robot, robot_meaning, robot_file, world, start } = parts;
         let knowledge = self.prior(&condition, &world, &robot, start, &parameters).ok()?;
         let prior = knowledge.as_ref().and_then(Knowledge::map);
+        let reference = self.reference(robot_meaning, &world, start, &parameters);
         let setup = prior_map::Setup::new(
             Arc::clone(&world.world),
             robot,
@@ -280,7 +283,8 @@ impl Resolver<'_> {
             start,
             parameters,
         )
-        .with_topo_metric_map(knowledge.as_ref().and_then(Knowledge::topo_metric_map));
+        .with_topo_metric_map(knowledge.as_ref().and_then(Knowledge::topo_metric_map))
+        .with_reference(reference);
         lint::check(&setup, prior, &mut self.faults);
         if let Some(prior) = prior.filter(|prior| !prior.own) {
             // Conditions share worlds and priors; holding one against the other once is enough.
@@ -300,6 +304,22 @@ impl Resolver<'_> {
             "prior": knowledge.map(|knowledge| knowledge.described()),
         });
         Some((condition, Setup::PriorMap(Arc::new(setup)), meanings, described))
+    }
+
+    /// What coverage is measured against: the same for all conditions that differ in prior knowledge and choices only.
+    fn reference(
+        &mut self,
+        robot: MeaningDigest,
+        world: &UsedWorld,
+        start: Pose,
+        parameters: &prior_map::Parameters,
+    ) -> prior_map::SharedReference {
+        let alike = prior_map::Parameters {
+            exploration: prior_map::Parameters::default().exploration,
+            ..parameters.clone()
+        };
+        let key = json!([robot, world.meaning, start, alike]).to_string();
+        self.references.entry(key).or_default().clone()
     }
 
     pub(super) fn parameters<P: serde::de::DeserializeOwned>(

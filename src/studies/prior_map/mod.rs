@@ -38,8 +38,8 @@ use std::sync::{Arc, OnceLock};
 use tour::TopoMetricMap;
 
 pub use mission::{
-    FURTHER_AT_MILESTONES, MILESTONES, POSE_ERRORS, Prepared, coverage_at_distance, explored_map,
-    plan_figure, run,
+    FURTHER_AT_MILESTONES, MILESTONES, POSE_ERRORS, Prepared, SharedReference,
+    coverage_at_distance, explored_map, plan_figure, run,
 };
 
 /// Everything a trial of this study needs.
@@ -57,6 +57,8 @@ pub struct Setup {
     pub start: Pose,
     /// Everything else.
     pub parameters: Parameters,
+    /// What coverage is measured against, perhaps together with other setups.
+    reference: SharedReference,
     prepared: OnceLock<Result<Prepared, String>>,
 }
 
@@ -69,8 +71,23 @@ impl Setup {
         start: Pose,
         parameters: Parameters,
     ) -> Self {
-        let (topo_metric_map, prepared) = (None, OnceLock::new());
-        Self { world, robot, prior, topo_metric_map, start, parameters, prepared }
+        Self {
+            world,
+            robot,
+            prior,
+            topo_metric_map: None,
+            start,
+            parameters,
+            reference: SharedReference::default(),
+            prepared: OnceLock::new(),
+        }
+    }
+
+    /// The same setup, measured against `reference` together with others that differ in prior knowledge and
+    /// `exploration` only.
+    #[must_use]
+    pub fn with_reference(self, reference: SharedReference) -> Self {
+        Self { reference, ..self }
     }
 
     /// The same setup with a topo-metric map.

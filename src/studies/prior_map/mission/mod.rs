@@ -11,6 +11,7 @@ mod trace;
 
 pub use plan_figure::plan_figure;
 pub use pose_errors::POSE_ERRORS;
+pub use reference::SharedReference;
 pub use trace::{MILESTONES, coverage_at_distance};
 
 use super::explorer::{CONTROL_PERIOD, Ending, Explorer};
@@ -28,6 +29,7 @@ use pose_errors::PoseErrors;
 use recorder::Recorder;
 use reference::Reference;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use trace::Trace;
 
 /// Recorded at every milestone where a manifest asks for further measures.
@@ -40,7 +42,7 @@ pub struct Prepared {
     solid: Vec<Outline>,
     lidar: Lidar,
     prior: Option<AlignedPrior>,
-    reference: Reference,
+    reference: Arc<Reference>,
 }
 
 impl Prepared {
@@ -61,7 +63,8 @@ impl Prepared {
         let resolution = setup.parameters.mapping.resolution_m;
         let prior =
             setup.prior.as_ref().map(|prior| AlignedPrior::new(prior, setup.start, resolution));
-        let reference = Reference::explore(setup, &lidar, &visible, &solid);
+        let explore = || Reference::explore(setup, &lidar, &visible, &solid);
+        let reference = setup.reference.get_or_explore(explore);
         Ok(Self { visible, solid, lidar, prior, reference })
     }
 }

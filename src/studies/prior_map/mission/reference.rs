@@ -12,6 +12,7 @@ use crate::studies::prior_map::{Coverage, Setup};
 use crate::units::Tick;
 use std::collections::VecDeque;
 use std::f64::consts::PI;
+use std::sync::{Arc, OnceLock};
 
 /// Ideal exploration scans from every so many metres.
 const SPACING: f64 = 0.5;
@@ -22,6 +23,18 @@ pub(super) struct Reference {
     map: OccupancyMap,
     coverage: Coverage,
     total: u32,
+}
+
+/// A reference that several setups have in common: explored by the first trial that asks. Setups may share one where
+/// they differ in nothing but their prior knowledge and `exploration`, which ideal exploration does not depend on.
+#[derive(Debug, Clone, Default)]
+pub struct SharedReference(Arc<OnceLock<Arc<Reference>>>);
+
+impl SharedReference {
+    /// The reference, by `explore` where there is none yet.
+    pub(super) fn get_or_explore(&self, explore: impl FnOnce() -> Reference) -> Arc<Reference> {
+        Arc::clone(self.0.get_or_init(|| Arc::new(explore())))
+    }
 }
 
 impl Reference {
