@@ -56,7 +56,7 @@ pub struct Chooser {
     headings: Option<Headings>,
     /// Only for the released program's gain.
     rays: Option<Rays>,
-    /// Only for the method of [8].
+    /// Only for the method of reference 8.
     tour: Option<Tour>,
 }
 

@@ -272,7 +272,7 @@ pub enum Strategy {
     Utility,
     /// The nearest frontier (Yamauchi 1997), a further baseline.
     NearestFrontier,
-    /// The method of [8] in section 4.5: along a tour over the nodes of a topo-metric map, the nearest frontier of each.
+    /// The method of reference 8 in section 4.5: along a tour over the nodes of a topo-metric map, the nearest frontier of each.
     TopoMetricTour,
 }
 
