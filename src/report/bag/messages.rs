@@ -5,38 +5,16 @@ use crate::math;
 use crate::robot::Twist as PlanarTwist;
 use serde::Serialize;
 
-/// A message type: its name, and its `.msg` text with all that it refers to.
+/// A message type.
 pub(super) trait Message: Serialize {
-    /// `package/msg/Type`.
+    /// `package/Type`, as `.msg` files name it.
     const TYPE: &'static str;
-    /// The definition, with those of the types within behind it (schema encoding `ros2msg`).
-    fn definition() -> String;
-}
-
-/// Joins a type's own `.msg` text with those of the types it is made of.
-fn with_parts(own: &str, parts: &[(&str, &str)]) -> String {
-    let rule = "=".repeat(80);
-    parts
-        .iter()
-        .fold(own.to_owned(), |text, (name, part)| text + &format!("{rule}\nMSG: {name}\n{part}"))
-}
-
-macro_rules! part {
-    ($package:literal, $name:literal) => {
-        (
-            concat!($package, "/", $name),
-            include_str!(concat!("definitions/", $package, "/", $name, ".msg")),
-        )
-    };
 }
 
 macro_rules! message {
-    ($type:ty, $package:literal / $name:literal, [$($part_package:literal / $part_name:literal),*]) => {
+    ($type:ty, $name:literal) => {
         impl Message for $type {
-            const TYPE: &'static str = concat!($package, "/msg/", $name);
-            fn definition() -> String {
-                with_parts(part!($package, $name).1, &[$(part!($part_package, $part_name)),*])
-            }
+            const TYPE: &'static str = $name;
         }
     };
 }
@@ -119,7 +97,7 @@ impl From<PlanarPose> for Pose {
 pub(super) struct Clock {
     pub(super) clock: Time,
 }
-message!(Clock, "rosgraph_msgs" / "Clock", ["builtin_interfaces" / "Time"]);
+message!(Clock, "rosgraph_msgs/Clock");
 
 #[derive(Debug, Serialize)]
 pub(super) struct TransformStamped {
@@ -132,35 +110,14 @@ pub(super) struct TransformStamped {
 pub(super) struct TFMessage {
     pub(super) transforms: Vec<TransformStamped>,
 }
-message!(
-    TFMessage,
-    "tf2_msgs" / "TFMessage",
-    [
-        "geometry_msgs" / "TransformStamped",
-        "geometry_msgs" / "Transform",
-        "geometry_msgs" / "Vector3",
-        "geometry_msgs" / "Quaternion",
-        "std_msgs" / "Header",
-        "builtin_interfaces" / "Time"
-    ]
-);
+message!(TFMessage, "tf2_msgs/TFMessage");
 
 #[derive(Debug, Serialize)]
 pub(super) struct PoseStamped {
     pub(super) header: Header,
     pub(super) pose: Pose,
 }
-message!(
-    PoseStamped,
-    "geometry_msgs" / "PoseStamped",
-    [
-        "geometry_msgs" / "Pose",
-        "geometry_msgs" / "Point",
-        "geometry_msgs" / "Quaternion",
-        "std_msgs" / "Header",
-        "builtin_interfaces" / "Time"
-    ]
-);
+message!(PoseStamped, "geometry_msgs/PoseStamped");
 
 /// Covariances are all zero, which ROS reads as unknown.
 #[derive(Debug, Serialize)]
@@ -195,21 +152,7 @@ impl Odometry {
         }
     }
 }
-message!(
-    Odometry,
-    "nav_msgs" / "Odometry",
-    [
-        "geometry_msgs" / "PoseWithCovariance",
-        "geometry_msgs" / "TwistWithCovariance",
-        "geometry_msgs" / "Pose",
-        "geometry_msgs" / "Twist",
-        "geometry_msgs" / "Point",
-        "geometry_msgs" / "Quaternion",
-        "geometry_msgs" / "Vector3",
-        "std_msgs" / "Header",
-        "builtin_interfaces" / "Time"
-    ]
-);
+message!(Odometry, "nav_msgs/Odometry");
 
 #[derive(Debug, Serialize)]
 pub(super) struct LaserScan {
@@ -224,11 +167,7 @@ pub(super) struct LaserScan {
     pub(super) ranges: Vec<f32>,
     pub(super) intensities: Vec<f32>,
 }
-message!(
-    LaserScan,
-    "sensor_msgs" / "LaserScan",
-    ["std_msgs" / "Header", "builtin_interfaces" / "Time"]
-);
+message!(LaserScan, "sensor_msgs/LaserScan");
 
 #[derive(Debug, Serialize)]
 pub(super) struct OccupancyGrid {
@@ -245,36 +184,14 @@ pub(super) struct MapMetaData {
     pub(super) height: u32,
     pub(super) origin: Pose,
 }
-message!(
-    OccupancyGrid,
-    "nav_msgs" / "OccupancyGrid",
-    [
-        "nav_msgs" / "MapMetaData",
-        "geometry_msgs" / "Pose",
-        "geometry_msgs" / "Point",
-        "geometry_msgs" / "Quaternion",
-        "std_msgs" / "Header",
-        "builtin_interfaces" / "Time"
-    ]
-);
+message!(OccupancyGrid, "nav_msgs/OccupancyGrid");
 
 #[derive(Debug, Serialize)]
 pub(super) struct Path {
     pub(super) header: Header,
     pub(super) poses: Vec<PoseStamped>,
 }
-message!(
-    Path,
-    "nav_msgs" / "Path",
-    [
-        "geometry_msgs" / "PoseStamped",
-        "geometry_msgs" / "Pose",
-        "geometry_msgs" / "Point",
-        "geometry_msgs" / "Quaternion",
-        "std_msgs" / "Header",
-        "builtin_interfaces" / "Time"
-    ]
-);
+message!(Path, "nav_msgs/Path");
 
 #[derive(Debug, Clone, Copy, Default, Serialize)]
 pub(super) struct ColorRGBA {
@@ -393,24 +310,7 @@ impl Marker {
 pub(super) struct MarkerArray {
     pub(super) markers: Vec<Marker>,
 }
-message!(
-    MarkerArray,
-    "visualization_msgs" / "MarkerArray",
-    [
-        "visualization_msgs" / "Marker",
-        "visualization_msgs" / "MeshFile",
-        "visualization_msgs" / "UVCoordinate",
-        "sensor_msgs" / "CompressedImage",
-        "geometry_msgs" / "Pose",
-        "geometry_msgs" / "Point",
-        "geometry_msgs" / "Quaternion",
-        "geometry_msgs" / "Vector3",
-        "std_msgs" / "ColorRGBA",
-        "std_msgs" / "Header",
-        "builtin_interfaces" / "Duration",
-        "builtin_interfaces" / "Time"
-    ]
-);
+message!(MarkerArray, "visualization_msgs/MarkerArray");
 
 /// `rcl_interfaces/Log`: what a log panel shows.
 #[derive(Debug, Serialize)]
@@ -423,4 +323,4 @@ pub(super) struct Log<'a> {
     pub(super) function: &'static str,
     pub(super) line: u32,
 }
-message!(Log<'_>, "rcl_interfaces" / "Log", ["builtin_interfaces" / "Time"]);
+message!(Log<'_>, "rcl_interfaces/Log");

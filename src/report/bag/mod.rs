@@ -4,6 +4,7 @@
 //! odometry; `base_link` the robot, x forward; `laser` its scanner. Above them stands `world`, the truth's frame, which no
 //! robot knows: `/ground_truth/pose` is in it. Times are simulated, from 0.
 
+mod definitions;
 mod markers;
 mod messages;
 mod writer;

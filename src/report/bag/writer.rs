@@ -1,5 +1,6 @@
 //! MCAP with CDR messages: the one door to the container and to the encoding.
 
+use super::definitions::definition;
 use super::messages::{Message, nanoseconds};
 use byteorder::LittleEndian;
 use mcap::records::MessageHeader;
@@ -49,10 +50,11 @@ impl BagWriter {
     }
 
     fn open<M: Message>(&mut self, topic: &'static str) -> Result<u16, String> {
-        let definition = M::definition();
+        // Where ROS 2 names a type, `msg` stands between package and type.
+        let name = M::TYPE.replace('/', "/msg/");
         let schema = self
             .writer
-            .add_schema(M::TYPE, "ros2msg", definition.as_bytes())
+            .add_schema(&name, "ros2msg", definition(M::TYPE).as_bytes())
             .map_err(|e| e.to_string())?;
         let metadata = BTreeMap::new();
         self.writer.add_channel(schema, topic, "cdr", &metadata).map_err(|e| e.to_string())
