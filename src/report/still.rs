@@ -100,7 +100,9 @@ fn map_of(recording: &Recording, frames: &[&Frame]) -> OccupancyGrid {
 /// The cells that hold `value` as one path in the map's frame, y downwards: a rectangle per run along a row.
 fn cells_path(map: &OccupancyGrid, value: Occupancy, scale: f64) -> String {
     let (frame, mut data) = (map.frame(), String::new());
-    let side = frame.resolution * scale;
+    let corner = |x: i32, y: i32| {
+        (frame.origin + Point::new(f64::from(x), f64::from(y)) * frame.resolution) * scale
+    };
     for y in 0..frame.height {
         let mut x = 0;
         while x < frame.width {
@@ -112,15 +114,10 @@ fn cells_path(map: &OccupancyGrid, value: Occupancy, scale: f64) -> String {
                 x += 1;
                 continue;
             }
-            let center = frame.center(Cell::new(begin, y)) * scale;
-            let (left, top) = (center.x - side / 2.0, -center.y - side / 2.0);
-            let long = number(f64::from(x - begin) * side);
-            data.push_str(&format!(
-                "M{} {}h{long}v{s}h-{long}z",
-                number(left),
-                number(top),
-                s = number(side)
-            ));
+            // Edges as absolute numbers, so that neighbouring rows round to the same one and leave no seam.
+            let (low, high) = (corner(begin, y), corner(x, y + 1));
+            let [left, right, bottom, top] = [low.x, high.x, -low.y, -high.y].map(number);
+            data.push_str(&format!("M{left} {top}H{right}V{bottom}H{left}z"));
         }
     }
     data
