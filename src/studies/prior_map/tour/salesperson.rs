@@ -181,6 +181,7 @@ fn one_better(
 mod tests {
     use super::super::graph::tests::graph;
     use super::*;
+    use crate::rng::Seeds;
     use proptest::prelude::*;
 
     /// Every node joined to the one before it and to one more: connected, and far from complete.
@@ -237,6 +238,36 @@ mod tests {
         assert_eq!(open_tour(&distances, 0, &[1, 2, 3]), [1, 2, 3]);
     }
 
+    /// How near a local optimum comes is measured, on the same 400 graphs every time; there is no bound (a search among
+    /// others found one 1.27 times as long as the exact tour).
+    #[test]
+    fn improved_tours_come_near_the_exact_ones() {
+        let mut stream = Seeds::new(2020, vec![]).stream("salesperson");
+        let mut draws = 0..;
+        let mut uniform = || stream.at(draws.next().unwrap()).uniform();
+        let ratios: Vec<f64> = (0..400)
+            .map(|_| {
+                let places: Vec<(f64, f64)> =
+                    (0..12).map(|_| (40.0 * uniform() - 20.0, 40.0 * uniform() - 20.0)).collect();
+                let more: Vec<usize> = (0..11)
+                    .map(|i| {
+                        let drawn = 12.0 * uniform();
+                        (i * 7 + (1..12_u8).filter(|&k| drawn >= f64::from(k)).count()) % 12
+                    })
+                    .collect();
+                let distances = distances(&places, &more);
+                let others: Vec<usize> = (1..12).collect();
+                let found = improved(&distances, 0, nearest_insertion(&distances, 0, &others));
+                let exact = held_karp(&distances, 0, &others);
+                length(&distances, 0, &found) / length(&distances, 0, &exact)
+            })
+            .collect();
+        let mean = ratios.iter().sum::<f64>() / 400.0;
+        let worst = ratios.iter().copied().fold(0.0, f64::max);
+        assert!(mean <= 1.02, "{mean} of the exact length in the mean");
+        assert!(worst <= 1.2, "{worst} of the exact length at worst");
+    }
+
     proptest! {
         #[test]
         fn the_exact_tour_is_as_short_as_any(
@@ -254,7 +285,7 @@ mod tests {
         }
 
         #[test]
-        fn improving_never_makes_a_tour_longer_and_comes_near_the_exact_one(
+        fn improving_ends_where_no_move_helps_and_never_makes_a_tour_longer(
             places in prop::collection::vec((-20.0..20.0, -20.0..20.0), 2..13),
             more in prop::collection::vec(0_usize..13, 0..12),
         ) {
@@ -264,14 +295,14 @@ mod tests {
             let improved = improved(&distances, 0, begun.clone());
             let exact = length(&distances, 0, &held_karp(&distances, 0, &others));
             let found = length(&distances, 0, &improved);
-            let mut sorted = improved;
+            let mut sorted = improved.clone();
             sorted.sort_unstable();
             prop_assert_eq!(sorted, others, "each once");
             prop_assert!(found <= length(&distances, 0, &begun) + 1e-9);
             let passed = passed_first(&distances, 0, begun.clone());
             prop_assert!(length(&distances, 0, &passed) <= length(&distances, 0, &begun) + 1e-6);
-            // No bound is known for this rule; the worst of many random sets was 1.28 times as long as the exact tour.
-            prop_assert!(exact <= found + 1e-9 && found <= 1.5 * exact + 1e-9, "{} for {}", found, exact);
+            prop_assert!(exact <= found + 1e-9, "{} for {}", found, exact);
+            prop_assert_eq!(one_better(&distances, 0, &improved, found), None);
         }
     }
 }
