@@ -37,16 +37,7 @@ fn filter(particles: u32, sigma: f64) -> FilterRule {
     FilterRule {
         particles,
         motion: MotionNoise { srr: 0.1, srt: 0.2, str: 0.1, stt: 0.2 },
-        matching: MatchRule {
-            linear_step: 0.05,
-            angular_step: 0.05,
-            iterations: 5,
-            sigma,
-            kernel: 1,
-            minimum_score: 0.0,
-            likelihood_sigma: 0.075,
-            skip: 0,
-        },
+        matching: MatchRule { sigma, ..MatchRule::GMAPPING },
         likelihood_gain: 3.0,
         resample_threshold: 0.5,
     }

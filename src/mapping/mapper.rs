@@ -134,16 +134,7 @@ mod tests {
     const GMAPPING: FilterRule = FilterRule {
         particles: 12,
         motion: MotionNoise { srr: 0.1, srt: 0.2, str: 0.1, stt: 0.2 },
-        matching: MatchRule {
-            linear_step: 0.05,
-            angular_step: 0.05,
-            iterations: 5,
-            sigma: 0.05,
-            kernel: 1,
-            minimum_score: 0.0,
-            likelihood_sigma: 0.075,
-            skip: 0,
-        },
+        matching: MatchRule::GMAPPING,
         likelihood_gain: 3.0,
         resample_threshold: 0.5,
     };

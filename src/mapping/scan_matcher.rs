@@ -26,6 +26,18 @@ pub struct MatchRule {
 }
 
 impl MatchRule {
+    /// What GMapping searches with where nothing is set (the defaults of `slam_gmapping`, but for the minimum score).
+    pub const GMAPPING: Self = Self {
+        linear_step: 0.05,
+        angular_step: 0.05,
+        iterations: 5,
+        sigma: 0.05,
+        kernel: 1,
+        minimum_score: 0.0,
+        likelihood_sigma: 0.075,
+        skip: 0,
+    };
+
     /// Whether the search can move at all.
     pub fn searches(&self) -> bool {
         self.linear_step > 0.0 || self.angular_step > 0.0
@@ -261,16 +273,7 @@ mod tests {
     use crate::mapping::room;
     use proptest::prelude::*;
 
-    const RULE: MatchRule = MatchRule {
-        linear_step: 0.05,
-        angular_step: 0.05,
-        iterations: 5,
-        sigma: 0.05,
-        kernel: 1,
-        minimum_score: 0.0,
-        likelihood_sigma: 0.075,
-        skip: 0,
-    };
+    const RULE: MatchRule = MatchRule::GMAPPING;
 
     /// A map of the room, and the beams of a scan taken at `pose` in it.
     fn seen(pose: Pose) -> (ScanMatcher, HitMap, Beams) {

@@ -8,6 +8,7 @@ use super::choice::{Choice, Chooser, Sight};
 use super::frontier::Frontier;
 use super::information_gain::AlignedPrior;
 use super::parameters::{Parameters, Reselect};
+use super::phase::{Decided, Journey, Phase};
 use super::tour::Tour;
 use super::utility::ranked;
 use crate::geometry::{Point, Pose};
@@ -24,6 +25,8 @@ use crate::units::{Seconds, Tick};
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
+pub use super::phase::Ending;
+
 /// The navigator plans at 5 Hz, the operator drives at 10 Hz, and the local map is renewed at about 3 Hz
 /// (prior-map facts, section 4).
 pub const CONTROL_PERIOD: Tick = Tick(300);
@@ -36,50 +39,6 @@ const PROGRESS: f64 = 0.1;
 const GIVEN_UP_RADIUS: f64 = 0.5;
 /// Facing the unknown means within this angle (rad).
 const FACING: f64 = 0.15;
-
-/// What the mind is doing.
-#[derive(Debug, Clone, PartialEq)]
-enum Phase {
-    /// About to choose a location.
-    Choosing,
-    /// On the way to a location.
-    Driving(Journey),
-    /// At a frontier whose unknown side it has not looked at: turning towards `towards`.
-    Facing { towards: Point },
-    /// Nothing left to do, and why.
-    Done(Ending),
-}
-
-/// Why exploration ended.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Ending {
-    /// No frontier is left.
-    NoFrontierLeft,
-    /// Frontiers are left, but there is no way to any of them.
-    NoWay {
-        /// How many.
-        frontiers: usize,
-    },
-}
-
-#[derive(Debug, Clone, PartialEq)]
-struct Journey {
-    target: Point,
-    /// Lowest weighted distance so far (m), and when it was reached.
-    closest: (f64, Tick),
-    /// Weighted distance (m) when last looked at.
-    remaining: f64,
-    chosen_at: Tick,
-}
-
-/// A choice that has yet to take effect.
-#[derive(Debug)]
-struct Decided {
-    due: Tick,
-    next: Phase,
-    /// The way to a new target.
-    wave: Option<Wavefront>,
-}
 
 /// An exploring mind.
 #[derive(Debug)]

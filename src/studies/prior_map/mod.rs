@@ -15,6 +15,7 @@ pub mod information_gain;
 pub mod measures;
 mod mission;
 mod parameters;
+mod phase;
 mod released_gain;
 mod requests;
 pub mod results;
