@@ -132,3 +132,49 @@ Claims about the machine (not among the results)
     assert_eq!(sealed(folder, exported.trim(), "circumstances/wall-times.csv"), None);
     assert_eq!(sealed(folder, exported.trim(), "results/claims.json"), Some(results));
 }
+
+#[test]
+fn verdicts_that_hang_on_an_assumption_are_found_sealed_and_told() {
+    let desk = study("\
+- id: fast
+  says: nine tenths are explored within minutes
+  paper-table: silent
+  expect: {between: {metric: time-s-at-90, statistic: median, high: 500, minimum-n: 2, censored: worst}}
+- id: far
+  says: nobody travels a kilometre
+  paper-table: silent
+  expect: {between: {metric: distance-m, statistic: median, high: 1000, minimum-n: 2}}
+parameters:
+  mission: {time-limit-s: {value: 600, range: [5, 900], why: nobody says when to give up}}
+");
+    let folder = desk.path();
+    let manifest = folder.join("demo/demo.yaml");
+    let words = ["vary", "demo/demo.yaml", "--trials", "3"];
+    let told = "\
+parameters.mission.time-limit-s 600 -> 5:
+  fast: supported -> contradicted
+parameters.mission.time-limit-s 600 -> 900: no verdict changes
+wrote demo/demo.sensitivity.csv: 2 claims judged at 2 other values of 1 setting, 3 trials per condition
+add `sensitivity: demo.sensitivity.csv` to the manifest, so that bundles and reports tell it
+";
+    assert_eq!(reenact(folder, &words, true), told);
+    let table = std::fs::read_to_string(folder.join("demo/demo.sensitivity.csv")).unwrap();
+    assert_eq!(table.lines().count(), 5, "{table}");
+
+    let text = std::fs::read_to_string(&manifest).unwrap() + "sensitivity: demo.sensitivity.csv\n";
+    std::fs::write(&manifest, &text).unwrap();
+    let again = reenact(folder, &words, true);
+    assert!(!again.contains("add `sensitivity"), "{again}");
+    assert_eq!(std::fs::read_to_string(folder.join("demo/demo.sensitivity.csv")).unwrap(), table);
+    reenact(folder, &["check", "demo/demo.yaml"], true);
+
+    // What was tried around another value is out of date: said, and not shown.
+    std::fs::write(&manifest, text.replace("value: 600", "value: 700")).unwrap();
+    let mut check = Command::cargo_bin("reenact").unwrap();
+    let output = check.args(["check", "demo/demo.yaml"]).current_dir(folder).output().unwrap();
+    let expected = "\
+warning: `demo.sensitivity.csv` is out of date: parameters.mission.time-limit-s was tried around 600, it is 700 now";
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(stderr.lines().next(), Some(expected), "{stderr}");
+    assert_eq!(output.status.code(), Some(0));
+}

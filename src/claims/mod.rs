@@ -28,6 +28,7 @@ mod pairing;
 pub mod power;
 pub mod published;
 mod rate;
+pub mod sensitivity;
 mod sign;
 mod spread;
 pub mod terms;
@@ -37,6 +38,7 @@ pub use check::check_all;
 pub use expect::Expect;
 pub use judge::{Context, judge, judge_observations, not_measured};
 pub use observations::Observations;
+pub use sensitivity::Sensitivity;
 pub use verdict::{Judgement, Score, Verdict};
 
 use schemars::JsonSchema;

@@ -24,6 +24,12 @@ pub enum Judgement {
     CannotBeTested,
 }
 
+impl Judgement {
+    /// All of them.
+    pub const ALL: [Self; 4] =
+        [Self::Supported, Self::Contradicted, Self::Inconclusive, Self::CannotBeTested];
+}
+
 impl fmt::Display for Judgement {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {

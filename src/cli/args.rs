@@ -30,6 +30,8 @@ pub(super) enum Command {
     Diff(DiffArgs),
     /// Write down what a manifest's run yields, so that drift is found
     Lock(LockArgs),
+    /// Try a manifest's claims at the other values that its assumptions state
+    Vary(VaryArgs),
     /// Write a bundle as one offline HTML page
     Report(ReportArgs),
     /// Write a bundle in another form
@@ -209,6 +211,21 @@ pub(super) struct LockArgs {
     /// Manifests to lock, one after another
     #[arg(required = true)]
     pub(super) manifests: Vec<PathBuf>,
+    /// Threads [default: all processors]
+    #[arg(short, long, value_name = "N")]
+    pub(super) jobs: Option<usize>,
+    /// Neither read nor write the store of finished trials
+    #[arg(long)]
+    pub(super) no_cache: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct VaryArgs {
+    /// The manifest; what is found is written beside it, as NAME.sensitivity.csv
+    pub(super) manifest: PathBuf,
+    /// Trials per condition, of the values chosen too [default: the manifest's]
+    #[arg(long, value_name = "N")]
+    pub(super) trials: Option<u32>,
     /// Threads [default: all processors]
     #[arg(short, long, value_name = "N")]
     pub(super) jobs: Option<usize>,

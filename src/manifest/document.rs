@@ -76,10 +76,13 @@ pub struct ManifestDoc {
     /// A file with parameters that several manifests share; those written here go before them.
     #[serde(default)]
     pub settings: Option<String>,
-    /// Everything else a trial needs; every value may be plain, `{value, why}`, `{factor, why}` or
+    /// Everything else a trial needs; every value may be plain, `{value, why, range}`, `{factor, why}` or
     /// `{by, values, otherwise, why}`.
     #[serde(default)]
     pub parameters: ParametersDoc,
+    /// What `reenact vary` wrote: the claims' verdicts at the other values that the parameters' `range` states.
+    #[serde(default)]
+    pub sensitivity: Option<String>,
     /// The paper's own numbers by name: tidy CSV files.
     #[serde(default)]
     pub published: BTreeMap<String, PublishedDoc>,

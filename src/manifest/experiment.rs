@@ -3,6 +3,7 @@
 use super::crossing::Factor;
 use super::document::{Author, Cite};
 use super::inputs::Input;
+use crate::claims::Sensitivity;
 use crate::digest::MeaningDigest;
 use crate::document::Tree;
 use crate::json;
@@ -54,6 +55,8 @@ pub struct Experiment {
     pub claims: Vec<Value>,
     /// Values that the paper leaves open, with the reasons for them.
     pub assumptions: Vec<Assumption>,
+    /// What the claims' verdicts were at other values of the assumptions, where that was tried.
+    pub sensitivity: Option<Sensitivity>,
     /// `PATH=VALUE` from the command line, in order.
     pub overrides: Vec<String>,
     /// Every file that was read, once.
@@ -71,6 +74,9 @@ pub struct Assumption {
     pub value: Value,
     /// Why it was chosen.
     pub why: String,
+    /// Other values that could as well have been chosen; empty where the manifest states none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub range: Vec<Value>,
 }
 
 /// Digests of what a condition's things mean, whatever their files look like.

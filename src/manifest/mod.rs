@@ -22,6 +22,7 @@ mod priors;
 mod published;
 mod readers;
 mod resolve;
+mod sensitivity;
 mod settings;
 mod worlds;
 

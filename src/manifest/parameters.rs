@@ -25,6 +25,8 @@ pub(super) struct Wrapped<'a> {
     pub(super) pointer: String,
     /// Why the value was chosen.
     pub(super) why: Option<&'a str>,
+    /// Other values that could as well have been chosen.
+    pub(super) range: &'a [Value],
     /// The value, or one for every value of a factor.
     pub(super) value: WrappedValue<'a>,
 }
@@ -85,6 +87,7 @@ fn groups(kind: StudyKind) -> Map<String, Value> {
 fn wrap<'a>(value: &'a Value, pointer: &str) -> Option<Wrapped<'a>> {
     let map = value.as_object()?;
     let why = map.get("why").and_then(Value::as_str);
+    let range = map.get("range").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
     let value = match (map.get("value"), map.get("factor"), map.get("by"), map.get("values")) {
         (Some(value), None, None, None) => WrappedValue::Plain(value),
         (None, Some(factor), None, None) => WrappedValue::Factor(factor.as_str()?),
@@ -94,7 +97,7 @@ fn wrap<'a>(value: &'a Value, pointer: &str) -> Option<Wrapped<'a>> {
         }
         _ => return None,
     };
-    Some(Wrapped { pointer: pointer.to_owned(), why, value })
+    Some(Wrapped { pointer: pointer.to_owned(), why, range, value })
 }
 
 fn collect<'a>(
@@ -177,7 +180,7 @@ pub(super) fn schema_of(kind: StudyKind) -> Value {
     schema.to_value()
 }
 
-/// Lets every value below `schema` be plain, `{value, why}`, `{factor, why}` or `{by, values, otherwise, why}`.
+/// Lets every value below `schema` be plain, `{value, why, range}`, `{factor, why}` or `{by, values, otherwise, why}`.
 fn wrap_values(schema: &mut Map<String, Value>) {
     let Some(Value::Object(properties)) = schema.get_mut("properties") else { return };
     for property in properties.values_mut() {
@@ -190,13 +193,19 @@ fn wrap_values(schema: &mut Map<String, Value>) {
         let description = object.get("description").cloned().unwrap_or_default();
         let plain = Value::Object(object.clone());
         let why = json!({ "type": "string", "description": "Why this value was chosen." });
+        let range = json!({
+            "type": "array",
+            "items": plain,
+            "minItems": 1,
+            "description": "Other values that could as well have been chosen: `reenact vary` tries the claims at each.",
+        });
         *property = json!({
             "description": description,
             "anyOf": [
                 plain,
                 {
                     "type": "object",
-                    "properties": { "value": plain, "why": why },
+                    "properties": { "value": plain, "why": why, "range": range },
                     "required": ["value", "why"],
                     "additionalProperties": false,
                 },

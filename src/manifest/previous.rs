@@ -102,6 +102,7 @@ pub(super) fn assumptions(doc: &ManifestDoc) -> Vec<Assumption> {
             "unknown": map.unknown,
         }),
         why: map.why.clone(),
+        range: Vec::new(),
     };
     all(doc).into_iter().map(assumption).collect()
 }

@@ -10,7 +10,7 @@ use super::parameters::WrappedValue;
 use super::pinned::Pins;
 use super::priors::Knowledge;
 use super::worlds::UsedWorld;
-use super::{lint, overrides, previous, published, schema, settings};
+use super::{lint, overrides, previous, published, schema, sensitivity, settings};
 use crate::digest::MeaningDigest;
 use crate::document::{Diagnostic, Node, Parsed, Source, parse_tree_by, read};
 use crate::geometry::Pose;
@@ -126,6 +126,7 @@ impl Resolver<'_> {
         self.check_prior_names();
         self.check_study_keys();
         let assumptions = self.assumptions();
+        let sensitivity = sensitivity::read(self, &assumptions);
         let published = self.published();
         published::check_requests(doc, &factors, &published, &mut self.faults);
 
@@ -169,6 +170,7 @@ impl Resolver<'_> {
             figures: doc.figures.clone(),
             claims: doc.claims.clone(),
             assumptions,
+            sensitivity,
             overrides: overrides.to_vec(),
             inputs: Vec::new(),
             document: self.faults.tree.clone(),
@@ -225,6 +227,7 @@ impl Resolver<'_> {
                 path: wrapped.pointer[1..].replace('/', "."),
                 value,
                 why: why.to_owned(),
+                range: wrapped.range.to_vec(),
             }));
         }
         assumptions.extend(previous::assumptions(self.doc));

@@ -18,5 +18,6 @@ pub(super) mod schema;
 pub(super) mod show;
 pub(super) mod solve_cmdp;
 mod tables;
+pub(super) mod vary;
 mod verdicts;
 pub(super) mod verify;

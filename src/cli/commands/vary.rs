@@ -1,0 +1,133 @@
+//! `reenact vary`: the claims of a manifest, judged again with one assumption at a time moved to each other value that
+//! its `range` states.
+
+use super::execution::{Execution, Times};
+use crate::bundle::assemble;
+use crate::claims::Verdict;
+use crate::claims::sensitivity::{Attempt, Flip, Sensitivity, in_words};
+use crate::cli::args::VaryArgs;
+use crate::cli::exit::{Exit, Failure};
+use crate::cli::load;
+use crate::cli::terminal::{Terminal, counted};
+use crate::manifest::{Assumption, Experiment};
+use crate::plan::Plan;
+use crate::provenance::Environment;
+use std::path::Path;
+
+/// Tries every assumption of a manifest that has a range, and writes the verdicts beside the manifest.
+pub(in crate::cli) fn run(
+    args: &VaryArgs,
+    environment: &Environment,
+    terminal: Terminal,
+) -> Result<Exit, Failure> {
+    for (option, number) in [("--jobs", args.jobs), ("--trials", args.trials.map(|n| n as usize))] {
+        if number == Some(0) {
+            return Err(Failure::not_understood(format!("`{option}` must be at least 1, found 0")));
+        }
+    }
+    let execution = Execution::new(args.jobs, args.no_cache, environment)?;
+    let study = Study { args, execution, terminal };
+    let chosen = study.experiment(&[])?;
+    let assumptions: Vec<Assumption> =
+        chosen.assumptions.iter().filter(|a| !a.range.is_empty()).cloned().collect();
+    let name = args.manifest.display();
+    if assumptions.is_empty() {
+        return Err(Failure::not_understood(format!(
+            "{name}: no assumption states a `range`; write other values that could as well have been chosen, as in \
+             `{{value: 0.05, why: ..., range: [0.02, 0.1]}}`"
+        )));
+    }
+    if chosen.claims.is_empty() {
+        return Err(Failure::not_understood(format!("{name}: there is no claim to judge")));
+    }
+    let trials = chosen.trials;
+    let values: usize = assumptions.iter().map(|a| a.range.len()).sum();
+    let named = study.names_its_sensitivity()?;
+    let at_chosen = study.verdicts(chosen)?;
+    let mut found = Sensitivity::default();
+    for assumption in &assumptions {
+        for value in &assumption.range {
+            let attempt = Attempt {
+                setting: assumption.path.clone(),
+                chosen: in_words(&assumption.value),
+                tried: in_words(value),
+                trials,
+            };
+            if terminal.is_watched() {
+                let number = found.attempts().len() + 1;
+                terminal
+                    .note(&format!("{number}/{values}: {} at {}", attempt.setting, attempt.tried));
+            }
+            // JSON is YAML too.
+            let moved = study.experiment(&[format!("{}={value}", assumption.path)])?;
+            found.push(&attempt, &at_chosen, &study.verdicts(moved)?);
+            terminal.result(&line(&attempt, &found.flips(&attempt)));
+        }
+    }
+    let path = args.manifest.with_extension("sensitivity.csv");
+    load::write(&path, found.to_csv().as_bytes())?;
+    let advice = if named {
+        String::new()
+    } else {
+        format!(
+            "\nadd `sensitivity: {}` to the manifest, so that bundles and reports tell it",
+            file_name(&path)
+        )
+    };
+    terminal.result(&format!(
+        "wrote {}: {} judged at {} of {}, {} per condition{advice}\n",
+        path.display(),
+        counted(at_chosen.len(), "claim"),
+        counted(values, "other value"),
+        counted(assumptions.len(), "setting"),
+        counted(trials as usize, "trial"),
+    ));
+    Ok(Exit::Yes)
+}
+
+/// A manifest that is run again and again with other values.
+struct Study<'a> {
+    args: &'a VaryArgs,
+    execution: Execution,
+    terminal: Terminal,
+}
+
+impl Study<'_> {
+    /// The experiment with these values replaced. What an earlier call found is not read: it may not exist yet.
+    fn experiment(&self, set: &[String]) -> Result<Experiment, Failure> {
+        let mut set = set.to_vec();
+        set.push("sensitivity=null".to_owned());
+        set.extend(self.args.trials.map(|n| format!("trials={n}")));
+        let calibrator = self.execution.calibrator();
+        load::manifest(&self.args.manifest, &set, calibrator, self.terminal).map(|l| l.experiment)
+    }
+
+    fn verdicts(&self, experiment: Experiment) -> Result<Vec<Verdict>, Failure> {
+        let plan = Plan::of(experiment);
+        let records = self.execution.execute(&plan, Times::Once, self.terminal)?.records;
+        assemble::verdicts(&plan, &records).map_err(Failure::failed)
+    }
+
+    fn names_its_sensitivity(&self) -> Result<bool, Failure> {
+        let source = load::text(&self.args.manifest)?;
+        let tree = crate::document::read(&source);
+        Ok(tree.is_ok_and(|tree| tree.root.get("sensitivity").is_some()))
+    }
+}
+
+/// One attempt in a line, and one more for every verdict that it changes.
+fn line(attempt: &Attempt, flips: &[Flip]) -> String {
+    let what = format!("{} {} -> {}", attempt.setting, attempt.chosen, attempt.tried);
+    if flips.is_empty() {
+        return format!("{what}: no verdict changes\n");
+    }
+    let mut text = format!("{what}:\n");
+    for flip in flips {
+        text.push_str(&format!("  {}: {} -> {}\n", flip.claim, flip.from, flip.to));
+    }
+    text
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
+}

@@ -1,0 +1,54 @@
+//! `sensitivity: FILE`: what `reenact vary` found at the other values of the assumptions, read and held against them.
+
+use super::experiment::Assumption;
+use super::resolve::Resolver;
+use crate::claims::Sensitivity;
+use crate::claims::sensitivity::in_words;
+
+/// The file that the manifest names, where it names one; a warning for every assumption of which it tells something else
+/// or nothing.
+pub(super) fn read(resolver: &mut Resolver<'_>, assumptions: &[Assumption]) -> Option<Sensitivity> {
+    const PLACE: &str = "/sensitivity";
+    let path = resolver.doc.sensitivity.as_deref()?;
+    let source = resolver.text(path, PLACE)?;
+    let sensitivity = match Sensitivity::from_csv(&source.text) {
+        Ok(sensitivity) => sensitivity,
+        Err(problem) => {
+            let fault = resolver.faults.fault(PLACE, format!("`{path}`: {problem}"));
+            resolver.faults.push(fault.label("expected what `reenact vary` writes"));
+            return None;
+        }
+    };
+    let attempts = sensitivity.attempts();
+    let mut stale = Vec::new();
+    for assumption in assumptions {
+        let chosen = in_words(&assumption.value);
+        let of_it = || attempts.iter().filter(|attempt| attempt.setting == assumption.path);
+        let untried = assumption.range.iter().map(in_words).find(|value| {
+            !of_it().any(|attempt| attempt.chosen == chosen && attempt.tried == *value)
+        });
+        if let Some(value) = untried {
+            let around = of_it().find(|attempt| attempt.chosen != chosen);
+            stale.push(match around {
+                Some(old) => {
+                    format!("{} was tried around {}, it is {chosen} now", old.setting, old.chosen)
+                }
+                None => format!("{} was not tried at {value}", assumption.path),
+            });
+        }
+    }
+    let claims: Vec<&str> =
+        resolver.doc.claims.iter().filter_map(|claim| claim["id"].as_str()).collect();
+    let gone = sensitivity.claims().into_iter().filter(|id| !claims.contains(id));
+    stale.extend(gone.map(|id| format!("it judges `{id}`, which is no claim of this manifest")));
+    if let Some(first) = stale.first() {
+        let more = match stale.len() - 1 {
+            0 => String::new(),
+            more => format!(" (and {more} more)"),
+        };
+        let fault = resolver.faults.fault(PLACE, format!("`{path}` is out of date: {first}{more}"));
+        let help = "`reenact vary` on this manifest writes it anew; a report shows what still fits";
+        resolver.faults.push(fault.warning().help(help));
+    }
+    Some(sensitivity)
+}
