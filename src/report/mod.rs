@@ -9,6 +9,7 @@ mod content;
 mod difference;
 mod gain_still;
 mod gather;
+mod graph_still;
 mod inline_svg;
 mod pack;
 pub mod page;
@@ -29,7 +30,7 @@ pub use difference::difference_page;
 pub use gain_still::{GainView, gain_svg};
 pub use gather::content_of;
 pub use page::page;
-pub use replay::replay_page;
+pub use replay::{Note, replay_page};
 pub use still::{Shown, still_svg};
 
 #[cfg(test)]

@@ -42,6 +42,8 @@ pub(super) struct Recorded<'a> {
     paths: Vec<(usize, String)>,
     decisions: Vec<(usize, Choice)>,
     events: Vec<(usize, &'a str)>,
+    /// How the next place is chosen, in a sentence.
+    rule: &'a str,
     /// Deadline study: T (s).
     deadline: Option<f64>,
     graphs: Vec<(usize, &'a GraphView)>,
@@ -111,6 +113,7 @@ impl<'a> Recorded<'a> {
             paths: each(frames, |f| f.path.as_ref().map(|path| points(path, MILLI))),
             decisions: each(frames, |f| f.decision.as_ref().map(choice)),
             events: each(frames, |f| f.event.as_deref()),
+            rule: &recording.rule,
             deadline: recording.deadline_s,
             graphs: each(frames, |f| f.graph.as_ref()),
         }

@@ -16,23 +16,31 @@ const SCRIPT: &str = concat!(
     include_str!("templates/replay.js")
 );
 
+/// A sentence over the page.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Note {
+    /// What is said, such as whether the re-enacted record equals the archived one.
+    pub text: String,
+    /// Whether that is as it should be.
+    pub good: bool,
+}
+
 #[derive(Serialize)]
 struct Content<'a> {
     title: &'a str,
-    note: &'a str,
+    notes: &'a [Note],
     /// The trials as JSON that no `<` can end.
     data: String,
 }
 
 /// One self-contained page titled `title` in which the named trials play side by side on one clock.
 ///
-/// `note` is a sentence over the page, such as whether the re-enacted records equal the archived ones; empty
-/// for none. The page starts at the instant of its address, if it ends in `#t=12.5` (s).
-pub fn replay_page(title: &str, trials: &[(String, &Recording)], note: &str) -> String {
+/// `notes` stand over the page, the bad ones marked as such. The page starts at the instant of its address, if it ends in `#t=12.5` (s).
+pub fn replay_page(title: &str, trials: &[(String, &Recording)], notes: &[Note]) -> String {
     let trials: Vec<_> =
         trials.iter().map(|(name, recording)| Recorded::new(name, recording)).collect();
     let data = json::canonical_of(&trials).replace('<', "\\u003c");
-    render(include_str!("templates/replay.html"), SCRIPT, &Content { title, note, data })
+    render(include_str!("templates/replay.html"), SCRIPT, &Content { title, notes, data })
 }
 
 #[cfg(test)]
@@ -44,11 +52,16 @@ mod tests {
     fn two_trials_share_a_page_that_needs_nothing_else() {
         let (a, b) = (recording(40), recording(60));
         let trials = [("prior=none #0".to_owned(), &a), ("prior=floor-plan #0".to_owned(), &b)];
-        let page = replay_page("Replay", &trials, "Both records equal the archived ones.");
+        let note = |text: &str, good| Note { text: text.to_owned(), good };
+        let notes =
+            [note("the first equals the archived one", true), note("the second DIFFERS", false)];
+        let page = replay_page("Replay", &trials, &notes);
         assert_offline(&page);
-        assert!(page.contains("Both records equal the archived ones."));
+        let [good, bad] =
+            ["✓ the first equals", "✗ the second DIFFERS"].map(|text| page.find(text).unwrap());
+        assert!(good < bad);
         assert!(page.contains("prior=floor-plan #0"));
-        assert_eq!(page, replay_page("Replay", &trials, "Both records equal the archived ones."));
+        assert_eq!(page, replay_page("Replay", &trials, &notes));
     }
 
     #[test]
@@ -56,7 +69,8 @@ mod tests {
         let mut recording = recording(5);
         recording.frames[1].event = Some("</script><script>alert(2)</script>".into());
         let name = "</script><script>alert(1)</script>".to_owned();
-        let page = replay_page("<b>&", &[(name, &recording)], "<i>");
+        let page =
+            replay_page("<b>&", &[(name, &recording)], &[Note { text: "<i>".into(), good: true }]);
         assert_eq!(page.matches("</script>").count(), 2, "the data block and the script");
         assert!(!page.contains("<script>alert") && !page.contains("<b>&") && !page.contains("<i>"));
         assert_offline(&page);
@@ -65,11 +79,11 @@ mod tests {
     #[test]
     fn a_trial_of_150_s_stays_small_and_an_empty_one_still_makes_a_page() {
         let mut long = recording(1500);
-        let page = replay_page("Long", &[("one".into(), &long)], "");
+        let page = replay_page("Long", &[("one".into(), &long)], &[]);
         assert!(page.len() < 2_000_000, "{} bytes", page.len());
         long.frames.clear();
         long.world.clear();
-        assert_offline(&replay_page("Empty", &[("none".into(), &long)], ""));
+        assert_offline(&replay_page("Empty", &[("none".into(), &long)], &[]));
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! One instant of a trial as the paper would print it.
 
+use super::graph_still::{Paper, graph_still};
 use super::recorded::bounds;
 use crate::figure::svg::{Element, document, number, path_data};
 use crate::geometry::{Outline, Point};
@@ -19,7 +20,8 @@ pub enum Shown {
 }
 
 /// The robot's map (free white, occupied black, unknown grey), the frontiers with the chosen candidate, the
-/// path and the trail, and the robot, at `at` s or at the end; with a scale bar.
+/// path and the trail, and the robot, at `at` s or at the end; with a scale bar. Of the deadline study the building, the
+/// graph with the plan on it, and the clock.
 pub fn still_svg(recording: &Recording, at: Option<f64>, shown: Shown) -> String {
     let seen = recording.frames.iter().take_while(|f| at.is_none_or(|at| f.time_s <= at));
     let frames: Vec<&Frame> = seen.collect();
@@ -32,6 +34,13 @@ pub fn still_svg(recording: &Recording, at: Option<f64>, shown: Shown) -> String
         let path = Element::new("path").set("d", data).set("fill", "none");
         path.set("stroke", colour).at("stroke-width", width).set("stroke-linejoin", "round")
     };
+
+    if recording.deadline_s.is_some() {
+        let paper = Paper { low: bounds.min, top: bounds.max.y, scale, width, height };
+        let robot = frames.last().map(|frame| robot(recording, frame, &place, scale));
+        let robot = robot.into_iter().collect();
+        return graph_still(recording, &frames, &paper, robot, scale_bar(height, scale));
+    }
 
     let ground = Element::new("rect").at("width", width).at("height", height);
     let mut body = vec![ground.set("fill", "#c4c7cc")];
@@ -158,6 +167,7 @@ fn scale_bar(height: f64, scale: f64) -> [Element; 2] {
 mod tests {
     use super::super::fixtures::recording;
     use super::*;
+    use crate::studies::recording::{ActionView, GraphView, VertexView};
 
     #[test]
     fn the_still_shows_map_frontiers_path_and_robot() {
@@ -172,6 +182,39 @@ mod tests {
         assert_eq!(with("fill", "#56b4e9"), 1, "one robot");
         assert_eq!((with("fill", "#111111"), with("stroke", "#111111")), (2, 4));
         assert_eq!(svg, still_svg(&recording, None, Shown::Everything));
+        assert!(!svg.contains("NaN") && !svg.contains("inf"));
+    }
+
+    #[test]
+    fn a_still_of_the_deadline_study_shows_the_graph_its_plan_and_the_clock() {
+        let mut recording = recording(40);
+        recording.deadline_s = Some(60.0);
+        let at = recording.frames[0].pose.position();
+        let vertex = |label: &str, room, x: f64| VertexView {
+            label: label.to_owned(),
+            room,
+            goal: room,
+            at: at + Point::new(x, 0.0),
+            unexplored: vec![0.0],
+        };
+        recording.frames[0].graph = Some(GraphView {
+            vertices: vec![vertex("c1a", false, 0.0), vertex("R1", true, 3.0)],
+            edges: vec![(0, 1)],
+            target: Some(1),
+            policy: vec![ActionView { from: 0, to: 1, probability: 0.75, fast: true }],
+            doing: "door on the left, fast".to_owned(),
+            ..GraphView::default()
+        });
+        let svg = still_svg(&recording, Some(2.0), Shown::Everything);
+        roxmltree::Document::parse(&svg).unwrap();
+        for text in [
+            "c1a",
+            "R1 goal",
+            "fast, probability 0.75",
+            "2.0 s of 60 s, on the way to R1: door on the left, fast",
+        ] {
+            assert!(svg.contains(text), "{text} in {svg}");
+        }
         assert!(!svg.contains("NaN") && !svg.contains("inf"));
     }
 

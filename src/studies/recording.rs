@@ -25,6 +25,9 @@ pub struct Recording {
     /// Deadline study: the constrained MDPs that were solved, as JSON that `solve-cmdp` reads, in order of time.
     #[serde(skip)]
     pub plans: Vec<SolvedPlan>,
+    /// How the next place to go to is chosen, in a sentence.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub rule: String,
     /// Deadline study: T, the global deadline (s).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub deadline_s: Option<f64>,
@@ -64,6 +67,7 @@ impl Default for Recording {
             map_pose: Pose::default(),
             frames: Vec::new(),
             plans: Vec::new(),
+            rule: String::new(),
             deadline_s: None,
             sensed: None,
         }
@@ -141,6 +145,8 @@ pub struct GraphView {
     pub current: usize,
     /// v, where the robot is on its way to one.
     pub target: Option<usize>,
+    /// What there was to choose from when that was decided.
+    pub candidates: Vec<CandidateView>,
     /// t_d, as an instant of the trial (s), while a plan is followed.
     pub leg_deadline_s: Option<f64>,
     /// π*: what it may do at each vertex of the plan.
@@ -163,6 +169,18 @@ pub struct VertexView {
     pub at: Point,
     /// Headings (rad) of its edges to unexplored space.
     pub unexplored: Vec<f64>,
+}
+
+/// One vertex that could have been chosen.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct CandidateView {
+    /// Which one.
+    pub vertex: usize,
+    /// How many edges to unexplored space it had.
+    pub unexplored: usize,
+    /// How many edges it was away.
+    pub edges_away: usize,
 }
 
 /// One action of a policy.

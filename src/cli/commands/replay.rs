@@ -5,7 +5,7 @@ use crate::cli::exit::{Exit, Failure};
 use crate::cli::load;
 use crate::cli::terminal::{Terminal, counted};
 use crate::plan::Plan;
-use crate::report::{GainView, Shown, bag, gain_svg, replay_page, still_svg};
+use crate::report::{GainView, Note, Shown, bag, gain_svg, replay_page, still_svg};
 use crate::studies::recording::Recording;
 use crate::studies::{self, Setup, TrialRecord};
 use crate::verify::plan_of;
@@ -39,18 +39,18 @@ pub(in crate::cli) fn run(args: &ReplayArgs, terminal: Terminal) -> Result<Exit,
             .iter()
             .find(|r| r.key == spec.key)
             .is_some_and(|r| TrialRecord::to_line(r) == record.to_line());
-        if same {
-            notes.push(format!("{name}: the re-enacted record equals the archived one"));
-        } else {
+        if !same {
             exit = Exit::No;
-            notes.push(format!("{name}: the re-enacted record DIFFERS from the archived one"));
         }
+        let found = if same { "equals" } else { "DIFFERS from" };
+        let text = format!("{name}: the re-enacted record {found} the archived one");
+        notes.push(Note { text, good: same });
         played.push((name, recording));
     }
     if let Some(path) = &args.html {
         let trials: Vec<(String, &Recording)> =
             played.iter().map(|(name, recording)| (name.clone(), recording)).collect();
-        let page = replay_page(&plan.experiment.title, &trials, &notes.join("; "));
+        let page = replay_page(&plan.experiment.title, &trials, &notes);
         load::write(path, page.as_bytes())?;
         terminal.note(&format!("wrote {}", path.display()));
     }
@@ -85,7 +85,8 @@ pub(in crate::cli) fn run(args: &ReplayArgs, terminal: Terminal) -> Result<Exit,
         let count = counted(recording.plans.len(), "plan");
         terminal.note(&format!("wrote {count} to {}", folder.display()));
     }
-    terminal.result(&notes.join("\n"));
+    let told: Vec<&str> = notes.iter().map(|note| note.text.as_str()).collect();
+    terminal.result(&told.join("\n"));
     Ok(exit)
 }
 

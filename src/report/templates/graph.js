@@ -72,12 +72,25 @@ function graphStatus(trial, graph, time) {
   return text;
 }
 
+// What the target was chosen among, and by which rule.
+function candidateRows(trial, [, graph]) {
+  if (!graph.candidates.length) return [];
+  const because = trial.rule ? `why: ${trial.rule}` : "chosen among";
+  const rows = [make("caption", "", because), row(["vertex", "unexplored edges", "edges away"], "th")];
+  const chosen = ({ vertex }) => vertex === graph.target;
+  const ordered = [...graph.candidates].sort((a, b) => chosen(b) - chosen(a)
+    || b.unexplored - a.unexplored || a["edges-away"] - b["edges-away"]);
+  for (const candidate of ordered.slice(0, 8)) {
+    const name = (chosen(candidate) ? "◆ " : "") + graph.vertices[candidate.vertex].label;
+    const cells = [name, candidate.unexplored, candidate["edges-away"]];
+    rows.push(row(cells, "td", chosen(candidate) ? "chosen" : ""));
+  }
+  const more = graph.candidates.length - 8;
+  if (more > 0) rows.push(row([`and ${more} more`, "", ""], "td", "soft"));
+  return rows;
+}
+
 function policyRows(trial, [at, graph]) {
-  const row = (cells, name) => {
-    const line = make("tr");
-    line.append(...cells.map((text) => make(name, "", text)));
-    return line;
-  };
   const when = `at ${trial.time[at].toFixed(1)} s`;
   if (!graph.policy.length) return [make("caption", "", `${when}: no plan is followed`)];
   const label = (v) => graph.vertices[v].label;

@@ -26,7 +26,9 @@ function lastAt(count, value, limit) {
   }
   return low - 1;
 }
-const frameAt = (trial) => lastAt(trial.time.length, (i) => trial.time[i], now + 1e-6);
+// Before its first frame a robot stands where it begins.
+const frameAt = (trial) =>
+  Math.max(lastAt(trial.time.length, (i) => trial.time[i], now + 1e-6), Math.min(0, trial.time.length - 1));
 const latest = (list, frame) => list[lastAt(list.length, (i) => list[i][0], frame)];
 
 // --- one panel per trial ---------------------------------------------------------------------------------
@@ -39,7 +41,8 @@ function panelOf(trial) {
   canvas.setAttribute("role", "img");
   const status = make("p", "now");
   const scroll = make("div", "scroll"), table = make("table", "decision"), events = make("ul", "events");
-  scroll.append(table);
+  const policy = make("table", "decision");
+  scroll.append(table, policy);
   side.append(status, scroll, events);
   view.append(canvas, side);
   const heading = make("h2", "", trial.name);
@@ -47,12 +50,13 @@ function panelOf(trial) {
   section.append(heading, view);
   element("trials").append(section);
   const cells = new Uint8Array(trial.frame.width * trial.frame.height);
-  return { trial, canvas, status, table, events, cells, map: picture(trial.frame), applied: -1, stale: true };
+  return { trial, canvas, status, table, policy, events, cells, map: picture(trial.frame), applied: -1, stale: true };
 }
 
 function drawPanel(panel) {
   const { trial } = panel, frame = frameAt(trial), view = viewport(panel), { context } = view;
-  context.fillStyle = colour.unknown;
+  // Without a map there is nothing unknown to show.
+  context.fillStyle = trial.deadline ? colour.free : colour.unknown;
   context.fillRect(0, 0, view.width, view.height);
   const shown = (name) => document.querySelector(`[data-layer=${name}]`).checked;
   const decision = latest(trial.decisions, frame), graph = latest(trial.graphs, frame);
@@ -92,7 +96,8 @@ function tell(panel, frame, decision, graph) {
   }
   if (panel.graph !== graph) {
     panel.graph = graph;
-    panel.table.replaceChildren(...(graph ? policyRows(trial, graph) : []));
+    panel.table.replaceChildren(...(graph ? candidateRows(trial, graph) : []));
+    panel.policy.replaceChildren(...(graph ? policyRows(trial, graph) : []));
   }
   const count = lastAt(trial.events.length, (i) => trial.events[i][0], frame) + 1;
   if (panel.told !== count) {
@@ -103,24 +108,31 @@ function tell(panel, frame, decision, graph) {
   }
 }
 
+function row(cells, name, className = "") {
+  const line = make("tr", className);
+  line.append(...cells.map((text) => make(name, "", text)));
+  return line;
+}
+
+// What was chosen among, best first, and by which rule.
 function decisionRows(trial, [at, decision]) {
   const MOST = 8;
-  const row = (cells, name, className) => {
-    const line = make("tr", className);
-    line.append(...cells.map((text) => make(name, "", text)));
-    return line;
-  };
   const when = `decision at ${trial.time[at].toFixed(1)} s`;
   if (!decision.frontiers.length) return [make("caption", "", `${when}: no frontier is left`)];
-  const rows = [make("caption", "", `${when}: distance D, gain I, utility u`),
-    row(["", "D (m)", "I (m²)", "u"], "th")];
+  const because = trial.rule ? ` · why: ${trial.rule}` : "";
+  const rows = [make("caption", "", `${when}: distance D, gain I, utility u${because}`),
+    row(["", "D (m)", "d", "I (m²)", "i", "u"], "th")];
+  const most = (of) => Math.max(...decision.frontiers.map(of));
+  const [far, rich] = [most((f) => f.distance), most((f) => f.gain)];
+  const share = (part, whole, none) => (whole > 0 ? part / whole : none).toFixed(2);
   for (const i of decision.ranked) {
     const { rank, distance, gain, utility } = decision.frontiers[i], chosen = i === decision.chosen;
     if (rank > MOST && !chosen) continue;
-    const numbers = [distance.toFixed(2), gain.toFixed(2), utility.toFixed(3)];
+    const numbers = [distance.toFixed(2), share(far - distance, far, 1), gain.toFixed(2), share(gain, rich, 0),
+      utility.toFixed(3)];
     rows.push(row([`${chosen ? "◆ " : ""}${rank}`, ...numbers], "td", chosen ? "chosen" : ""));
   }
   const more = decision.frontiers.length - rows.length + 2;
-  if (more > 0) rows.push(row(["", `and ${more} more`, "", ""], "td", "soft"));
+  if (more > 0) rows.push(row(["", `and ${more} more`, "", "", "", ""], "td", "soft"));
   return rows;
 }

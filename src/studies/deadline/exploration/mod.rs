@@ -80,6 +80,17 @@ pub struct Move {
     pub purpose: Purpose,
 }
 
+/// A vertex with edges (v, v∅), as it was when one was chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Candidate {
+    /// v'.
+    pub vertex: VertexId,
+    /// How many such edges it has.
+    pub unexplored: usize,
+    /// d(v'), in edges.
+    pub distance: usize,
+}
+
 /// One answer of `ExplorationNext` with its plan.
 #[derive(Debug, Clone)]
 pub struct Decision {
@@ -87,8 +98,8 @@ pub struct Decision {
     pub at_s: f64,
     /// v_c.
     pub from: VertexId,
-    /// How many vertices there were to choose from.
-    pub candidates: usize,
+    /// 𝒱, the vertices there were to choose from, in order of discovery.
+    pub candidates: Vec<Candidate>,
     /// t_d.
     pub deadline: LocalDeadline,
     /// v, and π*.
@@ -272,8 +283,13 @@ impl Explorer {
     fn exploration_next(&mut self, now_s: f64, current: VertexId) -> Result<(), GiveUp> {
         let target =
             self.chooser.next(&self.map, current, &mut self.choosing).ok_or(GiveUp::NothingLeft)?;
-        let candidates = self.map.ids().filter(|v| self.map.unexplored_degree(*v) > 0).count();
-        let edges = self.map.distances(current)[target.index()].expect("candidates are reachable");
+        let distances = self.map.distances(current);
+        let candidate = |v: VertexId| {
+            let (unexplored, distance) = (self.map.unexplored_degree(v), distances[v.index()]?);
+            (unexplored > 0).then_some(Candidate { vertex: v, unexplored, distance })
+        };
+        let candidates = self.map.ids().filter_map(candidate).collect();
+        let edges = distances[target.index()].expect("candidates are reachable");
         let deadline = self.rules.schedule.local_deadline(edges, now_s, self.deadline_s);
         let navigation = NavigateToVertex::begin(
             &self.map,

@@ -1,7 +1,7 @@
 //! The robot below its decisions: the simulator with its sensors, the pilot, and the Intersection Detection System between
 //! them.
 
-use super::Prepared;
+use super::{Prepared, graph};
 use crate::cmdp::build::Speed;
 use crate::geometry::{Cardinal, Point, Pose};
 use crate::navigation::maneuver::{self, CONTROL_PERIOD, Leg, Pilot, Sense, SpeedLimits};
@@ -95,6 +95,7 @@ impl<'a> Body<'a> {
             recording.world.clone_from(&prepared.visible);
             recording.footprint = robot.footprint.clone();
             recording.map_pose = start;
+            recording.rule = graph::rule(&setup.parameters.rules);
         }
         let rule = setup.parameters.pilot;
         Self {

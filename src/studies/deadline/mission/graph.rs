@@ -2,10 +2,12 @@
 
 use crate::cmdp::build::{Motion, Place, Speed};
 use crate::geometry::Point;
-use crate::studies::deadline::exploration::{Decision, Explorer, Purpose};
+use crate::studies::deadline::exploration::{Candidate, Decision, Explorer, Purpose};
 use crate::studies::deadline::planner::Plan;
+use crate::studies::deadline::rules::Rules;
+use crate::studies::deadline::strategy::{Preference, Strategy, Ties};
 use crate::studies::deadline::toposemantic_map::{End, ToposemanticMap, VertexId};
-use crate::studies::recording::{ActionView, GraphView, VertexView};
+use crate::studies::recording::{ActionView, CandidateView, GraphView, VertexView};
 
 /// The map of `mind`, its vertices drawn at `places`, and its plan.
 pub(super) fn view(mind: &Explorer, places: &[Point]) -> GraphView {
@@ -34,6 +36,7 @@ pub(super) fn view(mind: &Explorer, places: &[Point]) -> GraphView {
         edges,
         current: mind.current().map_or(0, VertexId::index),
         target: leg.map(|decision| decision.target().index()),
+        candidates: leg.map(candidates).unwrap_or_default(),
         leg_deadline_s: leg.map(|decision| decision.at_s + decision.deadline.seconds),
         policy: leg.and_then(Decision::plan).map(|plan| policy(map, plan)).unwrap_or_default(),
         doing: doing(mind),
@@ -44,6 +47,53 @@ pub(super) fn view(mind: &Explorer, places: &[Point]) -> GraphView {
 fn leg(mind: &Explorer) -> Option<&Decision> {
     let under_way = mind.moves().last()?;
     (under_way.purpose == Purpose::Navigate).then(|| mind.decisions().last()).flatten()
+}
+
+/// What `decision` chose among.
+fn candidates(decision: &Decision) -> Vec<CandidateView> {
+    let view = |candidate: &Candidate| CandidateView {
+        vertex: candidate.vertex.index(),
+        unexplored: candidate.unexplored,
+        edges_away: candidate.distance,
+    };
+    decision.candidates.iter().map(view).collect()
+}
+
+/// How `rules` choose the next vertex, in a sentence (section 5).
+pub(super) fn rule(rules: &Rules) -> String {
+    let preference = |preference| match preference {
+        Preference::Nearest => "the nearest",
+        Preference::MostUnexplored => "the one with most unexplored edges",
+        Preference::Uniform => "any",
+    };
+    match rules.strategy {
+        Strategy::Random => "random: any vertex with unexplored edges".to_owned(),
+        Strategy::Frontier => {
+            let ties = match rules.frontier.ties {
+                Ties::Uniform => "any",
+                Ties::Nearest => "the nearest",
+            };
+            format!("frontier: most unexplored edges; {ties} of equals")
+        }
+        Strategy::NormalizedFrontier => {
+            let gamma = rules.normalized_frontier.gamma;
+            format!(
+                "normalized frontier: highest {gamma} x unexplored edges / most - {} x edges away / furthest; the nearest of equals",
+                1.0 - gamma
+            )
+        }
+        Strategy::CorridorsFirst => {
+            format!(
+                "corridors first: {} of the corridors, then of the rooms",
+                preference(rules.corridors_first.among)
+            )
+        }
+        Strategy::CompleteCorridor => format!(
+            "complete corridor: {} vertex of the corridor in hand, then {} to begin another with",
+            preference(rules.complete_corridor.inside),
+            preference(rules.complete_corridor.next)
+        ),
+    }
 }
 
 /// π* as arrows between known vertices.

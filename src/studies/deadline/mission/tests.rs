@@ -77,6 +77,25 @@ fn a_robot_finds_the_goal_and_every_maneuver_is_counted() {
 }
 
 #[test]
+fn a_recording_tells_what_a_target_was_chosen_among_and_why() {
+    let spec = trial(building(), "A", exploration(Strategy::Frontier, 3000.0), 0);
+    let (record, recording) = studies::reenact(&spec);
+    assert_eq!(record.to_line(), studies::execute(&spec).to_line());
+    assert_eq!(recording.rule, "frontier: most unexplored edges; any of equals");
+    let graphs = recording.frames.iter().filter_map(|frame| frame.graph.as_ref());
+    let mut legs = 0;
+    for graph in graphs {
+        assert_eq!(graph.target.is_some(), !graph.candidates.is_empty());
+        let Some(target) = graph.target else { continue };
+        let most = graph.candidates.iter().map(|c| c.unexplored).max();
+        let chosen = graph.candidates.iter().find(|c| c.vertex == target).unwrap();
+        assert_eq!(Some(chosen.unexplored), most, "as the rule says");
+        legs += 1;
+    }
+    assert!(legs > 0);
+}
+
+#[test]
 fn a_strict_deadline_ends_a_trial_late_and_without_a_time() {
     let spec = trial(building(), "C", exploration(Strategy::Random, 60.0), 1);
     let record = studies::execute(&spec);

@@ -7,8 +7,26 @@ use crate::math;
 use crate::robot::{Odometry, Scan};
 use crate::studies::prior_map::Setup;
 use crate::studies::prior_map::choice::Choice;
+use crate::studies::prior_map::parameters::{Exploration, Strategy};
 use crate::studies::recording::{Decision, Frame, FrontierView, Recording, Sensed};
 use crate::units::Tick;
+
+/// How the next location is chosen, in a sentence (equations 1 to 4).
+fn rule(exploration: &Exploration) -> String {
+    match exploration.strategy {
+        Strategy::Utility => {
+            let alpha = exploration.alpha;
+            format!(
+                "highest u = {alpha} d + {} i, where d = 1 - D / largest D and i = I / largest I",
+                1.0 - alpha
+            )
+        }
+        Strategy::NearestFrontier => "the nearest frontier".to_owned(),
+        Strategy::TopoMetricTour => {
+            "the next node of the tour planned on the topo-metric map".to_owned()
+        }
+    }
+}
 
 /// A recording in the making.
 pub(super) struct Recorder<'a> {
@@ -26,6 +44,7 @@ impl<'a> Recorder<'a> {
         recording.footprint = setup.robot.footprint.clone();
         recording.prior = setup.prior.as_deref().cloned();
         recording.map_pose = setup.start;
+        recording.rule = rule(&setup.parameters.exploration);
         let resolution = setup.parameters.mapping.resolution_m;
         Self {
             recording,
