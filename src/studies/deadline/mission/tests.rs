@@ -78,7 +78,7 @@ fn a_robot_finds_the_goal_and_every_maneuver_is_counted() {
 
 #[test]
 fn a_recording_tells_what_a_target_was_chosen_among_and_why() {
-    let spec = trial(building(), "A", exploration(Strategy::Frontier, 3000.0), 0);
+    let spec = trial(building(), "C", exploration(Strategy::Frontier, 3000.0), 0);
     let (record, recording) = studies::reenact(&spec);
     assert_eq!(record.to_line(), studies::execute(&spec).to_line());
     assert_eq!(recording.rule, "frontier: most unexplored edges; any of equals");
