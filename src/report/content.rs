@@ -31,6 +31,9 @@ pub struct ReportContent {
     pub machine_claims: Vec<ClaimRow>,
     /// Choices the paper leaves open, with their reasons.
     pub assumptions: Vec<Assumption>,
+    /// How other values of the assumptions were tried: `15 trials per condition, one setting at a time, same noise`;
+    /// `None` where none were.
+    pub tried_with: Option<String>,
     /// The sealed inputs.
     pub inputs: Vec<InputRow>,
     /// Commands with which a stranger checks and re-runs this.
@@ -185,6 +188,31 @@ pub struct Assumption {
     pub value: String,
     /// The reason.
     pub why: String,
+    /// The other values of its stated range that were tried, in the order of the range; `None` where no range is
+    /// stated.
+    pub tried: Option<Vec<Tried>>,
+}
+
+/// One other value of a setting, and what it did to the verdicts.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Tried {
+    /// The value tried, as text: `0.2`.
+    pub at: String,
+    /// The verdicts that are not what they are at the value chosen; empty where all stay.
+    pub flips: Vec<Flip>,
+}
+
+/// A verdict that another value of a setting changes.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Flip {
+    /// The claim's id: `D4`.
+    pub claim: String,
+    /// Its verdict at the value chosen.
+    pub from: String,
+    /// Its verdict at the value tried.
+    pub to: String,
 }
 
 /// One sealed input.

@@ -216,11 +216,8 @@ pub(super) fn content() -> ReportContent {
             numbers: "median 0.002 (0.001 to 0.003), p 1.00e-3 at alpha 0.05 by binomial".into(),
             paper_table: "silent".into(),
         }],
-        assumptions: vec![Assumption {
-            path: "parameters.mapping.particles".into(),
-            value: "1".into(),
-            why: "odometry is exact in the paper's simulator, so more than one particle changes nothing".into(),
-        }],
+        assumptions: assumptions(),
+        tried_with: Some("15 trials per condition, one setting at a time, same noise".into()),
         inputs: vec![InputRow {
             role: "world".into(),
             written: "../worlds/basic.yaml".into(),
@@ -232,6 +229,39 @@ pub(super) fn content() -> ReportContent {
             line: "reenact verify prior-9f86d081.zip --level 3".into(),
         }],
     }
+}
+
+/// One assumption without a range, one that decides nothing within its range, one that decides a verdict.
+fn assumptions() -> Vec<Assumption> {
+    let tried = |at: &str, flips: &[Flip]| Tried { at: at.into(), flips: flips.to_vec() };
+    let flip = |claim: &str, from: &str, to: &str| Flip {
+        claim: claim.into(),
+        from: from.into(),
+        to: to.into(),
+    };
+    vec![
+        Assumption {
+            path: "parameters.mapping.particles".into(),
+            value: "1".into(),
+            why: "odometry is exact in the paper's simulator, so more than one particle changes nothing".into(),
+            tried: None,
+        },
+        Assumption {
+            path: "parameters.exploration.alpha".into(),
+            value: "0.4".into(),
+            why: "the paper gives no number; the authors' program has this one".into(),
+            tried: Some(vec![tried("0.2", &[]), tried("0.6", &[])]),
+        },
+        Assumption {
+            path: "parameters.drive.speed-m-s".into(),
+            value: "0.5".into(),
+            why: "the robot's datasheet".into(),
+            tried: Some(vec![
+                tried("0.3", &[flip("P1", "supported", "inconclusive")]),
+                tried("0.7", &[]),
+            ]),
+        },
+    ]
 }
 
 /// Nothing in `page` is fetched from anywhere, and no inline handler is left for the policy to stop.

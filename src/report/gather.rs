@@ -54,8 +54,10 @@ pub fn content_of(bundle: &Bundle, plan: &Plan) -> Result<ReportContent, String>
                 path: a.path.clone(),
                 value: text_of(&a.value),
                 why: a.why.clone(),
+                tried: None,
             })
             .collect(),
+        tried_with: None,
         inputs: bundle
             .inputs()
             .iter()

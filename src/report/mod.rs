@@ -22,8 +22,8 @@ mod template;
 pub use agreement::Agreement;
 pub use bag::{Bag, bag};
 pub use content::{
-    Assumption, Citation, ClaimRow, Command, Figure, Headline, InputRow, Measured, OutcomeCount,
-    ReportCell, ReportContent, ReportRow, ReportTable,
+    Assumption, Citation, ClaimRow, Command, Figure, Flip, Headline, InputRow, Measured,
+    OutcomeCount, ReportCell, ReportContent, ReportRow, ReportTable, Tried,
 };
 pub use difference::difference_page;
 pub use gain_still::{GainView, gain_svg};

@@ -62,6 +62,10 @@ mod tests {
             "reenact verify prior-9f86d081.zip --level 3",
             "not reached",
             "a footprint never harms",
+            "no range stated",
+            "0.2 … 0.6: no verdict changes",
+            "at 0.3: P1 supported → inconclusive",
+            "15 trials per condition, one setting at a time, same noise",
         ] {
             at(text);
         }
