@@ -1,6 +1,6 @@
 //! What a report says, before it has a look: plain values, filled in from a bundle.
 
-use super::Agreement;
+use super::{Agreement, ClaimRow, Evaluation, Provenance};
 use serde::Serialize;
 
 /// Everything on the page of one bundle.
@@ -34,10 +34,10 @@ pub struct ReportContent {
     /// How other values of the assumptions were tried: `15 trials per condition, one setting at a time, same noise`;
     /// `None` where none were.
     pub tried_with: Option<String>,
-    /// The sealed inputs.
-    pub inputs: Vec<InputRow>,
-    /// Commands with which a stranger checks and re-runs this.
-    pub commands: Vec<Command>,
+    /// Where it all comes from.
+    pub provenance: Provenance,
+    /// What an evaluator checks, and how.
+    pub evaluation: Evaluation,
 }
 
 /// The work that is reproduced.
@@ -48,6 +48,8 @@ pub struct Citation {
     pub paper: String,
     /// Which part of it: `section 4.2, Tables 1 and 2`; may be empty.
     pub section: String,
+    /// Digital object identifier; may be empty.
+    pub doi: String,
 }
 
 /// The run in a few numbers.
@@ -158,24 +160,8 @@ pub struct Figure {
     pub alt: String,
     /// The drawing, SVG text.
     pub svg: String,
-}
-
-/// A claim and what became of it.
-#[derive(Debug, Clone, Default, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub struct ClaimRow {
-    /// Its id in the manifest.
-    pub id: String,
-    /// The paper's sentence.
-    pub says: String,
-    /// Where it says so.
-    pub cite: String,
-    /// The verdict's name: `supported`, `contradicted`, `undecided`.
-    pub verdict: String,
-    /// The numbers that decided it, in words, with their interval.
-    pub numbers: String,
-    /// What the paper's own table says: `supports`, `contradicts`, `silent`.
-    pub paper_table: String,
+    /// Where it lies in the bundle.
+    pub file: String,
 }
 
 /// A value the paper leaves open, and why this one.
@@ -213,28 +199,4 @@ pub struct Flip {
     pub from: String,
     /// Its verdict at the value tried.
     pub to: String,
-}
-
-/// One sealed input.
-#[derive(Debug, Clone, Default, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub struct InputRow {
-    /// What it is for: `world`, `robot`, `prior`, `published`.
-    pub role: String,
-    /// Its path as the manifest writes it.
-    pub written: String,
-    /// Its path in the bundle.
-    pub sealed: String,
-    /// SHA-256 of its bytes, 64 hex digits.
-    pub sha256: String,
-}
-
-/// A command line to copy.
-#[derive(Debug, Clone, Default, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub struct Command {
-    /// What it does, as an imperative: `check every checksum and re-derive the tables`.
-    pub purpose: String,
-    /// The line itself.
-    pub line: String,
 }

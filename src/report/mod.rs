@@ -5,11 +5,15 @@
 
 mod agreement;
 pub mod bag;
+mod claim;
 mod content;
 mod difference;
+mod evaluation;
 mod gain_still;
 mod gather;
 mod inline_svg;
+mod limits;
+mod origin;
 mod pack;
 pub mod page;
 mod recorded;
@@ -21,13 +25,16 @@ mod template;
 
 pub use agreement::Agreement;
 pub use bag::{Bag, bag};
+pub use claim::{ClaimRow, ComparisonRow};
 pub use content::{
-    Assumption, Citation, ClaimRow, Command, Figure, Flip, Headline, InputRow, Measured,
-    OutcomeCount, ReportCell, ReportContent, ReportRow, ReportTable, Tried,
+    Assumption, Citation, Figure, Flip, Headline, Measured, OutcomeCount, ReportCell,
+    ReportContent, ReportRow, ReportTable, Tried,
 };
 pub use difference::difference_page;
+pub use evaluation::{Badge, Command, Evaluation};
 pub use gain_still::{GainView, gain_svg};
 pub use gather::content_of;
+pub use origin::{InputRow, Provenance};
 pub use page::page;
 pub use replay::replay_page;
 pub use still::{Shown, still_svg};
