@@ -26,6 +26,9 @@ pub const TAG_MANIFEST: &str = "tagmanifest-sha256.txt";
 /// Detached signatures of [`TAG_MANIFEST`]: the only files a bag may hold unlisted.
 pub const SIGNATURES: [&str; 2] = ["tagmanifest-sha256.txt.sig", "tagmanifest-sha256.txt.minisig"];
 
+/// Name of the fact of a run's environment that says how many trials it executed itself; the others came from a store.
+pub const SIMULATED_TRIALS: &str = "trials-simulated";
+
 /// The crate's metadata. This and what follows is relative to [`PAYLOAD`].
 pub const METADATA: &str = "ro-crate-metadata.json";
 /// The crate's page for people.

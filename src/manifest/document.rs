@@ -38,6 +38,11 @@ pub struct ManifestDoc {
     /// Inputs that others published: where they are to be had, and what they must hold.
     #[serde(default)]
     pub pinned: Vec<PinnedDoc>,
+    /// What the numbers cannot show, one sentence each: reports say it before any number. For what is invented, stands in
+    /// for something else, or was settled while looking at the published numbers.
+    #[serde(default)]
+    #[schemars(inner(length(min = 1)))]
+    pub limits: Vec<String>,
     /// Which study this is.
     pub study: StudyKind,
     /// Seed of all randomness.

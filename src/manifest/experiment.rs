@@ -27,6 +27,8 @@ pub struct Experiment {
     pub authors: Vec<Author>,
     /// Licence of the manifest and of what it yields.
     pub license: Option<String>,
+    /// What its numbers cannot show, one sentence each.
+    pub limits: Vec<String>,
     /// Which study this is.
     pub kind: StudyKind,
     /// Seed of all randomness.
@@ -131,7 +133,7 @@ impl Experiment {
                 })
             })
             .collect();
-        json!({
+        let mut resolved = json!({
             "reenact": 1,
             "engine-version": engine_version,
             "name": self.name,
@@ -152,7 +154,12 @@ impl Experiment {
             "assumptions": self.assumptions,
             "overrides": self.overrides,
             "inputs": inputs,
-        })
+        });
+        // Studies that state none are resolved as they were before there was this key.
+        if let (Value::Object(map), false) = (&mut resolved, self.limits.is_empty()) {
+            map.insert("limits".to_owned(), json!(self.limits));
+        }
+        resolved
     }
 
     /// [`Self::resolved_json`] as its one canonical text, with a final line feed.

@@ -152,6 +152,7 @@ impl Resolver<'_> {
             cite: doc.cite.clone(),
             authors: doc.authors.clone(),
             license: doc.license.clone(),
+            limits: doc.limits.clone(),
             kind: doc.study,
             seed: doc.seed,
             trials: doc.trials,

@@ -1,6 +1,6 @@
 //! What a report says, before it has a look: plain values, filled in from a bundle.
 
-use super::Agreement;
+use super::{Agreement, ClaimRow, Evaluation, Provenance};
 use serde::Serialize;
 
 /// Everything on the page of one bundle.
@@ -31,10 +31,13 @@ pub struct ReportContent {
     pub machine_claims: Vec<ClaimRow>,
     /// Choices the paper leaves open, with their reasons.
     pub assumptions: Vec<Assumption>,
-    /// The sealed inputs.
-    pub inputs: Vec<InputRow>,
-    /// Commands with which a stranger checks and re-runs this.
-    pub commands: Vec<Command>,
+    /// How other values of the assumptions were tried: `15 trials per condition, one setting at a time, same noise`;
+    /// `None` where none were.
+    pub tried_with: Option<String>,
+    /// Where it all comes from.
+    pub provenance: Provenance,
+    /// What an evaluator checks, and how.
+    pub evaluation: Evaluation,
 }
 
 /// The work that is reproduced.
@@ -45,6 +48,8 @@ pub struct Citation {
     pub paper: String,
     /// Which part of it: `section 4.2, Tables 1 and 2`; may be empty.
     pub section: String,
+    /// Digital object identifier; may be empty.
+    pub doi: String,
 }
 
 /// The run in a few numbers.
@@ -155,24 +160,8 @@ pub struct Figure {
     pub alt: String,
     /// The drawing, SVG text.
     pub svg: String,
-}
-
-/// A claim and what became of it.
-#[derive(Debug, Clone, Default, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub struct ClaimRow {
-    /// Its id in the manifest.
-    pub id: String,
-    /// The paper's sentence.
-    pub says: String,
-    /// Where it says so.
-    pub cite: String,
-    /// The verdict's name: `supported`, `contradicted`, `undecided`.
-    pub verdict: String,
-    /// The numbers that decided it, in words, with their interval.
-    pub numbers: String,
-    /// What the paper's own table says: `supports`, `contradicts`, `silent`.
-    pub paper_table: String,
+    /// Where it lies in the bundle.
+    pub file: String,
 }
 
 /// A value the paper leaves open, and why this one.
@@ -185,28 +174,29 @@ pub struct Assumption {
     pub value: String,
     /// The reason.
     pub why: String,
+    /// The other values of its stated range that were tried, in the order of the range; `None` where no range is
+    /// stated.
+    pub tried: Option<Vec<Tried>>,
 }
 
-/// One sealed input.
-#[derive(Debug, Clone, Default, Serialize)]
+/// One other value of a setting, and what it did to the verdicts.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub struct InputRow {
-    /// What it is for: `world`, `robot`, `prior`, `published`.
-    pub role: String,
-    /// Its path as the manifest writes it.
-    pub written: String,
-    /// Its path in the bundle.
-    pub sealed: String,
-    /// SHA-256 of its bytes, 64 hex digits.
-    pub sha256: String,
+pub struct Tried {
+    /// The value tried, as text: `0.2`.
+    pub at: String,
+    /// The verdicts that are not what they are at the value chosen; empty where all stay.
+    pub flips: Vec<Flip>,
 }
 
-/// A command line to copy.
-#[derive(Debug, Clone, Default, Serialize)]
+/// A verdict that another value of a setting changes.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub struct Command {
-    /// What it does, as an imperative: `check every checksum and re-derive the tables`.
-    pub purpose: String,
-    /// The line itself.
-    pub line: String,
+pub struct Flip {
+    /// The claim's id: `D4`.
+    pub claim: String,
+    /// Its verdict at the value chosen.
+    pub from: String,
+    /// Its verdict at the value tried.
+    pub to: String,
 }

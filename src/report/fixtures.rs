@@ -146,6 +146,7 @@ pub(super) fn content() -> ReportContent {
                 .into(),
         alt: format!("{title}: the floor plan needs the shortest way at every coverage"),
         svg,
+        file: format!("results/figures/{id}.svg"),
     };
     let table = ReportTable {
         id: "table-1".into(),
@@ -162,6 +163,7 @@ pub(super) fn content() -> ReportContent {
         citation: Citation {
             paper: "M. Luperto, M. Antonazzi, F. Amigoni, N. A. Borghese, “Robot exploration of indoor environments using incomplete and inaccurate prior knowledge”, Robotics and Autonomous Systems, 2020".into(),
             section: "section 4.2, Tables 1 and 2".into(),
+            doi: "10.1000/182".into(),
         },
         authors: vec!["A. Author".into(), "B. Author".into()],
         license: "CC-BY-4.0".into(),
@@ -190,24 +192,7 @@ pub(super) fn content() -> ReportContent {
             figure("bars", "Distance by coverage", crate::figure::tests::bar_chart().to_svg()),
             figure("scatter", "Paper against us", crate::figure::tests::scatter().to_svg()),
         ],
-        claims: vec![
-            ClaimRow {
-                id: "P1".into(),
-                says: "a floor plan shortens the way to 90 % coverage".into(),
-                cite: "section 4.2".into(),
-                verdict: "supported".into(),
-                numbers: "−38 % (95 % interval −51 to −22 %), permutation test p = 0.002".into(),
-                paper_table: "supports".into(),
-            },
-            ClaimRow {
-                id: "P2".into(),
-                says: "a footprint never harms".into(),
-                cite: "section 5".into(),
-                verdict: "contradicted".into(),
-                numbers: "+40 % (95 % interval 12 to 71 %)".into(),
-                paper_table: "contradicts".into(),
-            },
-        ],
+        claims: claims(),
         machine_claims: vec![ClaimRow {
             id: "P21".into(),
             says: "a selection takes milliseconds".into(),
@@ -215,23 +200,101 @@ pub(super) fn content() -> ReportContent {
             verdict: "supported".into(),
             numbers: "median 0.002 (0.001 to 0.003), p 1.00e-3 at alpha 0.05 by binomial".into(),
             paper_table: "silent".into(),
+            ..ClaimRow::default()
         }],
-        assumptions: vec![Assumption {
+        assumptions: assumptions(),
+        tried_with: Some("15 trials per condition, one setting at a time, same noise".into()),
+        provenance: Provenance {
+            facts: vec![("engine version".into(), "1".into()), ("sealed by".into(), "reenact 0.1.0".into())],
+            overrides: vec!["seed=7".into()],
+            inputs: vec![InputRow {
+                role: "world".into(),
+                written: "../worlds/basic.yaml".into(),
+                sealed: "inputs/basic.yaml".into(),
+                license: "CC-BY-4.0".into(),
+                sha256: "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855".into(),
+            }],
+        },
+        evaluation: evaluation::evaluation(evaluation::Evaluated {
+            file: "prior-9f86d081.zip",
+            trial: "basic_none/0",
+            trials: 40,
+            sim_seconds: 12_345.6,
+            judged: true,
+            circumstance: None,
+        }),
+    }
+}
+
+/// A claim that we and the paper's table decide otherwise, and one on which both agree.
+fn claims() -> Vec<ClaimRow> {
+    let compared = |verdict: &str| ComparisonRow {
+        about: "distance-m-at-90: (prior=floor-plan) < (prior=none)".into(),
+        verdict: verdict.into(),
+        finding: "−38 % (95 % interval −51 % to −22 %)".into(),
+        test: "p = 0.002 (permutation)".into(),
+        cells: vec!["prior=none: mean 45.90 ± 3.10, 10 runs".into()],
+    };
+    vec![
+        ClaimRow {
+            id: "P1".into(),
+            says: "a floor plan shortens the way to 90 % coverage".into(),
+            cite: "section 4.2".into(),
+            verdict: "supported".into(),
+            numbers: "−38 % (95 % interval −51 to −22 %); p = 0.002 (permutation)".into(),
+            paper_table: "supports".into(),
+            why: "one number a run".into(),
+            rule: "Level of significance 0.05.".into(),
+            notes: vec!["reached by 9 of 10".into()],
+            comparisons: vec![compared("supported")],
+            ..ClaimRow::default()
+        },
+        ClaimRow {
+            id: "P2".into(),
+            says: "a footprint never harms".into(),
+            cite: "section 5".into(),
+            verdict: "contradicted".into(),
+            numbers: "+40 % (95 % interval 12 to 71 %)".into(),
+            paper_table: "supports".into(),
+            differs: "The paper's own table supports its sentence; our trials contradict it."
+                .into(),
+            comparisons: vec![compared("contradicted"), compared("inconclusive")],
+            ..ClaimRow::default()
+        },
+    ]
+}
+
+/// One assumption without a range, one that decides nothing within its range, one that decides a verdict.
+fn assumptions() -> Vec<Assumption> {
+    let tried = |at: &str, flips: &[Flip]| Tried { at: at.into(), flips: flips.to_vec() };
+    let flip = |claim: &str, from: &str, to: &str| Flip {
+        claim: claim.into(),
+        from: from.into(),
+        to: to.into(),
+    };
+    vec![
+        Assumption {
             path: "parameters.mapping.particles".into(),
             value: "1".into(),
             why: "odometry is exact in the paper's simulator, so more than one particle changes nothing".into(),
-        }],
-        inputs: vec![InputRow {
-            role: "world".into(),
-            written: "../worlds/basic.yaml".into(),
-            sealed: "inputs/basic.yaml".into(),
-            sha256: "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855".into(),
-        }],
-        commands: vec![Command {
-            purpose: "check every checksum and re-derive the tables".into(),
-            line: "reenact verify prior-9f86d081.zip --level 3".into(),
-        }],
-    }
+            tried: None,
+        },
+        Assumption {
+            path: "parameters.exploration.alpha".into(),
+            value: "0.4".into(),
+            why: "the paper gives no number; the authors' program has this one".into(),
+            tried: Some(vec![tried("0.2", &[]), tried("0.6", &[])]),
+        },
+        Assumption {
+            path: "parameters.drive.speed-m-s".into(),
+            value: "0.5".into(),
+            why: "the robot's datasheet".into(),
+            tried: Some(vec![
+                tried("0.3", &[flip("P1", "supported", "inconclusive")]),
+                tried("0.7", &[]),
+            ]),
+        },
+    ]
 }
 
 /// Nothing in `page` is fetched from anywhere, and no inline handler is left for the policy to stop.

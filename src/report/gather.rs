@@ -1,21 +1,26 @@
 //! A report's content, gathered from a sealed bundle and the plan made again from it.
 
 use super::content::{
-    Assumption, Citation, ClaimRow, Command, Figure, Headline, InputRow, OutcomeCount,
-    ReportContent,
+    Assumption, Citation, Figure, Headline, OutcomeCount, ReportContent, ReportTable,
 };
-use super::tables;
-use crate::bundle::{Bundle, assemble, format};
-use crate::claims::verdict::agreement_in_words;
-use crate::plan::Plan;
-use crate::studies::{FigureLayout, Outcome, StudyKind, TrialRecord};
+use super::evaluation::{Evaluated, evaluation};
+use super::inline_svg::described;
+use super::origin::provenance;
+use super::{claim, limits, tables};
+use crate::bundle::{Bundle, assemble};
+use crate::plan::{Plan, Selection};
+use crate::studies::{FigureLayout, TrialRecord};
 use serde_json::Value;
 
-/// What the page of `bundle` says, `plan` being the plan made again from it.
+/// What the page of `bundle` says, `plan` and `selection` being those made again from it.
 ///
 /// # Errors
 /// Where the records or verdicts cannot be read, in words.
-pub fn content_of(bundle: &Bundle, plan: &Plan) -> Result<ReportContent, String> {
+pub fn content_of(
+    bundle: &Bundle,
+    plan: &Plan,
+    selection: &Selection,
+) -> Result<ReportContent, String> {
     let records = bundle
         .records()
         .map_err(|faults| faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))?;
@@ -25,28 +30,39 @@ pub fn content_of(bundle: &Bundle, plan: &Plan) -> Result<ReportContent, String>
     let cite = experiment.cite.as_ref();
     let machine_verdicts =
         bundle.circumstance_files().find(|(path, _)| *path == "claims.json").map(|(_, b)| b);
+    let claims =
+        claim::rows("results/claims.json", bundle.result("claims.json"), &experiment.claims)?;
+    let machine_claims =
+        claim::rows("circumstances/claims.json", machine_verdicts, &experiment.claims)?;
+    let tables: Vec<ReportTable> =
+        experiment.tables.iter().map(|request| tables::table(&findings, request, plan)).collect();
+    let headline = headline(bundle, plan, &records);
+    let circumstance = bundle.circumstance();
+    let trial = plan.trials.first().map(|t| format!("{}/{}", t.condition.slug(), t.trial));
     Ok(ReportContent {
         title: experiment.title.clone(),
         citation: Citation {
             paper: cite.map(|c| c.paper.clone()).unwrap_or_default(),
             section: cite.and_then(|c| c.section.clone()).unwrap_or_default(),
+            doi: cite.and_then(|c| c.doi.clone()).unwrap_or_default(),
         },
         authors: experiment.authors.iter().map(|a| a.name.clone()).collect(),
         license: experiment.license.clone().unwrap_or_default(),
-        limits: limits(experiment.kind, &records),
-        partial: plan.partial.then(|| {
-            "only part of the study was run (--only, --trials or --shard); no claim is judged"
-                .to_owned()
+        limits: limits::limits(plan, &records, &tables, &claims),
+        partial: limits::partial(plan, selection),
+        evaluation: evaluation(Evaluated {
+            file: &format!("{}-{}.zip", bundle.name(), bundle.results_digest().short()),
+            trial: trial.as_deref().unwrap_or_default(),
+            trials: headline.trials,
+            sim_seconds: headline.sim_seconds,
+            judged: !claims.is_empty(),
+            circumstance: circumstance.as_ref(),
         }),
-        headline: headline(bundle, plan, &records),
-        tables: experiment
-            .tables
-            .iter()
-            .map(|request| tables::table(&findings, request, plan))
-            .collect(),
+        headline,
+        tables,
         figures: figures(bundle, plan),
-        claims: claims("results/claims.json", bundle.result("claims.json"))?,
-        machine_claims: claims("circumstances/claims.json", machine_verdicts)?,
+        claims,
+        machine_claims,
         assumptions: experiment
             .assumptions
             .iter()
@@ -54,52 +70,12 @@ pub fn content_of(bundle: &Bundle, plan: &Plan) -> Result<ReportContent, String>
                 path: a.path.clone(),
                 value: text_of(&a.value),
                 why: a.why.clone(),
+                tried: None,
             })
             .collect(),
-        inputs: bundle
-            .inputs()
-            .iter()
-            .map(|input| InputRow {
-                role: role(&input.as_written).to_owned(),
-                written: input.as_written.clone(),
-                sealed: input.path.clone(),
-                sha256: input.sha256.hex(),
-            })
-            .collect(),
-        commands: commands(bundle),
+        tried_with: None,
+        provenance: provenance(bundle, plan),
     })
-}
-
-fn limits(kind: StudyKind, records: &[TrialRecord]) -> Vec<String> {
-    let mut limits = vec![
-        "Simulated in two dimensions with Reenact's own worlds and robots: numbers are an analogue of the paper's, \
-         whose runs used Gazebo and ROS."
-            .to_owned(),
-    ];
-    let count = |wanted: fn(Outcome) -> bool| records.iter().filter(|r| wanted(r.outcome)).count();
-    match kind {
-        StudyKind::PriorMap => {
-            let unfinished = count(|outcome| outcome != Outcome::Explored);
-            if unfinished > 0 {
-                limits.push(format!(
-                    "{unfinished} of {} trials did not explore everything; cells say how many trials are behind a mean.",
-                    records.len()
-                ));
-            }
-        }
-        StudyKind::Deadline => limits.push(
-            "The paper's building is published as a picture only: this one is invented, after what the paper's tables \
-             imply, so that none of its numbers is an independent test of the building."
-                .to_owned(),
-        ),
-    }
-    let panicked = count(|outcome| outcome == Outcome::Panicked);
-    if panicked > 0 {
-        limits.push(format!(
-            "{panicked} trials failed to run: a fault of the program, not a result."
-        ));
-    }
-    limits
 }
 
 fn headline(bundle: &Bundle, plan: &Plan, records: &[TrialRecord]) -> Headline {
@@ -130,7 +106,8 @@ fn figures(bundle: &Bundle, plan: &Plan) -> Vec<Figure> {
         .figures
         .iter()
         .filter_map(|request| {
-            let bytes = bundle.result(&format!("figures/{}.svg", request.id))?;
+            let file = format!("figures/{}.svg", request.id);
+            let svg = String::from_utf8_lossy(bundle.result(&file)?).into_owned();
             let (caption, kind) = match &request.layout {
                 FigureLayout::CoverageCurve(_) => (
                     "Median of the trials with a band from the 10th to the 90th percentile; hollow markers are the \
@@ -154,94 +131,12 @@ fn figures(bundle: &Bundle, plan: &Plan) -> Vec<Figure> {
                 id: request.id.clone(),
                 title: request.title.clone(),
                 caption: caption.to_owned(),
-                alt: format!("{kind}: {}", request.title),
-                svg: String::from_utf8_lossy(bytes).into_owned(),
+                alt: format!("{kind}: {}", described(&svg, &request.title)),
+                svg,
+                file: format!("results/{file}"),
             })
         })
         .collect()
-}
-
-fn claims(path: &str, bytes: Option<&[u8]>) -> Result<Vec<ClaimRow>, String> {
-    let Some(bytes) = bytes else { return Ok(Vec::new()) };
-    let verdicts: Vec<Value> = serde_json::from_slice(bytes).map_err(|e| format!("{path}: {e}"))?;
-    let text = |v: &Value, key: &str| v[key].as_str().unwrap_or_default().to_owned();
-    let row = |v: &Value| ClaimRow {
-        id: text(v, "id"),
-        says: text(v, "says"),
-        cite: text(v, "cite"),
-        verdict: text(v, "verdict"),
-        numbers: numbers(v) + &censored(v),
-        paper_table: text(v, "paper-table"),
-    };
-    Ok(verdicts.iter().map(row).collect())
-}
-
-/// The sentence that decided a verdict, and of a single comparison the effect with its interval.
-fn numbers(verdict: &Value) -> String {
-    let reason = verdict["reason"].as_str().unwrap_or_default().to_owned();
-    let Some([only]) = verdict["comparisons"].as_array().map(Vec::as_slice) else { return reason };
-    let effect = &only["effect"];
-    let number = |key: &str| effect[key].as_f64().map(|x| format!("{x:.3}"));
-    let name = effect["name"].as_str().map(|name| name.replace('-', " "));
-    match (name, number("value"), number("low"), number("high")) {
-        (Some(name), Some(value), Some(low), Some(high)) => {
-            let statistics = only["statistics"].as_object().into_iter().flatten();
-            let known = statistics.filter_map(|(name, x)| Some((name.as_str(), x.as_f64()?)));
-            let agreement = agreement_in_words(known);
-            let more = if agreement.is_empty() { reason } else { format!("{agreement}; {reason}") };
-            format!("{name} {value} ({low} to {high}), {more}")
-        }
-        _ => reason,
-    }
-}
-
-/// Runs that never reached what they were compared by, in words; empty where all did.
-fn censored(verdict: &Value) -> String {
-    let comparisons = verdict["comparisons"].as_array().map(Vec::as_slice).unwrap_or_default();
-    let cells =
-        comparisons.iter().filter_map(|comparison| comparison["cells"].as_array()).flatten();
-    let mut seen: Vec<(&str, u64, u64)> = Vec::new();
-    for cell in cells {
-        let count = |key: &str| cell[key].as_u64().unwrap_or(0);
-        let one = (cell["cell"].as_str().unwrap_or_default(), count("reached"), count("trials"));
-        if !seen.contains(&one) {
-            seen.push(one);
-        }
-    }
-    let all: u64 = seen.iter().map(|cell| cell.2).sum();
-    let reached: u64 = seen.iter().map(|cell| cell.1).sum();
-    if reached < all {
-        format!("; {} of {all} runs compared never reached the measure", all - reached)
-    } else {
-        String::new()
-    }
-}
-
-fn commands(bundle: &Bundle) -> Vec<Command> {
-    let file = format!("{}-{}.zip", bundle.name(), bundle.results_digest().short());
-    let command = |purpose: &str, line: String| Command { purpose: purpose.to_owned(), line };
-    vec![
-        command(
-            "check every checksum and derive every table anew",
-            format!("reenact verify {file}"),
-        ),
-        command(
-            "execute every trial again, bit for bit",
-            format!("reenact verify --level 5 {file}"),
-        ),
-        command("run the study", format!("reenact run {}", format::STUDY)),
-    ]
-}
-
-fn role(as_written: &str) -> &'static str {
-    match as_written.rsplit('.').next() {
-        Some("urdf") => "robot",
-        Some("csv") => "published",
-        Some("world" | "sdf") => "world",
-        Some("png" | "pgm") => "prior",
-        _ if as_written.contains("world") => "world",
-        _ => "input",
-    }
 }
 
 fn text_of(value: &Value) -> String {

@@ -5,12 +5,16 @@
 
 mod agreement;
 pub mod bag;
+mod claim;
 mod content;
 mod difference;
+mod evaluation;
 mod gain_still;
 mod gather;
 mod graph_still;
 mod inline_svg;
+mod limits;
+mod origin;
 mod pack;
 pub mod page;
 mod recorded;
@@ -22,13 +26,16 @@ mod template;
 
 pub use agreement::Agreement;
 pub use bag::{Bag, bag};
+pub use claim::{ClaimRow, ComparisonRow};
 pub use content::{
-    Assumption, Citation, ClaimRow, Command, Figure, Headline, InputRow, Measured, OutcomeCount,
-    ReportCell, ReportContent, ReportRow, ReportTable,
+    Assumption, Citation, Figure, Flip, Headline, Measured, OutcomeCount, ReportCell,
+    ReportContent, ReportRow, ReportTable, Tried,
 };
 pub use difference::difference_page;
+pub use evaluation::{Badge, Command, Evaluation};
 pub use gain_still::{GainView, gain_svg};
 pub use gather::content_of;
+pub use origin::{InputRow, Provenance};
 pub use page::page;
 pub use replay::{Note, replay_page};
 pub use still::{Shown, still_svg};

@@ -1,8 +1,9 @@
 //! The page of one bundle.
 
 use super::inline_svg::inline_svg;
-use super::template::render;
-use super::{Agreement, ReportContent};
+use super::pack::base64;
+use super::template::{Template, render_in};
+use super::{Agreement, ReportContent, ReportTable};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -10,26 +11,113 @@ use std::collections::BTreeMap;
 #[serde(rename_all = "kebab-case")]
 struct View<'a> {
     report: &'a ReportContent,
+    score: Score,
     /// The figures' drawings, as they may stand in a page; empty where a figure is none.
     drawings: Vec<String>,
+    /// The figures' files, base64.
+    files: Vec<String>,
+    /// By table: the most trials that stand behind a cell of it.
+    runs: Vec<u64>,
+    /// By table: how many cells lie within, near and apart; `None` where none is compared.
+    marks: Vec<Option<[usize; 3]>>,
     rule: &'static str,
     /// Mark and words of every agreement by its name.
     agreements: BTreeMap<String, [&'static str; 2]>,
 }
 
+/// The whole report in a few counts: what a reader sees first.
+#[derive(Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+struct Score {
+    /// Claims by verdict, in the order in which one tells them.
+    verdicts: [Share; 4],
+    /// Claims by what the paper's own table says.
+    paper_tables: [Share; 3],
+    /// Claims on which we and the paper's own table are at odds.
+    differs: usize,
+    /// Cells that are published and that we have, by agreement.
+    cells: [Share; 3],
+    /// All of those.
+    compared: usize,
+}
+
+/// How many of a kind.
+#[derive(Debug, PartialEq, Eq, Serialize)]
+struct Share {
+    name: &'static str,
+    count: usize,
+}
+
+impl Score {
+    fn of(content: &ReportContent) -> Self {
+        let claims = &content.claims;
+        let verdict =
+            |name| Share { name, count: claims.iter().filter(|c| c.verdict == name).count() };
+        let paper =
+            |name| Share { name, count: claims.iter().filter(|c| c.paper_table == name).count() };
+        let mut cells = ["within", "near", "apart"].map(|name| Share { name, count: 0 });
+        for counts in content.tables.iter().filter_map(marks) {
+            cells.iter_mut().zip(counts).for_each(|(share, count)| share.count += count);
+        }
+        Self {
+            verdicts: ["supported", "contradicted", "inconclusive", "cannot-be-tested"]
+                .map(verdict),
+            paper_tables: ["supports", "contradicts", "silent"].map(paper),
+            differs: claims.iter().filter(|claim| !claim.differs.is_empty()).count(),
+            compared: cells.iter().map(|share| share.count).sum(),
+            cells,
+        }
+    }
+}
+
+/// How many cells of `table` lie within, near and apart; `None` where none is compared.
+fn marks(table: &ReportTable) -> Option<[usize; 3]> {
+    let cells = || table.rows.iter().flat_map(|row| &row.cells);
+    let counts = [Agreement::Within, Agreement::Near, Agreement::Apart]
+        .map(|wanted| cells().filter(|cell| cell.agreement == wanted).count());
+    (counts != [0; 3]).then_some(counts)
+}
+
+/// The most trials that stand behind a cell of `table`.
+fn most_runs(table: &ReportTable) -> u64 {
+    let cells = table.rows.iter().flat_map(|row| &row.cells);
+    cells.filter_map(|cell| cell.ours?.n).max().unwrap_or(0)
+}
+
+const SCRIPT: &str =
+    concat!(include_str!("templates/page.js"), include_str!("templates/report/report.js"));
+
+/// The page's own parts, by the name under which it includes them.
+const PARTS: [(&str, &str); 4] = [
+    ("claims", include_str!("templates/report/claims.html")),
+    ("tables", include_str!("templates/report/tables.html")),
+    ("provenance", include_str!("templates/report/provenance.html")),
+    ("evaluation", include_str!("templates/report/evaluation.html")),
+];
+
 /// One self-contained offline page: what the study does not show, its numbers beside the paper's, the
 /// figures, the claims, the assumptions, and how to check it all.
 pub fn page(content: &ReportContent) -> String {
+    let view = view(content);
+    let page = Template { page: include_str!("templates/report/page.html"), parts: &PARTS };
+    let style = [include_str!("templates/style.css"), include_str!("templates/report/report.css")];
+    render_in(page, &style, SCRIPT, &view)
+}
+
+fn view(content: &ReportContent) -> View<'_> {
     let all = [Agreement::Within, Agreement::Near, Agreement::Apart, Agreement::Silent];
     let name = |a: &Agreement| serde_json::to_value(a).ok()?.as_str().map(str::to_owned);
     let drawing = |f: &super::Figure| inline_svg(&f.svg, &f.alt).unwrap_or_default();
-    let view = View {
+    View {
         report: content,
+        score: Score::of(content),
         drawings: content.figures.iter().map(drawing).collect(),
+        files: content.figures.iter().map(|figure| base64(figure.svg.as_bytes())).collect(),
+        runs: content.tables.iter().map(most_runs).collect(),
+        marks: content.tables.iter().map(marks).collect(),
         rule: Agreement::RULE,
         agreements: all.iter().filter_map(|a| Some((name(a)?, [a.mark(), a.words()]))).collect(),
-    };
-    render(include_str!("templates/page.html"), include_str!("templates/page.js"), &view)
+    }
 }
 
 #[cfg(test)]
@@ -62,6 +150,10 @@ mod tests {
             "reenact verify prior-9f86d081.zip --level 3",
             "not reached",
             "a footprint never harms",
+            "no range stated",
+            "0.2 … 0.6: no verdict changes",
+            "at 0.3: P1 supported → inconclusive",
+            "15 trials per condition, one setting at a time, same noise",
         ] {
             at(text);
         }

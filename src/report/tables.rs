@@ -60,7 +60,7 @@ fn coverage_table(
     });
     ReportTable {
         id: request.id.clone(),
-        title: format!("{} (n = {} trials a cell)", request.title, plan.experiment.trials),
+        title: format!("{} (n = {} trials a cell)", request.title, trials_a_cell(plan)),
         source: source(plan, wanted.published.as_ref()),
         quantity: match wanted.metric {
             Metric::DistanceM => "distance travelled (m)".to_owned(),
@@ -245,7 +245,7 @@ fn outcome_table(
     });
     ReportTable {
         id: request.id.clone(),
-        title: format!("{} (n = {} trials a cell)", request.title, plan.experiment.trials),
+        title: format!("{} (n = {} trials a cell)", request.title, trials_a_cell(plan)),
         source: source(plan, wanted.published.as_ref()),
         quantity: wanted.show.describe(),
         decimals: 1,
@@ -307,6 +307,11 @@ fn outcome_cell(cell: &OutcomeCell, show: &Quantity) -> ReportCell {
         agreement: Agreement::between(ours, with_error),
         ..ReportCell::default()
     }
+}
+
+/// Trials that were planned for a cell: fewer than the manifest's where `--trials` asked for fewer.
+fn trials_a_cell(plan: &Plan) -> usize {
+    plan.trials.chunk_by(|a, b| a.condition == b.condition).map(<[_]>::len).max().unwrap_or(0)
 }
 
 fn source(plan: &Plan, published: Option<&String>) -> String {

@@ -7,22 +7,45 @@ use minijinja::value::Serde;
 use minijinja::{AutoEscape, Environment, Value};
 use serde::Serialize;
 
-/// Renders `template` with `context`. Every template escapes for HTML; numbers go through `fixed`.
+/// A page and the parts that it includes by name.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Template<'a> {
+    /// The page itself.
+    pub(super) page: &'static str,
+    /// Name and text of every part.
+    pub(super) parts: &'a [(&'static str, &'static str)],
+}
+
+/// Renders `template` with `context`, in the style that all pages share.
+pub(super) fn render<C: Serialize>(template: &'static str, script: &str, context: &C) -> String {
+    let template = Template { page: template, parts: &[] };
+    render_in(template, &[include_str!("templates/style.css")], script, context)
+}
+
+/// Renders `template` with `context` and the style sheets `style`, one after the other. Every template escapes for HTML;
+/// numbers go through `fixed`.
 ///
 /// # Panics
 /// Where one of our own templates is wrong, which every test of a page would find.
-pub(super) fn render<C: Serialize>(template: &'static str, script: &str, context: &C) -> String {
+pub(super) fn render_in<C: Serialize>(
+    template: Template<'_>,
+    style: &[&str],
+    script: &str,
+    context: &C,
+) -> String {
     let mut environment = Environment::new();
     environment.set_auto_escape_callback(|_| AutoEscape::Html);
     let syntax = SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).build();
     environment.set_syntax(syntax.expect("the delimiters are the usual ones"));
     environment.add_filter("fixed", fixed);
     environment.add_filter("percent", percent);
-    environment
-        .add_global("style", Value::from_safe_string(include_str!("templates/style.css").into()));
+    environment.add_global("style", Value::from_safe_string(style.concat()));
     environment.add_global("script", Value::from_safe_string(script.to_owned()));
     environment.add_global("policy", Value::from_safe_string(policy(script)));
-    let page = environment.render_str(template, Value::from(Serde(context)));
+    for (name, part) in template.parts {
+        environment.add_template(name, part).expect("our own templates parse");
+    }
+    let page = environment.render_str(template.page, Value::from(Serde(context)));
     page.expect("our own templates render")
 }
 
@@ -36,7 +59,7 @@ fn policy(script: &str) -> String {
 }
 
 /// `value` with `decimals` decimals and a true minus sign.
-fn fixed(value: f64, decimals: usize) -> String {
+pub(super) fn fixed(value: f64, decimals: usize) -> String {
     if !value.is_finite() {
         return "–".to_owned();
     }
@@ -47,7 +70,7 @@ fn fixed(value: f64, decimals: usize) -> String {
 }
 
 /// A signed whole percentage.
-fn percent(value: f64) -> String {
+pub(super) fn percent(value: f64) -> String {
     let text = fixed(value, 0);
     let sign = if text.starts_with('\u{2212}') || text == "0" { "" } else { "+" };
     format!("{sign}{text}\u{a0}%")

@@ -11,8 +11,8 @@ use std::path::PathBuf;
 /// Writes the page.
 pub(in crate::cli) fn run(args: &ReportArgs, terminal: Terminal) -> Result<Exit, Failure> {
     let bundle = load::bundle(&args.bundle)?;
-    let (plan, _) = plan_of(&bundle).map_err(Failure::not_understood)?;
-    let content = report::content_of(&bundle, &plan)
+    let (plan, selection) = plan_of(&bundle).map_err(Failure::not_understood)?;
+    let content = report::content_of(&bundle, &plan, &selection)
         .map_err(|message| Failure { exit: Exit::No, message })?;
     let output = args.output.clone().unwrap_or_else(|| {
         let stem = format!("{}-{}", bundle.name(), bundle.results_digest().short());

@@ -4,7 +4,7 @@ use super::execution::{Executed, Execution, Times};
 use super::locked::{self, Held};
 use super::{probe, tables, verdicts};
 use crate::bundle::wall_time;
-use crate::bundle::{Form, Sealed, assemble, capsule, seal_with};
+use crate::bundle::{Form, Sealed, assemble, capsule, format, seal_with};
 use crate::claims::Verdict;
 use crate::cli::args::{Format, RunArgs};
 use crate::cli::exit::{Exit, Failure};
@@ -65,6 +65,11 @@ fn run_one(
     let measured = wall_time::measured(&plan, &records, times).map_err(Failure::failed)?;
     let mut circumstance = clock.circumstance(environment, execution.jobs());
     circumstance.files = measured.files;
+    if environment.source_date_epoch.is_none() {
+        // Without it nobody knows what the run's duration is the duration of.
+        let simulated = (records.len() - cached).to_string();
+        circumstance.environment.push((format::SIMULATED_TRIALS.to_owned(), simulated));
+    }
     let capsule = args.capsule.then(capsule::own);
     let sealed = seal_with(&content, &circumstance, capsule.as_ref()).map_err(Failure::failed)?;
     let path = args.out.join(sealed.file_name());

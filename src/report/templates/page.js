@@ -1,5 +1,10 @@
-
 "use strict";
+// What happens is told to those who do not see it.
+const tell = (text) => {
+  const place = document.getElementById("told");
+  if (place) place.textContent = text;
+};
+
 // Tables marked `sortable` sort by the column whose heading is pressed; numbers as numbers.
 for (const table of document.querySelectorAll("table.sortable")) {
   const body = table.tBodies[0];
@@ -16,6 +21,7 @@ for (const table of document.querySelectorAll("table.sortable")) {
       const text = (row) => row.cells[column].textContent.trim();
       const order = (a, b) => text(a).localeCompare(text(b), "en", { numeric: true });
       body.append(...[...body.rows].sort(descending ? (a, b) => order(b, a) : order));
+      tell(`sorted by ${heading.textContent}, ${descending ? "descending" : "ascending"}`);
     });
   });
 }

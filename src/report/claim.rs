@@ -1,0 +1,365 @@
+//! A claim as the page shows it: verdict, finding in human words, and every comparison behind it.
+
+use super::template::{fixed, percent};
+use crate::claims::verdict::agreement_in_words;
+use crate::math::exp;
+use serde::Serialize;
+use serde_json::Value;
+
+/// A claim and what became of it.
+#[derive(Debug, Clone, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct ClaimRow {
+    /// Its id in the manifest.
+    pub id: String,
+    /// The paper's sentence.
+    pub says: String,
+    /// Where it says so.
+    pub cite: String,
+    /// The verdict's name: `supported`, `contradicted`, `inconclusive`, `cannot-be-tested`.
+    pub verdict: String,
+    /// The numbers that decided it, in words, with their interval.
+    pub numbers: String,
+    /// What the paper's own table says: `supports`, `contradicts`, `silent`.
+    pub paper_table: String,
+    /// Where we and the paper's own table differ, in a sentence; empty where they do not.
+    pub differs: String,
+    /// How the sentence was made testable, as the manifest's author explains it; may be empty.
+    pub why: String,
+    /// The rule of the verdict: level, correction, how many comparisons must hold.
+    pub rule: String,
+    /// What a reader should know beside it.
+    pub notes: Vec<String>,
+    /// Every comparison.
+    pub comparisons: Vec<ComparisonRow>,
+}
+
+/// One comparison of a claim.
+#[derive(Debug, Clone, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct ComparisonRow {
+    /// Metric and cells.
+    pub about: String,
+    /// What was found: a verdict's name.
+    pub verdict: String,
+    /// Effect and interval in words, or why it cannot be tested.
+    pub finding: String,
+    /// The test and its p-value, corrected, in the direction that was found.
+    pub test: String,
+    /// What was counted, one line a cell.
+    pub cells: Vec<String>,
+}
+
+/// The rows of a list of verdicts, the bytes of `path`; `claims` are the manifest's own, for their reasons.
+///
+/// # Errors
+/// Where the bytes are no list of verdicts.
+pub(super) fn rows(
+    path: &str,
+    bytes: Option<&[u8]>,
+    claims: &[Value],
+) -> Result<Vec<ClaimRow>, String> {
+    let Some(bytes) = bytes else { return Ok(Vec::new()) };
+    let verdicts: Vec<Value> = serde_json::from_slice(bytes).map_err(|e| format!("{path}: {e}"))?;
+    let why = |id: &str| {
+        let claim = claims.iter().find(|claim| claim["id"] == *id);
+        claim.map(|claim| text(claim, "why")).unwrap_or_default()
+    };
+    Ok(verdicts.iter().map(|v| ClaimRow { why: why(&text(v, "id")), ..row(v) }).collect())
+}
+
+fn row(verdict: &Value) -> ClaimRow {
+    let comparisons: Vec<&Value> = list(verdict, "comparisons").collect();
+    let (found, paper_table) = (text(verdict, "verdict"), text(verdict, "paper-table"));
+    ClaimRow {
+        id: text(verdict, "id"),
+        says: text(verdict, "says"),
+        cite: text(verdict, "cite"),
+        numbers: numbers(verdict, &comparisons) + &censored(&comparisons),
+        differs: differs(&found, &paper_table).to_owned(),
+        verdict: found,
+        paper_table,
+        why: String::new(),
+        rule: rule(verdict, comparisons.len()),
+        notes: list(verdict, "notes").filter_map(Value::as_str).map(str::to_owned).collect(),
+        comparisons: comparisons.into_iter().map(comparison).collect(),
+    }
+}
+
+/// Where what we find and what the paper's own table shows are at odds.
+fn differs(verdict: &str, paper_table: &str) -> &'static str {
+    match (verdict, paper_table) {
+        ("supported", "contradicts") => {
+            "The paper's own table contradicts its sentence; our trials support it."
+        }
+        ("contradicted", "supports") => {
+            "The paper's own table supports its sentence; our trials contradict it."
+        }
+        _ => "",
+    }
+}
+
+fn rule(verdict: &Value, comparisons: usize) -> String {
+    let mut rule = format!("Level of significance {}", text_of(&verdict["alpha"]));
+    if comparisons > 1 {
+        let required = verdict["required"].as_u64().unwrap_or_default();
+        rule.push_str(&format!("; {required} of {comparisons} comparisons must hold"));
+        if verdict["correction"] == "holm" {
+            rule.push_str(", p-values corrected after Holm");
+        }
+    }
+    if let Some(n) = verdict["minimum-n"].as_u64().filter(|n| *n > 0) {
+        rule.push_str(&format!("; nothing is judged below {n} runs a cell"));
+    }
+    if let Some(n) = verdict["trials-to-decide"].as_u64() {
+        rule.push_str(&format!(
+            "; about {n} trials per condition would decide it with 80 % power, if what was seen is the truth"
+        ));
+    }
+    rule + "."
+}
+
+/// What decided a verdict, as one would say it.
+fn numbers(verdict: &Value, comparisons: &[&Value]) -> String {
+    match comparisons {
+        [only] => {
+            let known = only["statistics"].as_object().into_iter().flatten();
+            let known = known.filter_map(|(name, x)| Some((name.as_str(), x.as_f64()?)));
+            let parts = [effect(only), agreement_in_words(known), test(only)];
+            let parts: Vec<String> = parts.into_iter().filter(|part| !part.is_empty()).collect();
+            if effect(only).is_empty() { text(verdict, "reason") } else { parts.join("; ") }
+        }
+        [] => text(verdict, "reason"),
+        all => {
+            let count = |name| all.iter().filter(|c| c["verdict"] == name).count();
+            let mut words =
+                vec![format!("{} of {} comparisons hold", count("supported"), all.len())];
+            for (name, rest) in [
+                ("contradicted", "the other way"),
+                ("inconclusive", "undecided"),
+                ("cannot-be-tested", "not testable"),
+            ] {
+                if count(name) > 0 {
+                    words.push(format!("{} {rest}", count(name)));
+                }
+            }
+            let required = verdict["required"].as_u64().unwrap_or_default();
+            format!("{}; {required} must hold", words.join(", "))
+        }
+    }
+}
+
+/// Runs that never reached what they were compared by, in words; empty where all did.
+fn censored(comparisons: &[&Value]) -> String {
+    let mut seen: Vec<(String, u64, u64)> = Vec::new();
+    for cell in comparisons.iter().flat_map(|comparison| list(comparison, "cells")) {
+        let count = |key: &str| cell[key].as_u64().unwrap_or(0);
+        let one = (text(cell, "cell"), count("reached"), count("trials"));
+        if !seen.contains(&one) {
+            seen.push(one);
+        }
+    }
+    let all: u64 = seen.iter().map(|cell| cell.2).sum();
+    let reached: u64 = seen.iter().map(|cell| cell.1).sum();
+    if reached < all {
+        format!("; {} of {all} runs compared never reached the measure", all - reached)
+    } else {
+        String::new()
+    }
+}
+
+fn comparison(comparison: &Value) -> ComparisonRow {
+    let reason = text(comparison, "reason");
+    ComparisonRow {
+        about: text(comparison, "about"),
+        verdict: text(comparison, "verdict"),
+        finding: if reason.is_empty() { effect(comparison) } else { reason },
+        test: test(comparison),
+        cells: list(comparison, "cells").map(cell).collect(),
+    }
+}
+
+/// `+30 percentage points (98 % interval +12 to +47)`; empty where no effect is told.
+fn effect(comparison: &Value) -> String {
+    let effect = &comparison["effect"];
+    let number = |key: &str| effect[key].as_f64();
+    let (Some(value), Some(low), Some(high)) = (number("value"), number("low"), number("high"))
+    else {
+        return String::new();
+    };
+    let name = text(effect, "name");
+    let of_logs = text(comparison, "about").contains("mean log of");
+    // A difference of logarithms is a ratio, and that is how people speak of it.
+    let ratio = |x: f64| percent(100.0 * (exp(x) - 1.0));
+    let signed = |x: f64, digits| {
+        let text = fixed(x, digits);
+        let positive = x > 0.0 && text.contains(|c: char| ('1'..='9').contains(&c));
+        format!("{}{text}", if positive { "+" } else { "" })
+    };
+    let points = |x: f64| signed(100.0 * x, 0);
+    let share = |x: f64| format!("{}\u{a0}%", fixed(100.0 * x, 0));
+    let plain = |x: f64| if x.abs() >= 100.0 { signed(x, 0) } else { signed(x, 2) };
+    let said = |words: &str, show: &dyn Fn(f64) -> String| {
+        let confidence = number("confidence").map_or(95.0, |c| 100.0 * c);
+        format!(
+            "{}{words} ({}\u{a0}% interval {} to {})",
+            show(value),
+            fixed(confidence, 0),
+            show(low),
+            show(high)
+        )
+    };
+    match name.as_str() {
+        "risk-difference" => said(" percentage points", &points),
+        "share" => said("", &share),
+        "share-of-pairs" => said(" of pairs", &share),
+        "relative-difference" => said(" relative difference", &|x| percent(100.0 * x)),
+        "mean-difference" if of_logs => said(" difference", &ratio),
+        "mean-difference" => said(" difference of means", &plain),
+        "mean" => said(" on average", &|x| fixed(x, if x.abs() < 10.0 { 3 } else { 1 })),
+        "spearman" => format!("rank correlation {}", said("", &plain)),
+        "cliff-delta" => format!("Cliff's delta {}", said("", &plain)),
+        "rmse" => format!("root mean square error {}", said("", &|x| fixed(x, 3))),
+        other => format!("{} {}", other.replace('-', " "), said("", &plain)),
+    }
+}
+
+/// `p = 0.0018 (welch)`, in the direction that was found.
+fn test(comparison: &Value) -> String {
+    let contradicted = comparison["verdict"] == "contradicted";
+    let key = if contradicted { "p-against" } else { "p-for" };
+    let corrected = &comparison[format!("{key}-corrected")];
+    let Some(p) = corrected.as_f64().or_else(|| comparison[key].as_f64()) else {
+        return text(comparison, "test").replace('-', " ");
+    };
+    let p = if p < 0.0001 {
+        "p < 0.0001".to_owned()
+    } else {
+        format!("p = {}", fixed(p, if p < 0.01 { 4 } else { 2 }))
+    };
+    let of = if contradicted { " for the opposite" } else { "" };
+    format!("{p}{of} ({})", text(comparison, "test").replace('-', " "))
+}
+
+/// `start=A, strategy=random: 96 %, 48 of 50 runs`.
+fn cell(cell: &Value) -> String {
+    let number = |key: &str| cell[key].as_f64();
+    let count = |key: &str| cell[key].as_u64();
+    let (trials, reached) = (count("trials").unwrap_or(0), count("reached").unwrap_or(0));
+    let mut parts = Vec::new();
+    match (count("successes"), number("mean")) {
+        (Some(successes), Some(share)) => {
+            parts.push(format!("{}\u{a0}%, {successes} of {trials} runs", fixed(100.0 * share, 0)))
+        }
+        (_, mean) => {
+            if let Some(mean) = mean {
+                let sd = number("sd").map(|sd| format!(" ± {}", fixed(sd, 2))).unwrap_or_default();
+                parts.push(format!("mean {}{sd}", fixed(mean, 2)));
+            }
+            parts.push(if reached < trials {
+                format!("{reached} of {trials} runs, {} never got there", trials - reached)
+            } else {
+                format!("{trials} runs")
+            });
+        }
+    }
+    if let Some(published) = number("published") {
+        parts.push(format!("paper {}", fixed(published, 2)));
+    }
+    format!("{}: {}", text(cell, "cell"), parts.join(", "))
+}
+
+fn text(value: &Value, key: &str) -> String {
+    value[key].as_str().unwrap_or_default().to_owned()
+}
+
+fn text_of(value: &Value) -> String {
+    value.as_str().map_or_else(|| value.to_string(), str::to_owned)
+}
+
+fn list<'a>(value: &'a Value, key: &str) -> impl Iterator<Item = &'a Value> {
+    value[key].as_array().map(Vec::as_slice).unwrap_or_default().iter()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn one(verdict: &str, comparisons: &[Value]) -> ClaimRow {
+        let verdict = json!([{
+            "id": "D1", "says": "it is so", "verdict": verdict, "paper-table": "supports",
+            "reason": "for a reason", "alpha": 0.05, "required": comparisons.len(), "correction": "holm",
+            "minimum-n": 3, "comparisons": comparisons,
+        }]);
+        let claims = [json!({"id": "D1", "why": "the claim's own words"})];
+        rows("claims.json", Some(verdict.to_string().as_bytes()), &claims).unwrap().remove(0)
+    }
+
+    fn compared(verdict: &str) -> Value {
+        json!({
+            "about": "success: (start=A) > (start=B)", "verdict": verdict, "test": "fisher-exact",
+            "p-for": 0.01, "p-for-corrected": 0.02, "p-against-corrected": 0.00001,
+            "effect": {"name": "risk-difference", "value": 0.3, "low": -0.0001, "high": 0.47, "confidence": 0.98},
+            "cells": [
+                {"cell": "start=A", "trials": 50, "reached": 50, "successes": 48, "mean": 0.96},
+                {"cell": "start=B", "trials": 50, "reached": 44, "mean": 20.5, "sd": 2.25, "published": 21.0},
+            ],
+        })
+    }
+
+    #[test]
+    fn a_single_comparison_is_told_with_its_interval_and_who_never_got_there() {
+        let row = one("supported", &[compared("supported")]);
+        assert_eq!(
+            row.numbers,
+            "+30 percentage points (98\u{a0}% interval 0 to +47); p = 0.02 (fisher exact); 6 of 100 runs compared \
+             never reached the measure"
+        );
+        assert_eq!((row.differs.as_str(), row.why.as_str()), ("", "the claim's own words"));
+        assert_eq!(
+            row.comparisons[0].cells,
+            [
+                "start=A: 96\u{a0}%, 48 of 50 runs",
+                "start=B: mean 20.50 ± 2.25, 44 of 50 runs, 6 never got there, paper 21.00"
+            ]
+        );
+    }
+
+    #[test]
+    fn a_contradiction_is_held_against_the_papers_own_table() {
+        let row = one("contradicted", &[compared("contradicted"), compared("inconclusive")]);
+        assert!(
+            row.numbers
+                .starts_with("0 of 2 comparisons hold, 1 the other way, 1 undecided; 2 must hold")
+        );
+        assert_eq!(row.comparisons[0].test, "p < 0.0001 for the opposite (fisher exact)");
+        assert_eq!(
+            row.differs,
+            "The paper's own table supports its sentence; our trials contradict it."
+        );
+        assert_eq!(
+            row.rule,
+            "Level of significance 0.05; 2 of 2 comparisons must hold, p-values corrected after Holm; nothing is \
+             judged below 3 runs a cell."
+        );
+    }
+
+    #[test]
+    fn differences_of_logarithms_are_told_as_ratios() {
+        let mut logs = compared("supported");
+        logs["about"] = "mean log of distance-m-at-70: (a) < (b)".into();
+        logs["effect"] = json!({"name": "mean-difference", "value": -0.3, "low": -0.46, "high": -0.14, "confidence": 0.9});
+        let row = one("supported", &[logs]);
+        assert!(row.numbers.starts_with(
+            "\u{2212}26\u{a0}% difference (90\u{a0}% interval \u{2212}37\u{a0}% to \u{2212}13\u{a0}%); p = 0.02"
+        ), "{}", row.numbers);
+    }
+
+    #[test]
+    fn what_has_no_effect_keeps_its_reason_and_what_is_no_list_is_refused() {
+        assert_eq!(one("cannot-be-tested", &[]).numbers, "for a reason");
+        assert!(rows("claims.json", Some(b"{}"), &[]).unwrap_err().starts_with("claims.json: "));
+        assert!(rows("claims.json", None, &[]).unwrap().is_empty());
+    }
+}

@@ -1,0 +1,110 @@
+//! What the numbers cannot show: what the manifest states, and what the bundle itself shows.
+
+use super::{ClaimRow, ReportTable};
+use crate::plan::{Plan, Selection};
+use crate::studies::{Outcome, StudyKind, TableLayout, TrialRecord};
+
+/// One sentence each, the manifest's own first. `tables` are those of the page, in the order of the plan's requests.
+pub(super) fn limits(
+    plan: &Plan,
+    records: &[TrialRecord],
+    tables: &[ReportTable],
+    claims: &[ClaimRow],
+) -> Vec<String> {
+    let experiment = &plan.experiment;
+    let mut limits = experiment.limits.clone();
+    limits.push(
+        "Simulated in two dimensions by Reenact's own simulator, with robots and worlds as sealed here; the paper's runs \
+         used other software."
+            .to_owned(),
+    );
+    if !experiment.overrides.is_empty() {
+        limits.push(format!(
+            "Not the manifest as written: {} from the command line.",
+            counted(experiment.overrides.len(), "value was set", "values were set")
+        ));
+    }
+    let count = |wanted: fn(Outcome) -> bool| records.iter().filter(|r| wanted(r.outcome)).count();
+    let panicked = count(|outcome| outcome == Outcome::Panicked);
+    if panicked > 0 {
+        limits.push(format!(
+            "{} to run: a fault of the program, not a result.",
+            counted(panicked, "trial failed", "trials failed")
+        ));
+    }
+    if experiment.kind == StudyKind::PriorMap {
+        let unfinished = count(|outcome| outcome != Outcome::Explored) - panicked;
+        if unfinished > 0 {
+            limits.push(format!(
+                "{unfinished} of {} trials ended before everything was explored.",
+                records.len()
+            ));
+        }
+    }
+    limits.extend(cells(plan, tables));
+    if !experiment.shared_noise.is_empty() {
+        limits.push(format!(
+            "Trials that differ in {} alone see the same noise: they are paired, not independent.",
+            experiment.shared_noise.join(", ")
+        ));
+    }
+    let censored =
+        claims.iter().filter(|c| c.numbers.contains("never reached the measure")).count();
+    if censored > 0 {
+        limits.push(format!(
+            "{} runs of which some never reached the measure: see their details.",
+            counted(censored, "verdict compares", "verdicts compare")
+        ));
+    }
+    limits
+}
+
+/// Cells that no run reached, and means of fewer runs than there were.
+fn cells(plan: &Plan, tables: &[ReportTable]) -> Option<String> {
+    let (mut empty, mut fewer) = (0, 0);
+    for (request, table) in plan.experiment.tables.iter().zip(tables) {
+        if !matches!(request.layout, TableLayout::CoverageTable(_)) {
+            continue;
+        }
+        let all = || table.rows.iter().flat_map(|row| &row.cells);
+        let most = all().filter_map(|cell| cell.ours?.n).max().unwrap_or(0);
+        empty += all().filter(|cell| cell.ours.is_none()).count();
+        fewer += all().filter_map(|cell| cell.ours?.n).filter(|n| *n < most).count();
+    }
+    let empty = (empty > 0)
+        .then(|| counted(empty, "cell was reached by no run", "cells were reached by no run"));
+    let fewer = (fewer > 0).then(|| {
+        let mean = counted(fewer, "mean leaves", "means leave");
+        format!(
+            "{mean} out runs that never got there, which flatters them (their n stands in the cell)"
+        )
+    });
+    let parts: Vec<String> = [empty, fewer].into_iter().flatten().collect();
+    (!parts.is_empty()).then(|| format!("Of the coverage tables, {}.", parts.join("; ")))
+}
+
+/// Why a run is partial, in words, from the selection that was sealed with it.
+pub(super) fn partial(plan: &Plan, selection: &Selection) -> Option<String> {
+    if !plan.partial {
+        return None;
+    }
+    let mut parts = Vec::new();
+    if let Some(trials) = selection.trials {
+        parts.push(format!("{trials} trials per condition instead of {}", plan.experiment.trials));
+    }
+    for (factor, values) in &selection.only {
+        parts.push(format!("only {factor} {}", values.join(", ")));
+    }
+    if let Some((shard, of)) = selection.shard {
+        parts.push(format!("only shard {shard} of {of}"));
+    }
+    if parts.is_empty() {
+        parts.push("only part of the study was run".to_owned());
+    }
+    Some(format!("{}; no claim is judged.", parts.join("; ")))
+}
+
+/// `1 trial failed`, `2 trials failed`.
+fn counted(n: usize, one: &str, several: &str) -> String {
+    format!("{n} {}", if n == 1 { one } else { several })
+}
