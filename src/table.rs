@@ -1,5 +1,9 @@
 //! Tables with named columns and one canonical text form each for CSV and Markdown.
 
+mod column;
+
+pub use column::{Column, DescribedTable, Kind, unit_of};
+
 use serde::{Deserialize, Serialize};
 
 /// One entry of a table.

@@ -1,12 +1,13 @@
 //! Manifests from the outside: faults told whole, and identities that depend on nothing but meaning.
 
 use proptest::prelude::*;
+use reenact::bundle::assemble;
 use reenact::cmdp::build::{Expectation, Maneuvers};
 use reenact::document::{Diagnostic, Source};
 use reenact::manifest::{self, Experiment, Inputs, WrittenIn};
 use reenact::plan::{ENGINE_VERSION, Plan, Selection};
-use reenact::studies::TrialSpec;
 use reenact::studies::deadline::Calibration;
+use reenact::studies::{Outcome, StudyKind, TrialRecord, TrialSpec};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -510,4 +511,50 @@ proptest! {
         let text = format!("{HEAD}{}\n{WORLD}\n", LINES.join("\n"));
         let _ = resolve_text(&text, &[format!("{path}={value}")]);
     }
+}
+
+/// A record that has every measure a trial of the study can have.
+fn with_every_measure(kind: StudyKind, spec: &TrialSpec) -> TrialRecord {
+    let asked_for = ["coverage-percent-at-239-m".to_owned()];
+    let further: &[String] = if kind == StudyKind::PriorMap { &asked_for } else { &[] };
+    let outcome = match kind {
+        StudyKind::PriorMap => Outcome::Explored,
+        StudyKind::Deadline => Outcome::Reached,
+    };
+    let names = kind.measures().into_iter().chain(further.iter().cloned());
+    TrialRecord {
+        outcome,
+        measures: names.map(|name| (name, Some(1.0))).collect(),
+        ..TrialRecord::panicked(spec, String::new())
+    }
+}
+
+#[test]
+fn every_column_of_every_table_of_every_study_is_described() {
+    let mut tables = 0;
+    for file in manifests_in("manifests") {
+        let (experiment, _) = resolve_file("manifests", &file).map_err(|f| told(&f)).unwrap();
+        let kind = experiment.kind;
+        let selection = Selection { trials: Some(1), ..Selection::default() };
+        let plan = Plan::of(experiment, &selection).unwrap();
+        let records: Vec<TrialRecord> =
+            plan.trials.iter().map(|spec| with_every_measure(kind, spec)).collect();
+        let content = assemble::assemble(&plan, b"", &selection, &records).unwrap();
+        let csv = |path: &str| Path::new(path).extension().is_some_and(|e| e == "csv");
+        let inputs = content.inputs.iter().map(|input| format!("inputs/{}", input.name));
+        let results = content.results.iter().map(|(path, _)| format!("results/{path}"));
+        for path in inputs.chain(results).filter(|path| csv(path)) {
+            let table = content.tables.iter().find(|table| table.path == path);
+            let table = table.unwrap_or_else(|| panic!("{file}: {path} is not described"));
+            tables += 1;
+            for column in &table.columns {
+                assert!(
+                    !column.meaning.is_empty(),
+                    "{file}: {path}: say what `{}` is, in `columns.rs` of its study",
+                    column.name
+                );
+            }
+        }
+    }
+    assert!(tables > 80, "{tables} tables");
 }

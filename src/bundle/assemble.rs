@@ -2,14 +2,16 @@
 //! `verify` derives with.
 
 use super::content::{Author, BundleContent, Citation, SealedCondition, SealedInput};
+use super::{format, wall_time};
 use crate::claims::{self, Claim, Verdict};
 use crate::figure::svg;
 use crate::plan::{ENGINE_VERSION, Plan, Selection};
 use crate::studies::prior_map::{self, PlanFigure};
 use crate::studies::{
-    Condition, FigureLayout, Findings, Outcome, Setup, StudyKind, TableLayout, TrialRecord,
-    coverage_tables,
+    Condition, Dictionary, FigureLayout, Findings, Outcome, Setup, StudyKind, TableLayout,
+    TrialRecord, coverage_tables,
 };
+use crate::table::{DescribedTable, Table};
 use serde_json::{Value, json};
 
 /// The content of the bundle of `plan`, whose trials yielded `records` (in plan order).
@@ -46,6 +48,9 @@ pub fn assemble(
         Some(cite) => format!("{}. Re-enacts {}.", experiment.title, cite.paper),
         None => format!("{}.", experiment.title),
     };
+    let (results, mut tables) = results(plan, records)?;
+    tables.extend(described_inputs(plan));
+    tables.sort_by(|a, b| a.path.cmp(&b.path));
     Ok(BundleContent {
         name: experiment.name.clone(),
         title: experiment.title.clone(),
@@ -58,7 +63,7 @@ pub fn assemble(
                 name: author.name.clone(),
                 affiliation: author.affiliation.clone(),
                 affiliation_url: None,
-                orcid: author.orcid.clone(),
+                orcid: author.orcid.as_deref().map(orcid_address),
             })
             .collect(),
         license: experiment.license.clone().unwrap_or_else(|| "No licence stated".to_owned()),
@@ -68,7 +73,8 @@ pub fn assemble(
         resolved,
         inputs: inputs.collect(),
         conditions: sealed_conditions(plan, records),
-        results: results(plan, records)?,
+        results,
+        tables,
         partial: plan.partial,
     })
 }
@@ -134,14 +140,52 @@ fn sealed_conditions(plan: &Plan, records: &[TrialRecord]) -> Vec<SealedConditio
     conditions
 }
 
-fn results(plan: &Plan, records: &[TrialRecord]) -> Result<Vec<(String, Vec<u8>)>, String> {
+/// An author's ORCID iD, however a manifest writes it, as the address that identifies a person.
+fn orcid_address(written: &str) -> String {
+    let id = written.rsplit('/').next().unwrap_or(written);
+    format!("https://orcid.org/{id}")
+}
+
+/// Files under `results/`: paths there, and bytes; and what the columns of their tables say.
+type Results = (Vec<(String, Vec<u8>)>, Vec<DescribedTable>);
+
+fn results(plan: &Plan, records: &[TrialRecord]) -> Result<Results, String> {
+    let experiment = &plan.experiment;
     let factors = factors(plan);
     let findings = findings(plan, records, &factors);
-    let mut files = vec![("trials.csv".to_owned(), findings.trials().to_csv().into_bytes())];
-    let experiment = &plan.experiment;
+    let dictionary = Dictionary { kind: experiment.kind, factors: &factors };
+    let in_results = |path: &str| format!("{}{path}", format::RESULTS);
+    let trials = findings.trials();
+    let words = ("Trials", "one trial, in plan order");
+    let mut described = vec![DescribedTable {
+        key: vec!["key".to_owned()],
+        ..DescribedTable::of(&trials, in_results("trials.csv"), words, |name| {
+            dictionary.of_trials(name)
+        })
+    }];
+    if measures_the_machine(plan)? {
+        let path = format!("{}wall-times.csv", format::CIRCUMSTANCES);
+        let words = ("Wall times", "one trial, in plan order");
+        let columns = wall_time::columns(&factors);
+        described.push(DescribedTable {
+            key: vec!["key".to_owned()],
+            ..DescribedTable::of(&Table::new(columns), path, words, |name| {
+                dictionary.of_wall_times(name)
+            })
+        });
+    }
+    let mut files = vec![("trials.csv".to_owned(), trials.to_csv().into_bytes())];
     match experiment.kind {
         StudyKind::PriorMap => {
-            files.push(("series.csv".to_owned(), findings.series().to_csv().into_bytes()));
+            let series = findings.series();
+            let row = "one point of a trial's curve: where coverage first crosses a whole percent, and every 10 s";
+            described.push(DescribedTable::of(
+                &series,
+                in_results("series.csv"),
+                ("Curves of the trials", row),
+                |name| dictionary.of_series(name),
+            ));
+            files.push(("series.csv".to_owned(), series.to_csv().into_bytes()));
         }
         StudyKind::Deadline => {}
     }
@@ -175,6 +219,10 @@ fn results(plan: &Plan, records: &[TrialRecord]) -> Result<Vec<(String, Vec<u8>)
                 (table.clone(), table)
             }
         };
+        let words = (request.title.as_str(), "one cell of the printed table");
+        described.push(DescribedTable::of(&tidy, in_results(&path("csv")), words, |name| {
+            dictionary.of_table(request, name)
+        }));
         files.push((path("csv"), tidy.to_csv().into_bytes()));
         let print = format!("# {}\n\n{}{note}", request.title, print.to_markdown());
         files.push((path("md"), print.into_bytes()));
@@ -197,7 +245,46 @@ fn results(plan: &Plan, records: &[TrialRecord]) -> Result<Vec<(String, Vec<u8>)
         files.push((format!("figures/{}.svg", request.id), svg.into_bytes()));
     }
     files.push(("claims.json".to_owned(), verdicts_json(&verdicts(plan, records)?)));
-    Ok(files)
+    Ok((files, described))
+}
+
+/// Whether the run measures the machine.
+fn measures_the_machine(plan: &Plan) -> Result<bool, String> {
+    Ok(!plan.partial && claims(plan)?.iter().any(|claim| claim.circumstance))
+}
+
+/// What the columns of the inputs in CSV say: the paper's own numbers, the calibration of maneuvers, and what became of the
+/// claims at other values of the assumptions.
+fn described_inputs(plan: &Plan) -> Vec<DescribedTable> {
+    let factors = factors(plan);
+    let dictionary = Dictionary { kind: plan.experiment.kind, factors: &factors };
+    let mut described: Vec<DescribedTable> = Vec::new();
+    for input in &plan.experiment.inputs {
+        let path = format!("{}{}", format::INPUTS, input.name);
+        let is_table = format::media_type(&path) == "text/csv";
+        if !is_table || described.iter().any(|known| known.path == path) {
+            continue;
+        }
+        let Some(table) =
+            std::str::from_utf8(&input.bytes).ok().and_then(|text| Table::from_csv(text).ok())
+        else {
+            continue;
+        };
+        let calibration =
+            table.columns.iter().all(|name| Dictionary::of_calibration(name).is_some());
+        let varied = table.columns.iter().all(|name| Dictionary::of_sensitivity(name).is_some());
+        described.push(if varied {
+            let words = ("Claims at other values of the assumptions", "one claim at one value");
+            DescribedTable::of(&table, path, words, Dictionary::of_sensitivity)
+        } else if calibration {
+            let words = ("Calibration of the maneuvers", "one maneuver");
+            DescribedTable::of(&table, path, words, Dictionary::of_calibration)
+        } else {
+            let words = ("Numbers that the paper prints", "one printed number");
+            DescribedTable::of(&table, path, words, |name| dictionary.of_published(name))
+        });
+    }
+    described
 }
 
 /// The floor plan of the first condition that a figure speaks of; words where the design leaves that combination out.

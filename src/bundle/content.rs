@@ -3,6 +3,7 @@
 use super::{Moment, names};
 use crate::digest::FileDigest;
 use crate::digest::Sha256Digest;
+use crate::table::DescribedTable;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Everything a bundle says but for who ran it, where and when.
@@ -34,6 +35,9 @@ pub struct BundleContent {
     pub conditions: Vec<SealedCondition>,
     /// Tables, figures and verdicts: paths relative to `results/`, and bytes.
     pub results: Vec<(String, Vec<u8>)>,
+    /// What the columns of CSV files say, also of such as are there only where the machine was measured: paths relative to
+    /// the payload.
+    pub tables: Vec<DescribedTable>,
     /// Whether only part of the study was run.
     pub partial: bool,
 }

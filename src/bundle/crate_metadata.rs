@@ -331,6 +331,19 @@ fn title(path: &str) -> (String, String) {
         ),
         format::README => ("Read me".into(), "How to check this bundle and run it again".into()),
         format::LICENSE => ("Licences".into(), "Which licence holds for what".into()),
+        format::DATA_PACKAGE => (
+            "Data package".into(),
+            "Every column of every CSV file, for programs: Frictionless Data Package 1, Table Schema 1".into(),
+        ),
+        format::DICTIONARY => {
+            ("Data dictionary".into(), "Every column of every CSV file, for people".into())
+        }
+        format::CITATION => {
+            ("Citation".into(), "How to cite this bundle: Citation File Format 1.2.0".into())
+        }
+        format::ZENODO => {
+            ("Deposit".into(), "What Zenodo asks of a deposit: title, creators, licence".into())
+        }
         "results/trials.csv" => {
             ("Trials".into(), "One row a trial: factors, outcome, measures".into())
         }

@@ -37,6 +37,14 @@ pub const PREVIEW: &str = "ro-crate-preview.html";
 pub const README: &str = "README.md";
 /// Under which licences the bundle may be shared.
 pub const LICENSE: &str = "LICENSE.txt";
+/// What every column of every CSV file says, for programs.
+pub const DATA_PACKAGE: &str = "datapackage.json";
+/// The same for people.
+pub const DICTIONARY: &str = "data-dictionary.md";
+/// How to cite the bundle.
+pub const CITATION: &str = "CITATION.cff";
+/// What Zenodo asks of a deposit.
+pub const ZENODO: &str = ".zenodo.json";
 /// The manifest, byte for byte as its author wrote it.
 pub const STUDY: &str = "study.yaml";
 /// The manifest with everything resolved.
@@ -105,6 +113,7 @@ pub fn media_type(path: &str) -> &'static str {
         "json" => "application/json",
         "jsonl" => "application/jsonl",
         "md" => "text/markdown",
+        "cff" => "application/yaml",
         "txt" => "text/plain",
         "html" => "text/html",
         "stl" => "model/stl",

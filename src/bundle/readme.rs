@@ -1,7 +1,8 @@
 //! `README.md` and `LICENSE.txt`: what a stranger reads first. They hold no number that the results hold too.
 
-use super::{BundleContent, Circumstance, format};
+use super::{Additions, BundleContent, Circumstance, format};
 use crate::digest::ResultsDigest;
+use crate::table::{Column, Kind};
 use std::collections::BTreeSet;
 
 /// How to check the bundle and run it again.
@@ -9,11 +10,12 @@ pub(super) fn readme(
     content: &BundleContent,
     circumstance: &Circumstance,
     digest: ResultsDigest,
-    capsule: Option<&str>,
+    additions: Additions<'_>,
 ) -> String {
     let (version, engine) = (&circumstance.version, &content.engine);
     let install = format::install_line(version);
     let stem = format!("{}-{}", content.name, digest.short());
+    let mut later = String::new();
     let mut text = format!("# {}\n\n{}\n", content.title, content.description);
     if content.partial {
         text.push_str("\n**Partial**: only some of the study's trials were run; no claim is judged on them.\n");
@@ -59,18 +61,30 @@ Checksums show that nothing changed since they were made; who made them, only a 
 | `ro-crate-metadata.json` | the same for machines: RO-Crate 1.1, Provenance Run Crate 0.5 |
 "
     ));
+    if additions.description {
+        text.push_str(
+            "| `data-dictionary.md` | every column of every CSV file: unit, range, meaning, when it is empty |
+| `datapackage.json` | the same for programs: Frictionless Data Package with Table Schema |
+| `CITATION.cff`, `.zenodo.json` | how to cite this bundle; what Zenodo asks of a deposit |
+",
+        );
+    }
     if !circumstance.files.is_empty() {
         text.push_str(
             "| `circumstances/` | wall times on the machine of the run and verdicts on them: not part of the results |\n",
         );
     }
-    if let Some(capsule) = capsule {
+    if let Some(capsule) = additions.source {
         text.push_str(&format!(
             "| `{engine_folder}` | the source of Reenact {version} with its lock file: data, which no check unpacks or runs |
-
+",
+            engine_folder = format::ENGINE,
+        ));
+        later = format!(
+            "
 ## In ten years
 
-Where `cargo install` no longer finds that version, `{capsule}` holds its source. Unpack it, read it, and build it:
+Where `cargo install` no longer finds that version, `{}` holds its source. Unpack it, read it, and build it:
 
 ```
 cargo install --path reenact-{version} --locked
@@ -78,10 +92,58 @@ cargo install --path reenact-{version} --locked
 
 The crates that it needs are named in its `Cargo.lock`, each with its digest; they are not in here.
 ",
-            engine_folder = format::ENGINE,
-        ));
+            capsule.path
+        );
     }
-    text
+    if additions.description {
+        text.push_str(&reading(content));
+    }
+    text + &later
+}
+
+/// Three lines that read the trials with what people analyse data with; nothing where there are no trials to read.
+fn reading(content: &BundleContent) -> String {
+    let Some(trials) = content.tables.iter().find(|table| table.path == "results/trials.csv")
+    else {
+        return String::new();
+    };
+    let is_factor = |column: &&Column| column.among.len() > 1 && column.name != "outcome";
+    let names = |columns: Vec<&Column>| -> Vec<String> {
+        columns.iter().map(|column| format!("\"{}\"", column.name)).collect()
+    };
+    let mut by = names(trials.columns.iter().filter(is_factor).collect());
+    // More make a long print.
+    by.drain(..by.len().saturating_sub(2));
+    if by.is_empty() {
+        by.push("\"outcome\"".to_owned());
+    }
+    let measured = |column: &&Column| column.kind == Kind::Number && column.among.is_empty();
+    let usual = trials.columns.iter().find(|column| column.name == "time-s");
+    let Some(measure) = usual.or_else(|| trials.columns.iter().find(measured)) else {
+        return String::new();
+    };
+    let (measure, by) = (&measure.name, by.join(", "));
+    format!(
+        "
+## Read the data
+
+In this folder. With Python and pandas:
+
+```python
+import pandas
+trials = pandas.read_csv(\"results/trials.csv\")
+print(trials.groupby([{by}])[\"{measure}\"].agg([\"count\", \"mean\", \"std\"]))
+```
+
+With R, nothing to install:
+
+```r
+trials <- read.csv(\"results/trials.csv\", check.names = FALSE)
+by <- trials[c({by})]
+print(aggregate(trials[\"{measure}\"], by, function(x) c(n = sum(!is.na(x)), mean = mean(x, na.rm = TRUE), sd = sd(x, na.rm = TRUE))))
+```
+"
+    )
 }
 
 /// Which licences hold for what.

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::digest::{Sha256Digest, TrialKey};
 use crate::studies::{Outcome, TrialRecord};
-use crate::table::Table;
+use crate::table::{Column, DescribedTable, Table};
 use std::io::{Cursor, Write as _};
 use std::sync::OnceLock;
 
@@ -58,6 +58,40 @@ pub(crate) fn results(records: &[TrialRecord]) -> Vec<(String, Vec<u8>)> {
     ]
 }
 
+/// What the columns of the sample's tables say.
+pub(crate) fn tables() -> Vec<DescribedTable> {
+    let table = |columns: &[&str]| Table::new(columns.iter().copied());
+    let distance = |name: &str| Column::number(name, "m", "Way travelled at 90 %").at_least(0.0);
+    let factor = ["none", "floor-plan"].map(str::to_owned);
+    let describe = |name: &str| match name {
+        "prior" => Some(Column::of_values(name, "", "Which prior", &factor)),
+        "trial" => Some(Column::count(name, "Number in its condition")),
+        "distance-m-at-90" => Some(distance(name).empty_where("it never got there")),
+        "coverage" | "key" | "outcome" => Some(Column::text(name, "A name")),
+        "distance-m" => Some(distance(name)),
+        _ => None,
+    };
+    let trials = table(&["key", "prior", "trial", "outcome", "distance-m-at-90"]);
+    let means = table(&["coverage", "distance-m"]);
+    vec![
+        DescribedTable {
+            key: vec!["key".into()],
+            ..DescribedTable::of(
+                &trials,
+                "results/trials.csv".into(),
+                ("Trials", "a trial"),
+                describe,
+            )
+        },
+        DescribedTable::of(
+            &means,
+            "results/tables/distance.csv".into(),
+            ("Means", "a mean"),
+            describe,
+        ),
+    ]
+}
+
 /// The content that sealing the sample study with `records` (by condition) yields.
 pub(crate) fn content_of(
     study_yaml: &[u8],
@@ -102,6 +136,7 @@ pub(crate) fn content_of(
             })
             .collect(),
         results: results(&all),
+        tables: tables(),
         partial: false,
     }
 }

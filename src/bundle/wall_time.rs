@@ -63,15 +63,20 @@ pub fn measured(
     Ok(Measured { verdicts, files })
 }
 
-/// One row a trial: key, factors, number, outcome and the columns of [`WALL_TIME_COLUMNS`].
-fn table(plan: &Plan, records: &[TrialRecord], times: &WallTimes) -> Table {
-    let factors = assemble::factors(plan);
-    let columns = ["key"]
+/// The columns of the times of trials of a design of `factors`.
+pub(super) fn columns(factors: &[(String, Vec<String>)]) -> Vec<&str> {
+    ["key"]
         .into_iter()
         .chain(factors.iter().map(|(name, _)| name.as_str()))
         .chain(["trial", "outcome"])
-        .chain(WALL_TIME_COLUMNS);
-    let mut table = Table::new(columns);
+        .chain(WALL_TIME_COLUMNS)
+        .collect()
+}
+
+/// One row a trial: key, factors, number, outcome and the columns of [`WALL_TIME_COLUMNS`].
+fn table(plan: &Plan, records: &[TrialRecord], times: &WallTimes) -> Table {
+    let factors = assemble::factors(plan);
+    let mut table = Table::new(columns(&factors));
     for record in records {
         let condition = record.condition();
         let mut row: Vec<Value> = vec![record.key.hex().into()];

@@ -2,7 +2,7 @@
 
 use super::{
     Bundle, BundleContent, Capsule, Circumstance, Form, Limits, Resolved, Tree, archive, bag,
-    crate_metadata, format, names, preview, readme, results_digest,
+    citation, crate_metadata, data_package, format, names, preview, readme, results_digest,
 };
 use crate::digest::{BundleId, ResultsDigest, Sha256Digest, StudyDigest};
 use thiserror::Error;
@@ -85,17 +85,32 @@ impl Sealed {
 /// # Errors
 /// Where a name is unsafe or taken, a record is not one line, or the whole is more than readers take.
 pub fn seal(content: &BundleContent, circumstance: &Circumstance) -> Result<Sealed, SealError> {
-    seal_with(content, circumstance, None)
+    seal_with(content, circumstance, Additions::default())
 }
 
-/// Seals `content` together with the source of the engine that ran it, where one is given.
+/// What a bundle holds beside content and circumstances.
+#[derive(Debug, Clone, Copy)]
+pub struct Additions<'a> {
+    /// The source of the engine that ran it.
+    pub source: Option<&'a Capsule>,
+    /// Data dictionary and citation, which the first bundles do not have.
+    pub description: bool,
+}
+
+impl Default for Additions<'_> {
+    fn default() -> Self {
+        Self { source: None, description: true }
+    }
+}
+
+/// Seals `content` together with `additions`.
 ///
 /// # Errors
 /// As [`seal`].
 pub fn seal_with(
     content: &BundleContent,
     circumstance: &Circumstance,
-    capsule: Option<&Capsule>,
+    additions: Additions<'_>,
 ) -> Result<Sealed, SealError> {
     let mut payload = Payload::default();
     payload.add(format::STUDY, content.study_yaml.clone())?;
@@ -127,11 +142,22 @@ pub fn seal_with(
     let stem = format!("{}-{}", content.name, results_digest.short());
     check_name(&stem)?;
 
-    if let Some(capsule) = capsule {
+    if let Some(capsule) = additions.source {
         payload.add(&capsule.path, capsule.bytes.clone())?;
     }
-    let source = capsule.map(|capsule| capsule.path.as_str());
-    let readme = readme::readme(content, circumstance, results_digest, source);
+    if additions.description {
+        let there =
+            |path: &String| payload.tree.contains_key(&format!("{}{path}", format::PAYLOAD));
+        let tables: Vec<_> =
+            content.tables.iter().filter(|table| there(&table.path)).cloned().collect();
+        let package = data_package::package(content, &tables, &payload.tree, results_digest);
+        payload.add(format::DATA_PACKAGE, package)?;
+        payload.add(format::DICTIONARY, data_package::dictionary(content, &tables).into())?;
+        payload
+            .add(format::CITATION, citation::cff(content, circumstance, results_digest).into())?;
+        payload.add(format::ZENODO, citation::zenodo(content, results_digest))?;
+    }
+    let readme = readme::readme(content, circumstance, results_digest, additions);
     payload.add(format::README, readme.into())?;
     payload.add(format::LICENSE, readme::license(content).into())?;
     let metadata = crate_metadata::document(
@@ -272,6 +298,7 @@ mod tests {
             first.tree.iter().filter(|(p, b)| second.tree[*p] != **b).map(|(p, _)| p).collect();
         let expected = [
             "bag-info.txt",
+            "data/CITATION.cff",
             "data/ro-crate-metadata.json",
             "data/ro-crate-preview.html",
             "manifest-sha256.txt",
@@ -286,11 +313,11 @@ mod tests {
         content.results = vec![("big".into(), vec![b'x'; 48 << 20])];
         let error = seal(&content, &sample::circumstance()).unwrap_err();
         let SealError::Size { files, bytes } = error else { panic!("{error}") };
-        assert!(files == 15 && bytes > 48 << 20, "{files} files, {bytes} bytes");
+        assert!(files == 19 && bytes > 48 << 20, "{files} files, {bytes} bytes");
         assert_eq!(
             error.to_string(),
             format!(
-                "the bundle would hold 15 files of {bytes} bytes: expected at most 20000 files and 50331648 bytes, so that \
+                "the bundle would hold 19 files of {bytes} bytes: expected at most 20000 files and 50331648 bytes, so that \
                  anyone can check it; run the study in parts (--only), or make it smaller"
             )
         );

@@ -4,10 +4,8 @@ use super::Experiment;
 use crate::claims::metric::WALL_TIME_COLUMNS;
 use crate::claims::{self, Claim};
 use crate::document::Diagnostic;
-use crate::studies::prior_map::{
-    FURTHER_AT_MILESTONES, MILESTONES, POSE_ERRORS, coverage_at_distance,
-};
-use crate::studies::{Setup, StudyKind, deadline};
+use crate::studies::prior_map::coverage_at_distance;
+use crate::studies::{Setup, StudyKind};
 
 /// Every fault of the experiment's claims.
 pub fn check_claims(experiment: &Experiment) -> Vec<Diagnostic> {
@@ -45,36 +43,11 @@ pub fn check_claims(experiment: &Experiment) -> Vec<Diagnostic> {
 
 /// What a claim or table of a study may speak of: success, outcomes and the columns of `results/trials.csv`.
 pub(super) fn measures(kind: StudyKind) -> Vec<String> {
-    match kind {
-        StudyKind::PriorMap => prior_map_measures(),
-        StudyKind::Deadline => deadline::measures(),
+    let outcomes = kind.outcomes().iter().map(|(name, _)| format!("outcome:{name}"));
+    let mut names: Vec<String> = std::iter::once("success".to_owned()).chain(outcomes).collect();
+    names.extend(kind.measures());
+    if kind == StudyKind::PriorMap {
+        names.extend(WALL_TIME_COLUMNS.map(str::to_owned));
     }
-}
-
-fn prior_map_measures() -> Vec<String> {
-    let mut names: Vec<String> = [
-        "success",
-        "outcome:explored",
-        "outcome:stuck",
-        "outcome:time-limit",
-        "distance-m",
-        "time-s",
-        "coverage-percent",
-        "turning-rad",
-        "decisions",
-        "frontiers-given-up",
-        "contacts",
-        "turning-rad-per-m",
-        "mean-speed-m-s",
-    ]
-    .map(str::to_owned)
-    .to_vec();
-    for percent in MILESTONES {
-        names.push(format!("distance-m-at-{percent}"));
-        names.push(format!("time-s-at-{percent}"));
-        names.extend(FURTHER_AT_MILESTONES.map(|name| format!("{name}-at-{percent}")));
-    }
-    names.extend(POSE_ERRORS.map(str::to_owned));
-    names.extend(WALL_TIME_COLUMNS.map(str::to_owned));
     names
 }

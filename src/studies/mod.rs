@@ -4,6 +4,7 @@
 //! share, the trial's identity and its record, is in this module.
 
 pub mod deadline;
+mod dictionary;
 mod factor_value;
 mod findings;
 pub mod prior_map;
@@ -12,6 +13,7 @@ pub mod recording;
 mod requests;
 mod state_chain;
 
+pub use dictionary::Dictionary;
 pub use factor_value::FactorValue;
 pub use findings::Findings;
 pub use record::{CHAIN_STEP_S, Outcome, SeriesPoint, TrialRecord, first_divergence};

@@ -2,7 +2,8 @@
 
 use super::{PlannedTrial, Replanned, difference};
 use crate::bundle::{
-    Bundle, Circumstance, Fault, Form, Moment, Tree, capsule, format, in_result_half, seal_with,
+    Additions, Bundle, Circumstance, Fault, Form, Moment, Tree, capsule, format, in_result_half,
+    seal_with,
 };
 use crate::digest::{Sha256Digest, TrialKey};
 use crate::studies::TrialRecord;
@@ -24,7 +25,10 @@ pub(super) fn check(bundle: &Bundle, replanned: &dyn Replanned) -> (Vec<Fault>, 
     let told = bundle.circumstance().filter(|c| c.version == format::VERSION);
     let circumstance = told.clone().unwrap_or(Circumstance::reproducible(Moment(0)));
     let own = bundle.capsule().map(|_| capsule::own());
-    let derived = match seal_with(&content, &circumstance, own.as_ref()) {
+    let described = format!("{}{}", format::PAYLOAD, format::DATA_PACKAGE);
+    let additions =
+        Additions { source: own.as_ref(), description: bundle.tree().contains_key(&described) };
+    let derived = match seal_with(&content, &circumstance, additions) {
         Ok(sealed) => sealed.tree,
         Err(problem) => {
             faults.push(Fault::new(
@@ -40,7 +44,7 @@ pub(super) fn check(bundle: &Bundle, replanned: &dyn Replanned) -> (Vec<Fault>, 
         differing.extend(source(bundle.tree(), &derived));
     }
     // Each holds digests or sizes of those before it, and says something new only where those are as they should be.
-    for part in [&[format::README, format::LICENSE][..], &[format::METADATA, format::PREVIEW]] {
+    for part in [&DESCRIPTIONS[..], &[format::METADATA, format::PREVIEW]] {
         if differing.is_empty() && told.is_some() {
             differing = files(bundle.tree(), &derived, |path| part.contains(&path));
         }
@@ -74,6 +78,16 @@ pub(super) fn check(bundle: &Bundle, replanned: &dyn Replanned) -> (Vec<Fault>, 
     });
     (faults, untold.into_iter().chain(measured).collect())
 }
+
+/// What says how to read, cite and check the rest.
+const DESCRIPTIONS: [&str; 6] = [
+    format::README,
+    format::LICENSE,
+    format::DATA_PACKAGE,
+    format::DICTIONARY,
+    format::CITATION,
+    format::ZENODO,
+];
 
 /// Planned trials against records: one fault a condition, however many of its trials differ.
 fn trials(bundle: &Bundle, planned: &[PlannedTrial]) -> Vec<Fault> {

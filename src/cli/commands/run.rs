@@ -4,7 +4,7 @@ use super::execution::{Executed, Execution, Times};
 use super::locked::{self, Held};
 use super::{probe, tables, verdicts};
 use crate::bundle::wall_time;
-use crate::bundle::{Form, Sealed, assemble, capsule, format, seal_with};
+use crate::bundle::{Additions, Form, Sealed, assemble, capsule, format, seal_with};
 use crate::claims::Verdict;
 use crate::cli::args::{Format, RunArgs};
 use crate::cli::exit::{Exit, Failure};
@@ -71,7 +71,8 @@ fn run_one(
         circumstance.environment.push((format::SIMULATED_TRIALS.to_owned(), simulated));
     }
     let capsule = args.capsule.then(capsule::own);
-    let sealed = seal_with(&content, &circumstance, capsule.as_ref()).map_err(Failure::failed)?;
+    let additions = Additions { source: capsule.as_ref(), ..Additions::default() };
+    let sealed = seal_with(&content, &circumstance, additions).map_err(Failure::failed)?;
     let path = args.out.join(sealed.file_name());
     load::write(&path, &sealed.zip(Form::Bag))?;
     let held = lock

@@ -7,6 +7,7 @@
 #[cfg(test)]
 mod building;
 pub mod calibration;
+pub mod columns;
 pub mod exploration;
 mod in_situ;
 pub mod intersection;
@@ -25,7 +26,7 @@ pub mod toposemantic_map;
 pub use calibration::Calibration;
 pub use in_situ::ManeuverRow;
 pub use intersection_detection::{IntersectionDetectionSystem, Perception};
-pub use mission::{measures, run, tag_scheme};
+pub use mission::{run, tag_scheme};
 pub use parameters::{ErrorShape, Hiding, Mission, Parameters, Passage, Sensing, Task};
 pub use requests::{ManeuverTable, OutcomeTable, Percent, Quantity};
 pub use rules::{Rules, UnplannedSpeed};

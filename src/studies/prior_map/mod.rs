@@ -7,6 +7,7 @@
 pub mod agreement;
 mod cell_tests;
 pub mod choice;
+pub mod columns;
 pub mod effects;
 pub mod explorer;
 mod field_of_view;

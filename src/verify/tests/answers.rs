@@ -1,14 +1,16 @@
 //! What a reviewer takes away: who vouches, what to sign, what another engine can say, what CI shows.
 
 use super::*;
-use crate::bundle::{Moment, capsule, seal_with};
+use crate::bundle::{Additions, Moment, capsule, seal_with};
 use crate::document::Source;
 
 const SIGNERS: &str = include_str!("../../../tests/signatures/allowed_signers");
 const SIGNATURE: &str = include_str!("../../../tests/signatures/ed25519.sig");
 
 fn with_capsule() -> Tree {
-    seal_with(&sample::content(), &sample::circumstance(), Some(&capsule::own())).unwrap().tree
+    let capsule = capsule::own();
+    let additions = Additions { source: Some(&capsule), ..Additions::default() };
+    seal_with(&sample::content(), &sample::circumstance(), additions).unwrap().tree
 }
 
 fn told(report: &Report) -> Vec<String> {

@@ -8,7 +8,6 @@ mod tally;
 #[cfg(test)]
 mod tests;
 
-use super::calibration::{MOTIONS, SPEEDS, maneuver_name};
 use super::{Setup, Task};
 use crate::geometry::Outline;
 use crate::robot::Lidar;
@@ -18,42 +17,6 @@ use crate::studies::{Outcome, Stopwatch, TrialRecord, TrialSpec};
 use crate::units::{Seconds, Tick};
 use crate::world::topology::{TagScheme, Topology};
 use std::collections::BTreeMap;
-
-/// What claims and tables may speak of besides outcomes: the columns of `results/trials.csv`.
-pub fn measures() -> Vec<String> {
-    let mut names: Vec<String> = [
-        "success",
-        "outcome:reached",
-        "outcome:collided",
-        "outcome:late",
-        "outcome:stalled",
-        "time-s",
-        "distance-m",
-        "turning-rad",
-        "vertices",
-        "decisions",
-        "plans",
-        "plans-slack",
-        "plans-active",
-        "plans-relaxed",
-        "maneuvers",
-        "slow-maneuvers",
-        "slow-collisions",
-        "fast-maneuvers",
-        "fast-collisions",
-        "fast-maneuver-share",
-    ]
-    .map(str::to_owned)
-    .to_vec();
-    for motion in MOTIONS {
-        for speed in SPEEDS {
-            let name = maneuver_name(motion, speed);
-            let kinds = ["passages", "arrived", "collisions", "total-s"];
-            names.extend(kinds.map(|kind| format!("{name}-{kind}")));
-        }
-    }
-    names
-}
 
 /// What all trials of a setup share: computed once, from the setup alone.
 #[derive(Debug)]

@@ -6,6 +6,8 @@ use crate::digest::{Sha256Digest, TrialKey};
 use crate::document::Source;
 use crate::rng::Seeds;
 use crate::robot::{Robot, urdf};
+use crate::studies::deadline::calibration::{MOTIONS, SPEEDS, maneuver_name};
+use crate::studies::deadline::columns;
 use crate::studies::deadline::strategy::Strategy;
 use crate::studies::deadline::{Calibration, Parameters};
 use crate::studies::{self, Condition};
@@ -72,7 +74,7 @@ fn a_robot_finds_the_goal_and_every_maneuver_is_counted() {
     assert!(count(&record, "vertices") >= 3.0);
     let plans = ["plans-slack", "plans-active", "plans-relaxed"].map(|n| count(&record, n));
     assert_eq!(plans.iter().sum::<f64>(), count(&record, "plans"));
-    let named = measures();
+    let named = columns::measures();
     assert!(record.measures.keys().all(|name| named.contains(name)), "claims know every column");
 }
 

@@ -7,6 +7,7 @@ use crate::geometry::Point;
 use crate::grid::{GridFrame, Occupancy, OccupancyGrid};
 use crate::rng::Seeds;
 use crate::robot::{Drive, DriveKind, Robot};
+use crate::studies::prior_map::columns;
 use crate::studies::prior_map::tour::{self, TopoMetricMap};
 use crate::studies::prior_map::{
     Candidate, Coverage, Crossing, Gain, Parameters, Reselect, Strategy, View,
@@ -263,6 +264,8 @@ fn later_choices_and_further_measures_are_written_down_when_asked_for() {
         assert_eq!(further.measures[name], *value, "{name}");
     }
     assert_eq!(further.chain, usual.chain, "looking changes nothing");
+    let undescribed = further.measures.keys().find(|name| columns::measure(name).is_none());
+    assert_eq!(undescribed, None, "the data dictionary knows every measure");
     let (early, late) =
         (measure(&further, "decisions-at-50"), measure(&further, "decisions-at-95"));
     assert!(early <= late && late <= measure(&further, "decisions"), "{early} {late}");

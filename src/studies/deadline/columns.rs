@@ -1,0 +1,202 @@
+//! What the measures of a trial say, and the columns of this study's tables: one place for the data dictionary and for what
+//! claims and tables may speak of.
+
+use super::calibration::{MOTIONS, SPEEDS, maneuver_name};
+use super::requests::{OutcomeTable, Percent, Quantity};
+use crate::table::{Column, unit_of};
+
+/// The measures of a whole trial.
+const WHOLE: [&str; 15] = [
+    "time-s",
+    "distance-m",
+    "turning-rad",
+    "vertices",
+    "decisions",
+    "plans",
+    "plans-slack",
+    "plans-active",
+    "plans-relaxed",
+    "maneuvers",
+    "slow-maneuvers",
+    "slow-collisions",
+    "fast-maneuvers",
+    "fast-collisions",
+    "fast-maneuver-share",
+];
+
+/// What is counted of each maneuver.
+const OF_A_MANEUVER: [&str; 4] = ["passages", "arrived", "collisions", "total-s"];
+
+/// Every measure that a trial of this study can have.
+pub fn measures() -> Vec<String> {
+    let mut names: Vec<String> = WHOLE.map(str::to_owned).to_vec();
+    names.extend(of_maneuvers().into_iter().map(|(name, ..)| name));
+    names
+}
+
+/// Names of the measures of maneuvers, each with the maneuver's and with what is counted.
+fn of_maneuvers() -> Vec<(String, String, &'static str)> {
+    let mut names = Vec::new();
+    for motion in MOTIONS {
+        for speed in SPEEDS {
+            let maneuver = maneuver_name(motion, speed);
+            names
+                .extend(OF_A_MANEUVER.map(|of| (format!("{maneuver}-{of}"), maneuver.clone(), of)));
+        }
+    }
+    names
+}
+
+/// When a measure of the end of a trial is empty.
+const PANICKED: &str = "the program failed in the trial (outcome panicked)";
+
+/// What the measure `name` says; `None` where trials of this study have none of that name.
+pub fn measure(name: &str) -> Option<Column> {
+    let count = |meaning: &str| Column::count(name, meaning).empty_where(PANICKED);
+    let number = |meaning: &str| {
+        Column::number(name, unit_of(name), meaning).at_least(0.0).empty_where(PANICKED)
+    };
+    Some(match name {
+        "time-s" => {
+            number("Simulated time from the start until the robot arrived at the goal (in a passage: at its end)")
+                .empty_where("it did not arrive")
+        }
+        "distance-m" => number("Way that the body truly travelled"),
+        "turning-rad" => number("Sum of the absolute turns of the body"),
+        "vertices" => count("Vertices of the robot's toposemantic map at the end"),
+        "decisions" => count("How many times the robot chose where to go"),
+        "plans" => count("Policies that the planner computed"),
+        "plans-slack" => count("Plans that the deadline did not bind"),
+        "plans-active" => count("Plans that the deadline bound: something is done faster than without it"),
+        "plans-relaxed" => count("Plans for a deadline that cannot be met in expectation: the least time was taken"),
+        "maneuvers" => count("Maneuvers begun"),
+        "slow-maneuvers" => count("Slow maneuvers begun"),
+        "slow-collisions" => count("Slow maneuvers that ended in contact: the trial's last one, if any"),
+        "fast-maneuvers" => count("Fast maneuvers begun"),
+        "fast-collisions" => count("Fast maneuvers that ended in contact: the trial's last one, if any"),
+        "fast-maneuver-share" => {
+            Column::probability(name, "fast-maneuvers over maneuvers").empty_where("no maneuver was begun")
+        }
+        _ => {
+            let known = of_maneuvers().into_iter().find(|(known, ..)| known == name)?;
+            let (_, maneuver, of) = known;
+            match of {
+                "passages" => count(&format!("Times that the maneuver {maneuver} was begun")),
+                "arrived" => count(&format!("Times that it arrived ({maneuver})")),
+                "collisions" => count(&format!("Times that it ended in contact ({maneuver})")),
+                _ => number(&format!("Simulated time of those that arrived, summed up ({maneuver})")),
+            }
+        }
+    })
+}
+
+/// A column of an outcome table, factors aside.
+pub fn of_outcome_table(wanted: &OutcomeTable, name: &str) -> Option<Column> {
+    let (unit, what, least, most) = match &wanted.show {
+        Quantity::Share(_) => ("%", wanted.show.describe(), Some(0.0), Some(100.0)),
+        Quantity::Percent(Percent { part, whole }) => {
+            let what = format!("{part} as a share of {whole}, both summed over trials");
+            ("%", what, Some(0.0), Some(100.0))
+        }
+        Quantity::Mean(measured) => {
+            let unit = unit_of(measured);
+            (unit, format!("mean of {measured} over the trials that have it"), None, None)
+        }
+    };
+    let number = |meaning: &str| {
+        let column = Column::number(name, unit, meaning);
+        Column { least, most, ..column }.empty_where("no trial of the cell has the quantity")
+    };
+    let few = "no trial, or too few for an interval";
+    Some(match name {
+        "value" => number(&sentence(&what)),
+        "low" => number("Lower end of its 95 % interval").empty_where(few),
+        "high" => number("Upper end of its 95 % interval").empty_where(few),
+        "sd" => number("Standard deviation over trials (n - 1)")
+            .at_least(0.0)
+            .empty_where("the quantity is a share, or fewer than two trials have it"),
+        "n" => Column::count(name, "Trials behind the value"),
+        "trials" => {
+            Column::count(name, "All trials of the cell but those in which the program failed")
+        }
+        "published" => {
+            number("The number that the paper prints").empty_where("the paper prints none")
+        }
+        "published-n" => Column::count(name, "Trials behind the paper's number")
+            .empty_where("the paper does not say"),
+        _ => return None,
+    })
+}
+
+/// A column of a table of maneuvers.
+pub fn of_maneuver_table(name: &str) -> Option<Column> {
+    let time = |meaning| Column::number(name, "s", meaning).at_least(0.0);
+    let failure = |meaning| Column::percent(name, meaning).empty_where("none was finished");
+    let names: Vec<String> = MOTIONS
+        .iter()
+        .flat_map(|motion| SPEEDS.map(|speed| maneuver_name(*motion, speed)))
+        .collect();
+    let uncalibrated = "there was no calibration";
+    Some(match name {
+        "maneuver" => Column::of_values(name, "", "Motion and speed", &names),
+        "expected-time-s" => time("Mean duration in the calibration: what the planner expects")
+            .empty_where(uncalibrated),
+        "time-s" => {
+            time("Mean duration in this study of those that arrived").empty_where("none arrived")
+        }
+        "expected-failure-percent" => {
+            failure("Share that failed in the calibration: what the planner expects")
+                .empty_where(uncalibrated)
+        }
+        "failure-percent" => failure("Share of finished ones that ended in contact in this study"),
+        "failure-low-percent" => failure("Lower end of its 95 % interval (Wilson)"),
+        "failure-high-percent" => failure("Upper end of its 95 % interval (Wilson)"),
+        "passages" => Column::count(name, "Times that it was begun in this study"),
+        _ => return None,
+    })
+}
+
+/// A column of the calibration that is sealed as an input.
+pub fn of_calibration(name: &str) -> Option<Column> {
+    let time =
+        |meaning| Column::number(name, "s", meaning).at_least(0.0).empty_where("none arrived");
+    Some(match name {
+        "motion" => Column::text(name, "Motion of the maneuver"),
+        "speed" => Column::text(name, "Its speed"),
+        "passages" => Column::count(name, "Passages that were driven to measure it"),
+        "reached" => Column::count(name, "Those that arrived"),
+        "collided" => Column::count(name, "Those that ended in contact"),
+        "time-s" => time("Mean duration of those that arrived"),
+        "time-low-s" => time("Lower end of its 95 % interval"),
+        "time-high-s" => time("Upper end of its 95 % interval"),
+        "failure" => Column::probability(name, "Share of passages that failed"),
+        "failure-low" => Column::probability(name, "Lower end of its 95 % interval"),
+        "failure-high" => Column::probability(name, "Upper end of its 95 % interval"),
+        _ => return None,
+    })
+}
+
+/// `text` with a capital.
+fn sentence(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_measure_says_what_it_is() {
+        let names = measures();
+        assert_eq!(names.len(), 15 + 6 * 4);
+        for name in names {
+            let column = measure(&name).unwrap_or_else(|| panic!("{name} is not described"));
+            assert_eq!(column.name, name);
+            assert!(!column.meaning.is_empty() && column.empty.is_some(), "{name}");
+        }
+        let total = measure("door-left-slow-total-s").unwrap();
+        assert_eq!(total.unit, "s");
+        assert_eq!(measure("door-up-slow-total-s"), None);
+    }
+}

@@ -1,0 +1,185 @@
+//! What every column of every table of a study says: factors, what all studies share, and each study's own.
+
+use super::{StudyKind, TableLayout, TableRequest, deadline, prior_map};
+use crate::claims::Judgement;
+use crate::claims::metric::WALL_TIME_COLUMNS;
+use crate::table::{Column, unit_of};
+
+/// The words for the columns of one experiment's tables.
+#[derive(Debug, Clone, Copy)]
+pub struct Dictionary<'a> {
+    /// Which study.
+    pub kind: StudyKind,
+    /// Factors with all their values, in the manifest's order.
+    pub factors: &'a [(String, Vec<String>)],
+}
+
+impl StudyKind {
+    /// Every measure that a trial of the study can have, but for those whose names a manifest's numbers make.
+    pub fn measures(self) -> Vec<String> {
+        match self {
+            Self::PriorMap => prior_map::columns::measures(),
+            Self::Deadline => deadline::columns::measures(),
+        }
+    }
+
+    /// The outcomes of its trials that are no fault of the program, each with what it says.
+    pub fn outcomes(self) -> &'static [(&'static str, &'static str)] {
+        match self {
+            Self::PriorMap => &[
+                ("explored", "no frontier was left that the robot could go to"),
+                ("stuck", "the robot could not go on to any frontier, or made no progress"),
+                ("time-limit", "the manifest's time limit was reached"),
+            ],
+            Self::Deadline => &[
+                ("reached", "the robot arrived at the goal in time"),
+                ("collided", "the body came into contact with something"),
+                ("late", "the time was up while new places were still being found"),
+                (
+                    "stalled",
+                    "the time was up and no new place had been found for long, or nothing was left to do",
+                ),
+            ],
+        }
+    }
+
+    fn measure(self, name: &str) -> Option<Column> {
+        match self {
+            Self::PriorMap => prior_map::columns::measure(name),
+            Self::Deadline => deadline::columns::measure(name),
+        }
+    }
+}
+
+impl Dictionary<'_> {
+    /// A column of `trials.csv`.
+    pub fn of_trials(&self, name: &str) -> Option<Column> {
+        match name {
+            "key" => Some(
+                Column::text(
+                    name,
+                    "Identity of the trial: SHA-256 of everything that it depends on",
+                )
+                .like("^[0-9a-f]{64}$"),
+            ),
+            "outcome" => Some(self.outcome()),
+            _ => self.trial_or_factor(name).or_else(|| self.kind.measure(name)),
+        }
+    }
+
+    /// A column of `series.csv`.
+    pub fn of_series(&self, name: &str) -> Option<Column> {
+        let number = |meaning: &str| Column::number(name, unit_of(name), meaning).at_least(0.0);
+        match name {
+            "key" => Some(
+                Column::text(
+                    name,
+                    "The trial: the first hex digits of its key in results/trials.csv",
+                )
+                .like("^[0-9a-f]+$"),
+            ),
+            "time-s" => Some(number("Simulated time since the trial began")),
+            "distance-m" => Some(number("Way travelled until then")),
+            "coverage-percent" => Some(Column::percent(name, "Coverage then")),
+            _ => self.trial_or_factor(name),
+        }
+    }
+
+    /// A column of the tidy form of a requested table.
+    pub fn of_table(&self, request: &TableRequest, name: &str) -> Option<Column> {
+        let own = match &request.layout {
+            TableLayout::CoverageTable(wanted) => {
+                prior_map::columns::of_coverage_table(wanted, name)
+            }
+            TableLayout::AgreementTable(_) => prior_map::columns::of_agreement_table(name),
+            TableLayout::EffectsTable(wanted) => prior_map::columns::of_effects_table(wanted, name),
+            TableLayout::MeasuresTable(wanted) => {
+                prior_map::columns::of_measures_table(wanted, name)
+            }
+            TableLayout::OutcomeTable(wanted) => deadline::columns::of_outcome_table(wanted, name),
+            TableLayout::ManeuverTable(_) => deadline::columns::of_maneuver_table(name),
+        };
+        // A factor that is called like a column of numbers would be taken for one; its column comes first in the table.
+        self.factor(name).or(own)
+    }
+
+    /// A column of `circumstances/wall-times.csv`.
+    pub fn of_wall_times(&self, name: &str) -> Option<Column> {
+        let meaning = match WALL_TIME_COLUMNS.iter().position(|known| *known == name) {
+            Some(0) => "Time that the trial took on the machine that ran it",
+            Some(1) => "Time of one choice of where to go: mean over those of the trial",
+            Some(_) => "Time of the longest choice of where to go",
+            None => return self.of_trials(name),
+        };
+        let empty = "the trial came from a store, or nothing was chosen";
+        Some(Column::number(name, "s", meaning).at_least(0.0).empty_where(empty))
+    }
+
+    /// A column of a file with the paper's own numbers.
+    pub fn of_published(&self, name: &str) -> Option<Column> {
+        let silent = "the paper does not say";
+        Some(match name {
+            "coverage-percent" => Column::percent(name, "Level of coverage").empty_where(silent),
+            "value" => Column::number(
+                name,
+                "",
+                "The paper's number, in the unit of the table that it stands beside",
+            ),
+            "sd" => {
+                Column::number(name, "", "The standard deviation that the paper prints with it")
+                    .empty_where(silent)
+            }
+            "n" => Column::count(name, "Number of runs behind it").empty_where(silent),
+            "measure" => {
+                Column::text(name, "The column of results/trials.csv that the number is of")
+            }
+            // A paper may have levels that are not run.
+            _ => Column { among: Vec::new(), ..self.factor(name)? }.empty_where(silent),
+        })
+    }
+
+    /// A column of the calibration that the deadline study's planner expects its maneuvers by.
+    pub fn of_calibration(name: &str) -> Option<Column> {
+        deadline::columns::of_calibration(name)
+    }
+
+    /// A column of what `reenact vary` found.
+    pub fn of_sensitivity(name: &str) -> Option<Column> {
+        let verdicts = Judgement::ALL.map(|verdict| verdict.to_string());
+        Some(match name {
+            "setting" => Column::text(name, "Path of the assumption in the manifest"),
+            "chosen" => Column::text(name, "The value that the manifest chose"),
+            "tried" => Column::text(name, "Another value that its `range` states"),
+            "trials" => Column::count(name, "Trials per condition at either value"),
+            "claim" => Column::text(name, "Id of the claim"),
+            "at-chosen" => {
+                Column::of_values(name, "", "The verdict at the chosen value", &verdicts)
+            }
+            "at-tried" => Column::of_values(name, "", "The verdict at the value tried", &verdicts),
+            _ => return None,
+        })
+    }
+
+    fn trial_or_factor(&self, name: &str) -> Option<Column> {
+        if name == "trial" {
+            return Some(Column::count(name, "Number of the trial in its condition, from 0"));
+        }
+        self.factor(name)
+    }
+
+    fn factor(&self, name: &str) -> Option<Column> {
+        let (_, values) = self.factors.iter().find(|(known, _)| known == name)?;
+        let meaning = "Factor of the design: study.yaml says what each value stands for";
+        Some(Column::of_values(name, unit_of(name), meaning, values))
+    }
+
+    fn outcome(&self) -> Column {
+        let known = self.kind.outcomes();
+        let words: Vec<String> =
+            known.iter().map(|(name, says)| format!("{name}: {says}")).collect();
+        let meaning =
+            format!("Why the trial ended. {}; panicked: the program failed", words.join("; "));
+        let among = known.iter().map(|(name, _)| *name).chain(["panicked"]).map(str::to_owned);
+        Column { among: among.collect(), ..Column::text("outcome", &meaning) }
+    }
+}
