@@ -174,6 +174,8 @@ pub struct Assumption {
     pub value: String,
     /// The reason.
     pub why: String,
+    /// The other values that could as well have been chosen, as text; empty where the manifest states none.
+    pub range: Vec<String>,
     /// The other values of its stated range that were tried, in the order of the range; `None` where no range is
     /// stated.
     pub tried: Option<Vec<Tried>>,

@@ -277,18 +277,21 @@ fn assumptions() -> Vec<Assumption> {
             path: "parameters.mapping.particles".into(),
             value: "1".into(),
             why: "odometry is exact in the paper's simulator, so more than one particle changes nothing".into(),
+            range: Vec::new(),
             tried: None,
         },
         Assumption {
             path: "parameters.exploration.alpha".into(),
             value: "0.4".into(),
             why: "the paper gives no number; the authors' program has this one".into(),
+            range: vec!["0.2".into(), "0.6".into()],
             tried: Some(vec![tried("0.2", &[]), tried("0.6", &[])]),
         },
         Assumption {
             path: "parameters.drive.speed-m-s".into(),
             value: "0.5".into(),
             why: "the robot's datasheet".into(),
+            range: vec!["0.3".into(), "0.7".into()],
             tried: Some(vec![
                 tried("0.3", &[flip("P1", "supported", "inconclusive")]),
                 tried("0.7", &[]),

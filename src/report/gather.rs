@@ -1,8 +1,7 @@
 //! A report's content, gathered from a sealed bundle and the plan made again from it.
 
-use super::content::{
-    Assumption, Citation, Figure, Headline, OutcomeCount, ReportContent, ReportTable,
-};
+use super::assumptions::{assumptions, tried_with};
+use super::content::{Citation, Figure, Headline, OutcomeCount, ReportContent, ReportTable};
 use super::evaluation::{Evaluated, evaluation};
 use super::inline_svg::described;
 use super::origin::provenance;
@@ -10,7 +9,6 @@ use super::{claim, limits, tables};
 use crate::bundle::{Bundle, assemble};
 use crate::plan::{Plan, Selection};
 use crate::studies::{FigureLayout, TrialRecord};
-use serde_json::Value;
 
 /// What the page of `bundle` says, `plan` and `selection` being those made again from it.
 ///
@@ -63,17 +61,8 @@ pub fn content_of(
         figures: figures(bundle, plan),
         claims,
         machine_claims,
-        assumptions: experiment
-            .assumptions
-            .iter()
-            .map(|a| Assumption {
-                path: a.path.clone(),
-                value: text_of(&a.value),
-                why: a.why.clone(),
-                tried: None,
-            })
-            .collect(),
-        tried_with: None,
+        assumptions: assumptions(experiment),
+        tried_with: tried_with(experiment),
         provenance: provenance(bundle, plan),
     })
 }
@@ -137,8 +126,4 @@ fn figures(bundle: &Bundle, plan: &Plan) -> Vec<Figure> {
             })
         })
         .collect()
-}
-
-fn text_of(value: &Value) -> String {
-    value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }

@@ -4,6 +4,7 @@
 //! style and script inside and forbid everything else by their own content security policy.
 
 mod agreement;
+mod assumptions;
 pub mod bag;
 mod claim;
 mod content;

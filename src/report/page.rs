@@ -151,8 +151,9 @@ mod tests {
             "not reached",
             "a footprint never harms",
             "no range stated",
-            "0.2 … 0.6: no verdict changes",
-            "at 0.3: P1 supported → inconclusive",
+            "at <code>0.6</code>: no verdict changes",
+            "at <code>0.3</code>: 1 verdict changes",
+            "P1</a> supported → inconclusive",
             "15 trials per condition, one setting at a time, same noise",
         ] {
             at(text);

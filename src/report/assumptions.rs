@@ -1,0 +1,45 @@
+//! What the paper leaves open: every choice with its reason, the values it was tried at, and the verdicts that hang on it.
+
+use super::content::{Assumption, Flip, Tried};
+use crate::claims::Sensitivity;
+use crate::claims::sensitivity::in_words;
+use crate::manifest::Experiment;
+
+/// The assumptions of `experiment`, each with what became of the claims at the other values of its range.
+pub(super) fn assumptions(experiment: &Experiment) -> Vec<Assumption> {
+    let row = |assumption: &crate::manifest::Assumption| Assumption {
+        path: assumption.path.clone(),
+        value: in_words(&assumption.value),
+        why: assumption.why.clone(),
+        range: assumption.range.iter().map(in_words).collect(),
+        tried: experiment.sensitivity.as_ref().and_then(|found| tried(found, assumption)),
+    };
+    experiment.assumptions.iter().map(row).collect()
+}
+
+/// What `found` tells of `assumption` at the value it has; `None` where that is nothing.
+fn tried(found: &Sensitivity, assumption: &crate::manifest::Assumption) -> Option<Vec<Tried>> {
+    let chosen = in_words(&assumption.value);
+    let attempts = found.attempts();
+    let of_it = attempts.iter().filter(|a| a.setting == assumption.path && a.chosen == chosen);
+    let tried = of_it.map(|attempt| {
+        let flip = |flip: crate::claims::sensitivity::Flip| Flip {
+            claim: flip.claim,
+            from: flip.from.to_string(),
+            to: flip.to.to_string(),
+        };
+        let flips = found.flips(attempt).into_iter().map(flip).collect();
+        Tried { at: attempt.tried.clone(), flips }
+    });
+    Some(tried.collect::<Vec<_>>()).filter(|tried| !tried.is_empty())
+}
+
+/// How the values were tried, in words.
+pub(super) fn tried_with(experiment: &Experiment) -> Option<String> {
+    let attempts = experiment.sensitivity.as_ref()?.attempts();
+    let trials = attempts.iter().map(|attempt| attempt.trials).min()?;
+    let plural = if trials == 1 { "" } else { "s" };
+    Some(format!(
+        "{trials} trial{plural} per condition, at the chosen value too, one setting at a time with the same noise"
+    ))
+}
