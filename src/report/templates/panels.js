@@ -113,7 +113,7 @@ function decisionRows(trial, [at, decision]) {
   const when = `decision at ${trial.time[at].toFixed(1)} s`;
   if (!decision.frontiers.length) return [make("caption", "", `${when}: no frontier is left`)];
   const rows = [make("caption", "", `${when}: distance D, gain I, utility u`),
-    row(["", "D (m)", "I (m²)", "u"], "th")];
+    row(["rank", "D (m)", "I (m²)", "u"], "th")];
   for (const i of decision.ranked) {
     const { rank, distance, gain, utility } = decision.frontiers[i], chosen = i === decision.chosen;
     if (rank > MOST && !chosen) continue;
