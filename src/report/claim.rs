@@ -254,7 +254,8 @@ fn cell(cell: &Value) -> String {
     let mut parts = Vec::new();
     match (count("successes"), number("mean")) {
         (Some(successes), Some(share)) => {
-            parts.push(format!("{}\u{a0}%, {successes} of {trials} runs", fixed(100.0 * share, 0)))
+            let share = fixed(100.0 * share, 0);
+            parts.push(format!("{share}\u{a0}%, {successes} of {trials} runs"));
         }
         (_, mean) => {
             if let Some(mean) = mean {
