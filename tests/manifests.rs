@@ -187,6 +187,18 @@ fn quickstart() -> Experiment {
     resolve_file("manifests", "quickstart.yaml").map_err(|f| told(&f)).unwrap().0
 }
 
+/// Without a statement the resolved study keeps its bytes, and with it every digest of it.
+#[test]
+fn what_a_manifest_states_of_its_limits_is_sealed_and_nothing_where_it_states_none() {
+    let resolved = |name| {
+        let experiment = resolve_file("manifests", name).map_err(|f| told(&f)).unwrap().0;
+        experiment.resolved_json("1")
+    };
+    assert!(resolved("quickstart.yaml").get("limits").is_none());
+    let limits = &resolved("prior-tables-11-12.yaml")["limits"];
+    assert!(limits[0].as_str().unwrap().starts_with("No reproduction:"), "{limits}");
+}
+
 #[test]
 fn the_quickstart_is_twenty_trials_in_two_conditions() {
     let plan = Plan::of(quickstart());

@@ -200,17 +200,22 @@ fn effect(comparison: &Value) -> String {
     let share = |x: f64| format!("{}\u{a0}%", fixed(100.0 * x, 0));
     let plain = |x: f64| if x.abs() >= 100.0 { signed(x, 0) } else { signed(x, 2) };
     let said = |words: &str, show: &dyn Fn(f64) -> String| {
-        let confidence = number("confidence").map_or(95.0, |c| 100.0 * c);
+        let confidence = 100.0 * number("confidence").unwrap_or(0.95);
+        // Claims at a strict level have intervals that are not of 100 %.
+        let digits = if confidence > 99.5 { 4 } else { 0 };
         format!(
             "{}{words} ({}\u{a0}% interval {} to {})",
             show(value),
-            fixed(confidence, 0),
+            fixed(confidence, digits),
             show(low),
             show(high)
         )
     };
     match name.as_str() {
         "risk-difference" => said(" percentage points", &points),
+        "largest-difference" if text(comparison, "test").contains("newcombe") => {
+            format!("largest difference {}", said(" percentage points", &points))
+        }
         "share" => said("", &share),
         "share-of-pairs" => said(" of pairs", &share),
         "relative-difference" => said(" relative difference", &|x| percent(100.0 * x)),
@@ -249,7 +254,8 @@ fn cell(cell: &Value) -> String {
     let mut parts = Vec::new();
     match (count("successes"), number("mean")) {
         (Some(successes), Some(share)) => {
-            parts.push(format!("{}\u{a0}%, {successes} of {trials} runs", fixed(100.0 * share, 0)))
+            let share = fixed(100.0 * share, 0);
+            parts.push(format!("{share}\u{a0}%, {successes} of {trials} runs"));
         }
         (_, mean) => {
             if let Some(mean) = mean {

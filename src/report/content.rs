@@ -110,6 +110,8 @@ pub struct ReportTable {
     pub source: String,
     /// Quantity and unit of the cells: `distance travelled (m)`.
     pub quantity: String,
+    /// What stands in a cell's second line: `paper`, where it is the paper's number.
+    pub beside: String,
     /// Decimals the cells are shown with.
     pub decimals: u8,
     /// What the rows are: `coverage`.

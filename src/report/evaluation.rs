@@ -60,7 +60,9 @@ pub(super) struct Evaluated<'a> {
     pub(super) trials: u64,
     /// Simulated time of all of them (s).
     pub(super) sim_seconds: f64,
-    /// Whether claims were judged, which level 6 asks for.
+    /// Whether it holds a part of its study only, of which level 6 judges nothing.
+    pub(super) partial: bool,
+    /// Whether claims were judged.
     pub(super) judged: bool,
     /// The circumstances of the run, where they are told.
     pub(super) circumstance: Option<&'a Circumstance>,
@@ -86,18 +88,23 @@ pub(super) fn evaluation(of: Evaluated<'_>) -> Evaluation {
         commands,
     };
     let again = "The trials are executed with the same program and the same seeds; run it on a machine of your own.";
-    let fresh = if of.judged {
-        command(
-            "run the whole study again with fresh seeds, and judge every claim anew",
-            format!("reenact verify --level 6 {file}"),
-            in_words(2.0 * seconds),
-        )
+    let fresh = if of.partial {
+        Vec::new()
     } else {
-        command(
-            "run the whole study again with fresh seeds; this bundle judges no claim, so that means and shares are compared",
-            format!("reenact verify --level 6 {file}"),
-            in_words(2.0 * seconds),
-        )
+        let purpose = if of.judged {
+            "run the whole study again with fresh seeds, and judge every claim anew (level 6)"
+        } else {
+            "run the whole study again with fresh seeds (level 6); no claim is judged, so that means and shares are compared"
+        };
+        let line = format!("reenact verify --level 6 {file}");
+        vec![command(purpose, line, in_words(2.0 * seconds))]
+    };
+    let verdicts = if of.partial {
+        "Level 6 asks whether verdicts hold with fresh seeds; this bundle holds a part of its study, and nothing is judged by a \
+         part."
+    } else {
+        "Level 6 holds: the verdicts are not those of one lucky seed. It uses the same program and worlds, so that it is \
+         necessary for this badge and not sufficient."
     };
     let badges = vec![
         badge(
@@ -175,12 +182,8 @@ pub(super) fn evaluation(of: Evaluated<'_>) -> Evaluation {
             "replicated",
             "Results Replicated",
             "Another team obtained the main results without the authors' artifacts.",
-            &[
-                "Level 6 holds: the verdicts are not those of one lucky seed. It uses the same program and worlds, so that it \
-                 is necessary for this badge and not sufficient.",
-                "The claims hold in an implementation, simulator or building of your own.",
-            ],
-            vec![fresh],
+            &[verdicts, "The claims hold in an implementation, simulator or building of your own."],
+            fresh,
         ),
     ];
     Evaluation { basis, badges }
@@ -248,6 +251,7 @@ mod tests {
             trial: "none/0",
             trials: 118,
             sim_seconds: 36_000.0,
+            partial: false,
             judged: true,
             circumstance,
         })
@@ -285,7 +289,7 @@ mod tests {
         {
             let told = of(told);
             assert!(told.basis.starts_with("The bundle does not tell"));
-            assert_eq!(times(&told)[5], "about 1\u{a0}min", "36000 s at 600");
+            assert_eq!(times(&told)[5], "about 60\u{a0}s", "36000 s at 600");
         }
     }
 

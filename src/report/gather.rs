@@ -53,6 +53,7 @@ pub fn content_of(
             trial: trial.as_deref().unwrap_or_default(),
             trials: headline.trials,
             sim_seconds: headline.sim_seconds,
+            partial: plan.partial,
             judged: !claims.is_empty(),
             circumstance: circumstance.as_ref(),
         }),

@@ -108,3 +108,86 @@ pub(super) fn partial(plan: &Plan, selection: &Selection) -> Option<String> {
 fn counted(n: usize, one: &str, several: &str) -> String {
     format!("{n} {}", if n == 1 { one } else { several })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::content_of;
+    use super::*;
+    use crate::bundle::{Bundle, Limits};
+    use crate::verify::plan_of;
+
+    /// The published quickstart: ten trials without and ten with a floor plan, nothing claimed.
+    fn quickstart() -> (Bundle, Plan, Selection) {
+        let zip = include_bytes!("../../artifacts/quickstart-published.zip");
+        let bundle = Bundle::read(zip, &Limits::default()).unwrap();
+        let (plan, selection) = plan_of(&bundle).unwrap();
+        (bundle, plan, selection)
+    }
+
+    #[test]
+    fn a_manifest_speaks_first_and_then_the_bundle() {
+        let (bundle, mut plan, selection) = quickstart();
+        plan.experiment.limits = vec!["the house is invented".to_owned()];
+        plan.experiment.overrides = vec!["seed=7".to_owned()];
+        plan.experiment.shared_noise = vec!["prior".to_owned()];
+        let mut records = bundle.records().unwrap();
+        records[0].outcome = Outcome::Panicked;
+        records[1].outcome = Outcome::Stuck;
+        let mut tables = content_of(&bundle, &plan, &selection).unwrap().tables;
+        tables[0].rows[0].cells[0].ours = None;
+        let few = tables[1].rows[0].cells[1].ours.as_mut().unwrap();
+        few.n = Some(3);
+        let claims = [ClaimRow {
+            numbers: "p = 0.02; 6 of 100 runs compared never reached the measure".to_owned(),
+            ..ClaimRow::default()
+        }];
+        let limits = limits(&plan, &records, &tables, &claims);
+        let expected = [
+            "the house is invented",
+            "Simulated in two dimensions by Reenact's own simulator, with robots and worlds as sealed here; the paper's runs \
+             used other software.",
+            "Not the manifest as written: 1 value was set from the command line.",
+            "1 trial failed to run: a fault of the program, not a result.",
+            "1 of 20 trials ended before everything was explored.",
+            "Of the coverage tables, 1 cell was reached by no run; 1 mean leaves out runs that never got there, which \
+             flatters them (their n stands in the cell).",
+            "Trials that differ in prior alone see the same noise: they are paired, not independent.",
+            "1 verdict compares runs of which some never reached the measure: see their details.",
+        ];
+        assert_eq!(limits, expected);
+    }
+
+    #[test]
+    fn a_part_of_a_study_says_which_part() {
+        let (_, mut plan, mut selection) = quickstart();
+        assert_eq!(partial(&plan, &selection), None);
+        plan.partial = true;
+        selection.trials = Some(3);
+        selection.shard = Some((1, 4));
+        selection.only = [("prior".to_owned(), vec!["none".to_owned()])].into();
+        assert_eq!(
+            partial(&plan, &selection).unwrap(),
+            "3 trials per condition instead of 10; only prior none; only shard 1 of 4; no claim is judged."
+        );
+    }
+
+    #[test]
+    fn a_bundle_without_circumstances_is_told_as_that() {
+        let (bundle, plan, selection) = quickstart();
+        let content = content_of(&bundle, &plan, &selection).unwrap();
+        let facts = &content.provenance.facts;
+        let of =
+            |name: &str| facts.iter().find(|(known, _)| known == name).map(|(_, v)| v.as_str());
+        assert!(of("time and machine of the run").unwrap().starts_with("not recorded"));
+        assert_eq!((of("engine version"), of("calibration")), (Some("1"), None));
+        assert!(content.evaluation.basis.starts_with("The bundle does not tell"));
+        let lines = content.evaluation.badges.iter().flat_map(|badge| &badge.commands);
+        assert!(
+            lines
+                .map(|c| c.line.as_str())
+                .any(|line| line.ends_with(".zip none/0 --html trial.html"))
+        );
+        assert!(content.provenance.inputs.iter().all(|input| !input.license.is_empty()));
+        assert!(content.figures[0].alt.contains("coverage (%)"), "{}", content.figures[0].alt);
+    }
+}

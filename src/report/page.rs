@@ -140,26 +140,41 @@ mod tests {
             "id=\"coverage\"",
             "id=\"assumptions\"",
             "id=\"provenance\"",
+            "id=\"evaluation\"",
         ];
         assert!(order.windows(2).all(|pair| at(pair[0]) < at(pair[1])), "{order:?}");
         for text in [
             "9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08",
-            "parameters.mapping.particles",
+            "parameters.<wbr>mapping.<wbr>particles",
             "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855",
             "more than two published sd away",
-            "reenact verify prior-9f86d081.zip --level 3",
+            "reenact verify prior-9f86d081.zip",
             "not reached",
             "a footprint never harms",
             "no range stated",
             "at <code>0.6</code>: no verdict changes",
             "at <code>0.3</code>: 1 verdict changes",
             "P1</a> supported → inconclusive",
+            "class=\"odds\"",
+            "--set seed=7",
+            "download=\"bars.svg\"",
+            "reenact verify --level 6 prior-9f86d081.zip",
+            "doi:10.1000",
             "15 trials per condition, one setting at a time, same noise",
         ] {
             at(text);
         }
         assert_eq!(page.matches("<svg").count(), 3);
         assert_eq!(page, super::page(&content()), "the same content gives the same bytes");
+    }
+
+    #[test]
+    fn the_score_counts_verdicts_tables_and_cells_each_on_its_own() {
+        let score = Score::of(&content());
+        let counts = |shares: &[Share]| shares.iter().map(|s| s.count).collect::<Vec<_>>();
+        assert_eq!(counts(&score.verdicts), [1, 1, 0, 0]);
+        assert_eq!((counts(&score.paper_tables), score.differs), (vec![2, 0, 0], 1));
+        assert_eq!((counts(&score.cells), score.compared), (vec![11, 1, 3], 15), "one is missing");
     }
 
     #[test]
@@ -172,6 +187,7 @@ mod tests {
             "id=\"figures\"",
             "id=\"assumptions\"",
             "id=\"limits\"",
+            "id=\"evaluation\"",
         ] {
             assert!(!page.contains(part), "{part}");
         }
@@ -182,6 +198,7 @@ mod tests {
     fn hostile_content_stays_text() {
         let mut content = content();
         content.title = "</title><script>alert(1)</script>".into();
+        content.assumptions[0].path = "a.<img src=x>".into();
         content.claims[0].says = "<img src=x onerror=alert(1)>".into();
         content.figures[0].svg = "<svg><script>alert(2)</script></svg>".into();
         content.figures[1].svg = "not a drawing".into();

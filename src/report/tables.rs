@@ -66,8 +66,15 @@ fn coverage_table(
             Metric::DistanceM => "distance travelled (m)".to_owned(),
             Metric::TimeS => "simulated time (s)".to_owned(),
         },
+        beside: "paper".to_owned(),
         decimals: 2,
-        row_header: "coverage".to_owned(),
+        row_header: wanted
+            .rows
+            .iter()
+            .map(String::as_str)
+            .chain(["coverage"])
+            .collect::<Vec<_>>()
+            .join(", "),
         rows: rows.collect(),
         columns,
     }
@@ -132,6 +139,7 @@ fn agreement_table(
         title: request.title.clone(),
         source: String::new(),
         quantity: "of log ratios to the baseline, ours on the paper's".to_owned(),
+        beside: "paper".to_owned(),
         decimals: 2,
         row_header: "table, part".to_owned(),
         rows: rows.collect(),
@@ -180,9 +188,10 @@ fn effects_table(
         title: request.title.clone(),
         source: source(plan, wanted.published.as_ref()),
         quantity: format!(
-            "effect on {} (%); in the paper's place, what lies between the first level and the paper (%)",
+            "effect on {} (%); gap: what lies between the first level and the paper (%)",
             wanted.metric.name()
         ),
+        beside: "gap".to_owned(),
         decimals: 0,
         row_header: "level, in".to_owned(),
         rows: rows.collect(),
@@ -219,6 +228,7 @@ fn measures_table(
         title: request.title.clone(),
         source: source(plan, wanted.published.as_ref()),
         quantity: "measures of whole trials".to_owned(),
+        beside: "paper".to_owned(),
         decimals: 1,
         row_header: wanted.rows.join(", "),
         rows: rows.collect(),
@@ -248,6 +258,7 @@ fn outcome_table(
         title: format!("{} (n = {} trials a cell)", request.title, trials_a_cell(plan)),
         source: source(plan, wanted.published.as_ref()),
         quantity: wanted.show.describe(),
+        beside: "paper".to_owned(),
         decimals: 1,
         row_header: wanted.rows.join(", "),
         rows: rows.collect(),
@@ -281,6 +292,7 @@ fn maneuver_table(
         title: request.title.clone(),
         source: "the calibration experiment".to_owned(),
         quantity: "in the study's own trials".to_owned(),
+        beside: "calibration".to_owned(),
         decimals: 2,
         row_header: "maneuver".to_owned(),
         rows: rows.collect(),

@@ -121,7 +121,7 @@ function decisionRows(trial, [at, decision]) {
   if (!decision.frontiers.length) return [make("caption", "", `${when}: no frontier is left`)];
   const because = trial.rule ? ` · why: ${trial.rule}` : "";
   const rows = [make("caption", "", `${when}: distance D, gain I, utility u${because}`),
-    row(["", "D (m)", "d", "I (m²)", "i", "u"], "th")];
+    row(["rank", "D (m)", "d", "I (m²)", "i", "u"], "th")];
   const most = (of) => Math.max(...decision.frontiers.map(of));
   const [far, rich] = [most((f) => f.distance), most((f) => f.gain)];
   const share = (part, whole, none) => (whole > 0 ? part / whole : none).toFixed(2);
