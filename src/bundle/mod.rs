@@ -17,6 +17,7 @@ mod crate_entities;
 mod crate_metadata;
 mod crate_people;
 mod fault;
+pub mod figures;
 pub mod format;
 mod moment;
 pub mod names;

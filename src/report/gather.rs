@@ -5,10 +5,10 @@ use super::content::{
     ReportContent,
 };
 use super::tables;
-use crate::bundle::{Bundle, assemble, format};
+use crate::bundle::{Bundle, assemble, figures as drawings, format};
 use crate::claims::verdict::agreement_in_words;
 use crate::plan::Plan;
-use crate::studies::{FigureLayout, Outcome, StudyKind, TrialRecord};
+use crate::studies::{Findings, Outcome, StudyKind, TrialRecord};
 use serde_json::Value;
 
 /// What the page of `bundle` says, `plan` being the plan made again from it.
@@ -44,7 +44,7 @@ pub fn content_of(bundle: &Bundle, plan: &Plan) -> Result<ReportContent, String>
             .iter()
             .map(|request| tables::table(&findings, request, plan))
             .collect(),
-        figures: figures(bundle, plan),
+        figures: figures(bundle, plan, &findings),
         claims: claims("results/claims.json", bundle.result("claims.json"))?,
         machine_claims: claims("circumstances/claims.json", machine_verdicts)?,
         assumptions: experiment
@@ -125,36 +125,18 @@ fn headline(bundle: &Bundle, plan: &Plan, records: &[TrialRecord]) -> Headline {
     }
 }
 
-fn figures(bundle: &Bundle, plan: &Plan) -> Vec<Figure> {
+fn figures(bundle: &Bundle, plan: &Plan, findings: &Findings<'_>) -> Vec<Figure> {
     plan.experiment
         .figures
         .iter()
         .filter_map(|request| {
             let bytes = bundle.result(&format!("figures/{}.svg", request.id))?;
-            let (caption, kind) = match &request.layout {
-                FigureLayout::CoverageCurve(_) => (
-                    "Median of the trials with a band from the 10th to the 90th percentile; hollow markers are the \
-                     paper's means with one standard deviation.",
-                    "Line chart",
-                ),
-                FigureLayout::WorldPlan(_) => (
-                    "The world at the height of the laser scanner, with the robot's start.",
-                    "Floor plan",
-                ),
-                FigureLayout::PriorOverWorld(_) => (
-                    "The world at the height of the laser scanner; orange, the obstacles of the prior map.",
-                    "Floor plan with a prior map over it",
-                ),
-                FigureLayout::OutcomeBars(_) => (
-                    "Bars are ours with 95 % intervals; hollow markers are the paper's numbers.",
-                    "Bar chart",
-                ),
-            };
+            let drawn = drawings::draw(plan, findings, request);
             Some(Figure {
                 id: request.id.clone(),
                 title: request.title.clone(),
-                caption: caption.to_owned(),
-                alt: format!("{kind}: {}", request.title),
+                caption: drawn.caption.to_owned(),
+                alt: drawn.alt,
                 svg: String::from_utf8_lossy(bytes).into_owned(),
             })
         })
