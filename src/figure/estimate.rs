@@ -88,10 +88,11 @@ impl EstimateChart {
         self.rows().any(|row| row.published.is_some())
     }
 
-    /// The number of trials behind every row, where it is the same.
+    /// The number of trials behind every row that has any, where it is the same.
     fn all_behind(&self) -> Option<u64> {
-        let first = self.rows().next()?.n?;
-        self.rows().all(|row| row.n == Some(first)).then_some(first)
+        let mut numbers = self.rows().filter(|row| row.value.is_some()).map(|row| row.n);
+        let first = numbers.next()??;
+        numbers.all(|n| n == Some(first)).then_some(first)
     }
 
     /// What the chart says, for those who cannot see it: its extremes, and how the paper's numbers stand to ours.
@@ -229,7 +230,8 @@ fn draw(area: &Area<'_>, y: f64, row: &Estimate, dots: bool) -> Vec<Element> {
             if let Some((low, high)) = row.middle_half.map(at) {
                 elements.push(spread(low, high, above));
             }
-            if let Some((low, high)) = row.interval.map(at) {
+            // What is hidden by the dot anyway would only fray it.
+            if let Some((low, high)) = row.interval.map(at).filter(|(l, h)| h - l > 10.0) {
                 elements.push(whisker(low, high, above));
             }
             elements.push(dot(area.x(value), above));

@@ -9,7 +9,7 @@ use crate::math;
 /// Width of the building (px).
 const WIDTH: f64 = 760.0;
 /// Room around what a panel shows (m).
-const AROUND: f64 = 6.0;
+const AROUND: f64 = 4.0;
 /// Size of the names of places (px), and half the height of the places.
 const NAME: f64 = 10.0;
 const HALF: f64 = 8.0;
@@ -113,8 +113,10 @@ impl PolicyChart {
                 Some(first) if i > 0 => around(&self.vertices, first, panel, whole),
                 _ => whole.grown(0.3),
             };
-            let beside = MARGIN + bounds.width() * scale + 14.0;
-            let has_room = i > 0 && beside < 0.5 * WIDTH;
+            // A part is twice as large, where words still fit beside it.
+            let large = MARGIN + 2.0 * bounds.width() * scale + 14.0;
+            let has_room = i > 0 && large < 0.55 * WIDTH;
+            let (scale, beside) = if has_room { (2.0 * scale, large) } else { (scale, 0.0) };
             let mut y = top + 13.0;
             let x = if has_room { beside } else { MARGIN };
             for (line, text) in [&panel.name, &panel.how, &panel.told].into_iter().enumerate() {

@@ -210,8 +210,7 @@ fn named_level(factor: &str, value: &str) -> String {
 
 fn unit_of(show: &Quantity) -> &'static str {
     match show {
-        Quantity::Share(_) => "points",
-        Quantity::Percent(_) => "points",
+        Quantity::Share(_) | Quantity::Percent(_) => "points",
         Quantity::Mean(measure) if measure.ends_with("-s") => "s",
         Quantity::Mean(measure) if measure.ends_with("-m") => "m",
         Quantity::Mean(_) => "",
@@ -260,7 +259,7 @@ fn notes(pairs: &[Pair], unit: &str, logarithmic: bool) -> Vec<String> {
         let percent = |log: f64| 100.0 * (math::exp(log) - 1.0);
         [format!("RMSE {:.0} %", percent(rmse)), format!("mean {:+.0} %", percent(mean))]
     } else {
-        let digits = if rmse < 10.0 { 1 } else { 0 };
+        let digits = usize::from(rmse < 10.0);
         [format!("RMSE {rmse:.digits$} {unit}"), format!("mean {mean:+.digits$} {unit}")]
     };
     let mut notes = vec![format!("{} cells, {r}", pairs.len()), rmse.trim().to_owned()];

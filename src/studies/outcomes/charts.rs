@@ -192,3 +192,183 @@ impl Findings<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::PublishedShare;
+    use super::*;
+    use crate::studies::{PublishedScatter, Scale, TableLayout, TableRequest, TrialRecord};
+    use crate::table::Table;
+    use std::collections::BTreeMap;
+
+    /// Ten trials each of two strategies within two deadlines; `slow` is late in the three last, without a time.
+    fn records() -> Vec<TrialRecord> {
+        let line = format!(
+            "{{\"key\":\"{}\",\"condition\":[],\"trial\":0,\"outcome\":\"reached\",\"measures\":{{}},\"series\":[],\
+             \"sim-seconds\":1,\"chain\":[]}}",
+            "0".repeat(64)
+        );
+        let blank = TrialRecord::from_line(&line).unwrap();
+        let mut records = Vec::new();
+        for (deadline, strategy) in
+            [("90", "quick"), ("90", "slow"), ("30", "quick"), ("30", "slow")]
+        {
+            for trial in 0..10_u32 {
+                let late = strategy == "slow" && trial > 6;
+                let mut record = blank.clone();
+                record.condition =
+                    [("start", "A"), ("deadline-s", deadline), ("strategy", strategy)]
+                        .map(|(f, v)| (f.to_owned(), v.to_owned()))
+                        .to_vec();
+                record.trial = trial;
+                record.outcome = if late { Outcome::Late } else { Outcome::Reached };
+                let time = (!late).then_some(20.0 + f64::from(trial));
+                record.measures.insert("time-s".to_owned(), time);
+                records.push(record);
+            }
+        }
+        records
+    }
+
+    fn with_findings<T>(ask: impl FnOnce(&Findings<'_>) -> T) -> T {
+        let factors = [
+            ("start", &["A"][..]),
+            ("deadline-s", &["90", "30"]),
+            ("strategy", &["quick", "slow"]),
+        ]
+        .map(|(name, values)| (name.to_owned(), values.iter().map(|v| (*v).to_owned()).collect()));
+        let csv = |text: &str| Table::from_csv(text).unwrap();
+        let published = BTreeMap::from([
+            (
+                "reached".to_owned(),
+                csv(
+                    "deadline-s,strategy,value,n\n90,quick,80,50\n90,slow,30,50\n30,quick,100,50\n",
+                ),
+            ),
+            ("late".to_owned(), csv("deadline-s,strategy,value\n90,quick,20\n90,slow,70\n")),
+        ]);
+        let records = records();
+        ask(&Findings {
+            factors: &factors,
+            records: &records,
+            published: &published,
+            calibration: None,
+        })
+    }
+
+    fn table(show: Quantity, published: Option<&str>) -> OutcomeTable {
+        OutcomeTable {
+            show,
+            by: "strategy".to_owned(),
+            rows: vec!["start".to_owned(), "deadline-s".to_owned()],
+            only: BTreeMap::new(),
+            published: published.map(str::to_owned),
+        }
+    }
+
+    #[test]
+    fn factors_are_told_with_their_units() {
+        let told = [
+            ("deadline-s", "68"),
+            ("node-noise-m", "0.5"),
+            ("prior", "none"),
+            ("ray-stop", "even"),
+        ]
+        .map(|(factor, value)| named(factor, value));
+        assert_eq!(told, ["deadline 68 s", "node noise 0.5 m", "prior none", "ray stop even"]);
+    }
+
+    #[test]
+    fn panels_are_deadlines_in_a_line_for_each_start_with_the_papers_interval() {
+        let chart = with_findings(|f| {
+            f.outcome_figure(
+                "Success",
+                &table(Quantity::Share(vec![Outcome::Reached]), Some("reached")),
+            )
+        });
+        let line = &chart.lines[0];
+        assert_eq!((chart.lines.len(), line.name.as_str()), (1, "start A"));
+        let names: Vec<&str> = line.panels.iter().map(|panel| panel.name.as_str()).collect();
+        assert_eq!(names, ["deadline 90 s", "deadline 30 s"]);
+        let slow = line.panels[0].rows[1];
+        assert_eq!((slow.value, slow.published, chart.end), (Some(70.0), Some(30.0), Some(100.0)));
+        let (low, high) = slow.published_interval.unwrap();
+        assert!(
+            (low - 19.1).abs() < 0.1 && (high - 43.75).abs() < 0.1,
+            "Wilson's of 15 of 50: {low} {high}"
+        );
+        assert_eq!(line.panels[1].rows[1].published, None, "not printed");
+    }
+
+    #[test]
+    fn times_stand_against_their_deadline_with_the_trials_behind_them() {
+        let chart = with_findings(|f| {
+            f.outcome_figure("Time", &table(Quantity::Mean("time-s".to_owned()), None))
+        });
+        let panel = &chart.lines[0].panels[1];
+        assert_eq!((panel.mark, chart.mark.as_str()), (Some(30.0), "deadline"));
+        let slow = panel.rows[1];
+        assert_eq!(
+            (slow.value, slow.n, slow.middle_half),
+            (Some(23.0), Some(7), Some((21.5, 24.5)))
+        );
+    }
+
+    #[test]
+    fn shares_add_up_and_what_the_paper_counts_together_is_one_part() {
+        let chart = with_findings(|f| {
+            let share = |of: &[Outcome], table: &str| PublishedShare {
+                of: of.to_vec(),
+                table: table.to_owned(),
+            };
+            f.shares_figure(
+                "Ends",
+                &OutcomeShares {
+                    by: "strategy".to_owned(),
+                    rows: vec!["deadline-s".to_owned()],
+                    only: BTreeMap::new(),
+                    published: vec![
+                        share(&[Outcome::Reached], "reached"),
+                        share(&[Outcome::Late, Outcome::Stalled], "late"),
+                    ],
+                },
+            )
+        });
+        let parts: Vec<&str> = chart.parts.iter().map(|part| part.name.as_str()).collect();
+        assert_eq!(parts, ["reached", "late (paper: late or stalled)"]);
+        let row = &chart.lines[0].panels[0].rows[1];
+        assert_eq!(
+            (row.ours.as_slice(), row.published.as_slice()),
+            (&[70.0, 30.0][..], &[30.0, 70.0][..])
+        );
+        assert!(chart.lines[0].panels[1].rows[1].published.is_empty(), "not printed");
+    }
+
+    #[test]
+    fn a_scatter_has_a_point_for_each_printed_number_and_tells_how_near_it_is() {
+        let show = Quantity::Share(vec![Outcome::Reached]);
+        let tables = [TableRequest {
+            id: "success".to_owned(),
+            title: String::new(),
+            layout: TableLayout::OutcomeTable(table(show, Some("reached"))),
+        }];
+        let wanted = |table: &str| PublishedScatter {
+            table: table.to_owned(),
+            by: Some("deadline-s".to_owned()),
+            scale: Scale::Linear,
+            ratios: false,
+        };
+        let chart = with_findings(|f| f.scatter_figure("Both", &wanted("success"), &tables));
+        let points: Vec<_> = chart.points.iter().map(|p| (p.group, p.published, p.ours)).collect();
+        assert_eq!(points, [(0, 80.0, 100.0), (0, 30.0, 70.0), (1, 100.0, 100.0)]);
+        assert_eq!(chart.groups, ["deadline 90 s", "deadline 30 s"]);
+        // Differences of 20, 40 and 0.
+        assert_eq!(
+            chart.notes,
+            ["3 cells, r = 0.96", "RMSE 26 points", "mean +20 points to paper"]
+        );
+        assert!(
+            with_findings(|f| f.scatter_figure("Both", &wanted("none"), &tables)).points.is_empty()
+        );
+    }
+}
