@@ -2,14 +2,11 @@
 //! `verify` derives with.
 
 use super::content::{Author, BundleContent, Citation, SealedCondition, SealedInput};
-use super::{format, wall_time};
+use super::{figures, format, wall_time};
 use crate::claims::{self, Claim, Verdict};
-use crate::figure::svg;
 use crate::plan::{ENGINE_VERSION, Plan, Selection};
-use crate::studies::prior_map::{self, PlanFigure};
 use crate::studies::{
-    Condition, Dictionary, FigureLayout, Findings, Outcome, Setup, StudyKind, TableLayout,
-    TrialRecord, coverage_tables,
+    Dictionary, Findings, Outcome, StudyKind, TableLayout, TrialRecord, coverage_tables,
 };
 use crate::table::{DescribedTable, Table};
 use serde_json::{Value, json};
@@ -228,20 +225,7 @@ fn results(plan: &Plan, records: &[TrialRecord]) -> Result<Results, String> {
         files.push((path("md"), print.into_bytes()));
     }
     for request in &experiment.figures {
-        let svg = match &request.layout {
-            FigureLayout::CoverageCurve(curve) => {
-                let tables: Vec<_> = coverage_tables(&experiment.tables)
-                    .into_iter()
-                    .map(|(_, table)| table)
-                    .collect();
-                findings.coverage_figure(&request.title, curve, &tables).to_svg()
-            }
-            FigureLayout::WorldPlan(wanted) => plan_figure(plan, &request.title, wanted, false),
-            FigureLayout::PriorOverWorld(wanted) => plan_figure(plan, &request.title, wanted, true),
-            FigureLayout::OutcomeBars(bars) => {
-                findings.outcome_figure(&request.title, bars).to_svg()
-            }
-        };
+        let svg = figures::draw(plan, &findings, request).svg;
         files.push((format!("figures/{}.svg", request.id), svg.into_bytes()));
     }
     files.push(("claims.json".to_owned(), verdicts_json(&verdicts(plan, records)?)));
@@ -285,21 +269,6 @@ fn described_inputs(plan: &Plan) -> Vec<DescribedTable> {
         });
     }
     described
-}
-
-/// The floor plan of the first condition that a figure speaks of; words where the design leaves that combination out.
-fn plan_figure(plan: &Plan, title: &str, wanted: &PlanFigure, with_prior: bool) -> String {
-    let admits = |condition: &Condition| {
-        wanted.only.iter().all(|(factor, value)| condition.value(factor) == Some(&value.0))
-    };
-    let found = plan.experiment.conditions.iter().find(|(condition, _)| admits(condition));
-    let Some((condition, Setup::PriorMap(setup))) = found else {
-        let words = "no condition of the design has these values";
-        let text = svg::Element::new("text").at("x", 10.0).at("y", 24.0).text(words);
-        return svg::document(320.0, 36.0, title, [text]);
-    };
-    let prior = condition.value("prior").unwrap_or("prior map");
-    prior_map::plan_figure(title, setup, &wanted.crossed, with_prior.then_some(prior))
 }
 
 /// A list of verdicts as bundles hold it.

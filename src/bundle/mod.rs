@@ -19,6 +19,7 @@ mod crate_metadata;
 mod crate_people;
 mod data_package;
 mod fault;
+pub mod figures;
 pub mod format;
 mod moment;
 pub mod names;

@@ -1,4 +1,6 @@
-//! Linear axes with ticks at round numbers, chosen and written with integers.
+//! Axes with ticks at round numbers, chosen and written with integers.
+
+use crate::math;
 
 /// One labelled position of an axis.
 #[derive(Debug, Clone, PartialEq)]
@@ -9,7 +11,7 @@ pub struct Tick {
     pub label: String,
 }
 
-/// A linear axis: a title with its unit, a range that begins and ends on a tick, and the ticks.
+/// An axis: a title with its unit, a range, and the ticks. A linear one begins and ends on a tick.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
     /// What is measured, with its unit: `distance travelled (m)`.
@@ -18,8 +20,10 @@ pub struct Axis {
     pub low: f64,
     /// High end of the range, above `low`.
     pub high: f64,
-    /// Ticks in ascending order, the ends included.
+    /// Ticks in ascending order.
     pub ticks: Vec<Tick>,
+    /// Whether equal steps are equal ratios; both ends are above 0 then.
+    pub logarithmic: bool,
 }
 
 impl Axis {
@@ -44,19 +48,53 @@ impl Axis {
             if first < last && last - first < i64::from(most.max(3)) {
                 let ticks: Vec<_> = (first..=last).map(|k| step.tick(k)).collect();
                 let (low, high) = (ticks[0].value, ticks[ticks.len() - 1].value);
-                return Self { title: title.to_owned(), low, high, ticks };
+                return Self { title: title.to_owned(), low, high, ticks, logarithmic: false };
             }
         }
         // Beyond every step: the two ends alone.
         let ticks = [low, high].map(|value| Tick { value, label: format!("{value:e}") }).to_vec();
-        Self { title: title.to_owned(), low, high, ticks }
+        Self { title: title.to_owned(), low, high, ticks, logarithmic: false }
+    }
+
+    /// The logarithmic axis of `title` around all positive `values`, some room beyond them at both ends, with the coarsest
+    /// usual set of ticks of which at least four lie within. Without a positive value it runs from 0.5 to 2.
+    pub fn logarithmic(title: &str, values: impl IntoIterator<Item = f64>) -> Self {
+        let (mut low, mut high) = values
+            .into_iter()
+            .filter(|v| v.is_finite() && *v > 0.0)
+            .fold((f64::INFINITY, 0.0_f64), |(l, h), v| (l.min(v), h.max(v)));
+        if low > high {
+            (low, high) = (0.5, 2.0);
+        }
+        let room = math::pow(high / low, 0.05).max(1.05);
+        (low, high) = (low / room, high * room);
+        let mut ticks = Vec::new();
+        for mantissas in [&[10][..], &[10, 20, 50], &[10, 15, 20, 30, 40, 50, 70], &FINE] {
+            ticks = (-13..=15)
+                .flat_map(|e| mantissas.iter().map(move |m| Step { mantissa: *m, exponent: e - 1 }))
+                .map(|step| Tick { value: step.times(1), label: step.in_short() })
+                .filter(|tick| (low..=high).contains(&tick.value))
+                .collect();
+            if ticks.len() >= 4 {
+                break;
+            }
+        }
+        Self { title: title.to_owned(), low, high, ticks, logarithmic: true }
     }
 
     /// Where `value` lies between the coordinates `from` (low end) and `to` (high end), in their unit.
     pub fn position(&self, value: f64, from: f64, to: f64) -> f64 {
-        from + (value - self.low) / (self.high - self.low) * (to - from)
+        let share = if self.logarithmic {
+            math::ln(value / self.low) / math::ln(self.high / self.low)
+        } else {
+            (value - self.low) / (self.high - self.low)
+        };
+        from + share * (to - from)
     }
 }
+
+/// Many round numbers, for axes that span a fraction of one.
+const FINE: [i64; 15] = [10, 12, 14, 16, 18, 20, 25, 30, 35, 40, 50, 60, 70, 80, 90];
 
 /// `mantissa` times ten to the `exponent`: the step between ticks, exact in decimals.
 #[derive(Clone, Copy)]
@@ -87,6 +125,11 @@ impl Step {
         Some((whole(low, f64::floor)?, whole(high, f64::ceil)?))
     }
 
+    /// The step itself without zeros that say nothing: `0.15`, `2`, `300`.
+    fn in_short(self) -> String {
+        format!("{}", self.times(1))
+    }
+
     fn tick(self, count: i64) -> Tick {
         let value = self.times(count);
         let decimals = usize::try_from(-self.exponent).unwrap_or(0);
@@ -112,6 +155,23 @@ mod tests {
         assert_eq!(labels(&[], 3), "0.0 0.5 1.0");
         assert_eq!(labels(&[8.0, f64::NAN], 6), "4 6 8 10 12");
         assert_eq!(labels(&[0.0, 1e300], 6), "0e0 1e300");
+    }
+
+    #[test]
+    fn logarithmic_ticks_are_round_and_equal_ratios_equally_far() {
+        let labels = |values: &[f64]| {
+            let axis = Axis::logarithmic("x", values.iter().copied());
+            axis.ticks.iter().map(|t| t.label.clone()).collect::<Vec<_>>().join(" ")
+        };
+        assert_eq!(labels(&[7.1, 1900.0]), "10 20 50 100 200 500 1000 2000");
+        assert_eq!(labels(&[0.43, 1.2]), "0.5 0.6 0.7 0.8 0.9 1 1.2");
+        assert_eq!(labels(&[-1.0, f64::NAN]), "0.5 0.7 1 1.5 2");
+        let axis = Axis::logarithmic("x", [1.0, 100.0]);
+        let at = |x: f64| axis.position(x, 0.0, 1.0);
+        assert!(
+            (at(10.0) - 0.5).abs() < 1e-12
+                && (at(50.0) - at(5.0) - at(10.0) + at(1.0)).abs() < 1e-12
+        );
     }
 
     proptest! {

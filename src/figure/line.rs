@@ -118,6 +118,21 @@ impl LineChart {
         self.label_width() <= WIDTH * 0.3 && real(self.series.len()) * LABEL_GAP <= PLOT_HEIGHT
     }
 
+    /// What the chart says, for those who cannot see it: where each curve ends, and where it first had nine tenths of that.
+    pub fn in_words(&self) -> String {
+        let told = self.series.iter().filter_map(|series| {
+            let finite = || series.points.iter().filter(|p| p.0.is_finite() && p.1.is_finite());
+            let (_, end) = finite().next_back()?;
+            let (x, _) = finite().find(|p| p.1 >= 0.9 * end)?;
+            Some(format!("{} ends at {end:.0} and has nine tenths of it at {x:.0}", series.name))
+        });
+        let told: Vec<String> = told.collect();
+        if told.is_empty() {
+            return String::new();
+        }
+        format!("{} against {}: {}.", self.y_title, self.x_title, told.join("; "))
+    }
+
     fn end_labels(&self, plot: &Plot) -> Vec<Element> {
         let ends: Vec<_> = self
             .series

@@ -1,4 +1,4 @@
-//! How the n-th series looks: colour, dashes, marker and hatching together, so that any one of them suffices.
+//! How the n-th series looks: colour, dashes and marker together, so that any one of them suffices.
 //!
 //! Colours are those of M. Okabe and K. Ito, "Color Universal Design" (2008), ordered by contrast on white;
 //! their yellow and sky blue are left out because they fade in print.
@@ -9,6 +9,24 @@ use super::svg::{Element, path_data};
 pub const INK: &str = "#1a1a1a";
 /// The colour of the ground.
 pub const PAPER: &str = "#ffffff";
+/// What we found, where the paper's stands beside it and no series must be told apart: filled.
+pub(super) const OURS: &str = "#5b9bc8";
+/// The same, lighter: for what lies behind it.
+pub(super) const OURS_TINT: &str = "#c3dcee";
+/// What the paper printed: hollow, on paper.
+pub(super) const PUBLISHED: &str = "#b34700";
+
+/// The mark of a printed number at (`x`, `y`), of radius `r`, px.
+pub(super) fn published_point(x: f64, y: f64, r: f64) -> Element {
+    let corners = [(0.0, -1.2), (1.2, 0.0), (0.0, 1.2), (-1.2, 0.0)];
+    let corners = corners.map(|(dx, dy)| (x + dx * r, y + dy * r));
+    Element::new("path")
+        .set("d", path_data(corners, true))
+        .set("fill", PAPER)
+        .set("stroke", PUBLISHED)
+        .at("stroke-width", 1.6)
+        .set("class", "paper-fill")
+}
 
 /// The look of one series.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -19,8 +37,6 @@ pub struct Style {
     pub dash: &'static str,
     /// Shape of its points.
     pub marker: Marker,
-    /// Which hatching its bars have.
-    hatch: usize,
 }
 
 /// The shape of a point.
@@ -50,7 +66,6 @@ impl Style {
             colour: COLOURS[index % COLOURS.len()],
             dash: DASHES[index % DASHES.len()],
             marker: MARKERS[index % MARKERS.len()],
-            hatch: index,
         }
     }
 
@@ -88,57 +103,39 @@ impl Style {
             .at("stroke-width", if hollow { 1.6 } else { 0.8 })
             .set("class", class)
     }
+}
 
-    /// A bar from (`x`, `y`), `width` by `height` px: a tint under a hatching and an outline.
-    ///
-    /// The hatching is drawn line by line: patterns would need identifiers, which clash in a page.
-    pub fn bar(self, x: f64, y: f64, width: f64, height: f64) -> Element {
-        let rectangle = |element: Element| {
-            element.at("x", x).at("y", y).at("width", width).at("height", height)
-        };
-        let fill = rectangle(Element::new("rect"))
-            .set("fill", self.colour)
-            .set("fill-opacity", if self.hatch.is_multiple_of(2) { "0.55" } else { "0.25" });
-        let fill = if self.colour == INK { fill.set("class", "ink-fill") } else { fill };
-        let outline = self.stroke(rectangle(Element::new("rect")).set("fill", "none"), 1.2);
-        let mut lines = String::new();
-        let mut add = |a: (f64, f64), b: (f64, f64)| lines.push_str(&path_data([a, b], false));
-        let gap = 6.0;
-        // Diagonals x + y = c (rising) or y - x = c (falling), clipped to the bar.
-        let mut diagonals = |rising: bool| {
-            let mut c = gap;
-            while c < width + height {
-                let (from, to) = ((c - height).max(0.0), c.min(width));
-                let at = |dx: f64| {
-                    let dy = c - dx;
-                    (x + dx, if rising { y + dy } else { y + height - dy })
-                };
-                add(at(from), at(to));
-                c += gap;
-            }
-        };
-        match self.hatch % 5 {
-            1 => diagonals(true),
-            3 => diagonals(false),
-            4 => {
-                diagonals(true);
-                diagonals(false);
-            }
-            2 => {
-                let mut dy = gap;
-                while dy < height {
-                    add((x, y + height - dy), (x + width, y + height - dy));
-                    dy += gap;
-                }
-            }
-            _ => {}
+/// Diagonals every `gap` px across the rectangle of `size` at `corner` (px), as the data of a path: rising, falling or both.
+///
+/// They are drawn line by line: patterns would need identifiers, which clash in a page.
+pub(super) fn hatching(
+    corner: (f64, f64),
+    size: (f64, f64),
+    [rising, falling]: [bool; 2],
+    gap: f64,
+) -> String {
+    let ((x, y), (width, height)) = (corner, size);
+    let mut lines = String::new();
+    // Diagonals x + y = c (rising) or x + height - y = c (falling), clipped to the rectangle.
+    let mut diagonals = |rising: bool| {
+        let mut c = gap;
+        while c < width + height {
+            let (from, to) = ((c - height).max(0.0), c.min(width));
+            let at = |dx: f64| {
+                let dy = c - dx;
+                (x + dx, if rising { y + dy } else { y + height - dy })
+            };
+            lines.push_str(&path_data([at(from), at(to)], false));
+            c += gap;
         }
-        let mut group = Element::new("g").child(fill);
-        if !lines.is_empty() {
-            group.push(self.stroke(Element::new("path").set("d", lines).set("fill", "none"), 0.8));
-        }
-        group.child(outline)
+    };
+    if rising {
+        diagonals(true);
     }
+    if falling {
+        diagonals(false);
+    }
+    lines
 }
 
 #[cfg(test)]
@@ -158,16 +155,14 @@ mod tests {
 
     #[test]
     fn hatching_stays_within_its_bar() {
-        for index in 0..5 {
-            let text = Style::of(index).bar(10.0, 20.0, 12.0, 33.0).into_string();
-            let parsed = roxmltree::Document::parse(&text).unwrap();
-            let data = parsed.descendants().filter_map(|n| n.attribute("d"));
-            for pair in data.flat_map(|d| d.split(['M', 'L'])).filter(|p| !p.is_empty()) {
+        for ways in [[true, false], [false, true], [true, true]] {
+            let data = hatching((10.0, 20.0), (12.0, 33.0), ways, 6.0);
+            for pair in data.split(['M', 'L']).filter(|p| !p.is_empty()) {
                 let (x, y) = pair.split_once(' ').unwrap();
                 let (x, y): (f64, f64) = (x.parse().unwrap(), y.parse().unwrap());
                 assert!(
                     (10.0..=22.0).contains(&x) && (20.0..=53.0).contains(&y),
-                    "{index}: {pair}"
+                    "{ways:?}: {pair}"
                 );
             }
         }

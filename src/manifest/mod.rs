@@ -11,6 +11,7 @@ mod deadline;
 mod document;
 mod experiment;
 mod faults;
+mod figures;
 mod inputs;
 mod lint;
 mod models;

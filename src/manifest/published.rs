@@ -4,13 +4,14 @@ use super::claims::measures;
 use super::crossing::{Factor, is_kebab, kebab, known_or_near};
 use super::document::ManifestDoc;
 use super::faults::{Faults, step};
+use super::figures::check_figures;
 use super::resolve::Resolved;
 use crate::document::{Diagnostic, Source, suggestion};
-use crate::studies::deadline::OutcomeTable;
+use crate::studies::outcomes::OutcomeTable;
 use crate::studies::prior_map::{
     AgreementTable, CoverageTable, EffectsTable, MILESTONES, MeasuresTable, coverage_at_distance,
 };
-use crate::studies::{FactorValue, FigureLayout, Setup, StudyKind, TableLayout, coverage_tables};
+use crate::studies::{FactorValue, Setup, StudyKind, TableLayout, coverage_tables};
 use crate::table::{Table, Value};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -141,82 +142,53 @@ pub(super) fn check_requests(
             faults.at(&pointer, format!("the id `{id}` is used twice"), "choose another one");
         }
     }
-    let foreign = |kind: StudyKind, pointer: &str, faults: &mut Faults<'_>| {
-        if doc.study != kind {
-            let message = format!("the study `{}` has no such layout", doc.study.name());
-            let label = format!("of the study `{}`", kind.name());
-            faults.at_key(pointer, message, &label);
-        }
-    };
     for (i, table) in doc.tables.iter().enumerate() {
         match &table.layout {
             TableLayout::CoverageTable(table) => {
                 let pointer = format!("/tables/{i}/coverage-table");
-                foreign(StudyKind::PriorMap, &pointer, faults);
+                foreign(doc, StudyKind::PriorMap, &pointer, faults);
                 check_table(table, &pointer, doc, factors, published, faults);
             }
             TableLayout::AgreementTable(wanted) => {
                 let pointer = format!("/tables/{i}/agreement-table");
-                foreign(StudyKind::PriorMap, &pointer, faults);
+                foreign(doc, StudyKind::PriorMap, &pointer, faults);
                 check_agreement(wanted, &pointer, doc, faults);
             }
             TableLayout::EffectsTable(wanted) => {
                 let pointer = format!("/tables/{i}/effects-table");
-                foreign(StudyKind::PriorMap, &pointer, faults);
+                foreign(doc, StudyKind::PriorMap, &pointer, faults);
                 check_effects(wanted, &pointer, doc, factors, published, faults);
             }
             TableLayout::MeasuresTable(wanted) => {
                 let pointer = format!("/tables/{i}/measures-table");
-                foreign(StudyKind::PriorMap, &pointer, faults);
+                foreign(doc, StudyKind::PriorMap, &pointer, faults);
                 check_measures(wanted, &pointer, doc, factors, published, faults);
             }
             TableLayout::OutcomeTable(table) => {
                 let pointer = format!("/tables/{i}/outcome-table");
-                foreign(StudyKind::Deadline, &pointer, faults);
+                foreign(doc, StudyKind::Deadline, &pointer, faults);
                 check_outcomes(table, &pointer, doc, factors, published, faults);
             }
             TableLayout::ManeuverTable(table) => {
                 let pointer = format!("/tables/{i}/maneuver-table");
-                foreign(StudyKind::Deadline, &pointer, faults);
+                foreign(doc, StudyKind::Deadline, &pointer, faults);
                 check_only(&table.only, &pointer, factors, faults);
             }
         }
     }
-    for (i, figure) in doc.figures.iter().enumerate() {
-        match &figure.layout {
-            FigureLayout::CoverageCurve(curve) => {
-                let pointer = format!("/figures/{i}/coverage-curve");
-                foreign(StudyKind::PriorMap, &pointer, faults);
-                faults.check_factor(factors, &curve.by, &format!("{pointer}/by"), false);
-                check_only(&curve.only, &pointer, factors, faults);
-            }
-            FigureLayout::WorldPlan(plan) => {
-                let pointer = format!("/figures/{i}/world-plan");
-                foreign(StudyKind::PriorMap, &pointer, faults);
-                check_only(&plan.only, &pointer, factors, faults);
-            }
-            FigureLayout::PriorOverWorld(plan) => {
-                let pointer = format!("/figures/{i}/prior-over-world");
-                foreign(StudyKind::PriorMap, &pointer, faults);
-                check_only(&plan.only, &pointer, factors, faults);
-                let chosen = plan.only.get("prior").map(|value| value.0.as_str());
-                if chosen.or(doc.prior.as_deref()).is_none_or(|name| name == "none") {
-                    let message = "the figure has no prior to lay over the world";
-                    let fault = faults.key_fault(&pointer, message.to_owned());
-                    let help = "say which, as in `where: {prior: bounding-box}`";
-                    faults.push(fault.label("expected a prior other than `none`").help(help));
-                }
-            }
-            FigureLayout::OutcomeBars(bars) => {
-                let pointer = format!("/figures/{i}/outcome-bars");
-                foreign(StudyKind::Deadline, &pointer, faults);
-                check_outcomes(bars, &pointer, doc, factors, published, faults);
-            }
-        }
+    check_figures(doc, factors, published, faults);
+}
+
+/// A layout that only the study `kind` has.
+pub(super) fn foreign(doc: &ManifestDoc, kind: StudyKind, pointer: &str, faults: &mut Faults<'_>) {
+    if doc.study != kind {
+        let message = format!("the study `{}` has no such layout", doc.study.name());
+        let label = format!("of the study `{}`", kind.name());
+        faults.at_key(pointer, message, &label);
     }
 }
 
-fn check_only(
+pub(super) fn check_only(
     only: &BTreeMap<String, FactorValue>,
     pointer: &str,
     factors: &[Factor],
@@ -228,7 +200,7 @@ fn check_only(
     }
 }
 
-fn check_outcomes(
+pub(super) fn check_outcomes(
     table: &OutcomeTable,
     pointer: &str,
     doc: &ManifestDoc,
@@ -245,7 +217,7 @@ fn check_outcomes(
         table.published.as_ref(),
         &table.by,
         &table.rows,
-        pointer,
+        &format!("{pointer}/published"),
         doc,
         published,
         faults,
@@ -282,8 +254,8 @@ fn check_measures(
         faults.check_factor(factors, row, &format!("{pointer}/rows/{i}"), false);
     }
     let Some((first, rows)) = wanted.rows.split_first() else { return };
-    check_published(wanted.published.as_ref(), first, rows, pointer, doc, published, faults);
     let place = format!("{pointer}/published");
+    check_published(wanted.published.as_ref(), first, rows, &place, doc, published, faults);
     let numbers = wanted.published.as_ref().and_then(|name| published.get(name));
     if numbers.is_some_and(|numbers| numbers.column(MEASURE).is_none()) {
         let message = format!("the published numbers have no column `{MEASURE}`");
@@ -336,7 +308,7 @@ fn check_table(
         table.published.as_ref(),
         &table.by,
         &table.rows,
-        pointer,
+        &format!("{pointer}/published"),
         doc,
         published,
         faults,
@@ -426,7 +398,7 @@ fn check_agreement(
 }
 
 /// The factors that stand side by side and in rows.
-fn check_columns(
+pub(super) fn check_columns(
     by: &str,
     rows: &[String],
     pointer: &str,
@@ -443,23 +415,22 @@ fn check_columns(
     }
 }
 
-fn check_published(
+pub(super) fn check_published(
     name: Option<&String>,
     by: &str,
     rows: &[String],
-    pointer: &str,
+    place: &str,
     doc: &ManifestDoc,
     published: &BTreeMap<String, Table>,
     faults: &mut Faults<'_>,
 ) {
-    let place = format!("{pointer}/published");
-    let Some(numbers) = check_known(name, &place, doc, published, faults) else { return };
+    let Some(numbers) = check_known(name, place, doc, published, faults) else { return };
     let name = name.map_or("", String::as_str);
     let for_all = doc.published.get(name).map_or(&[][..], |numbers| numbers.for_all());
     for factor in std::iter::once(by).chain(rows.iter().map(String::as_str)) {
         if numbers.column(factor).is_none() && !for_all.iter().any(|name| name == factor) {
             let message = format!("the published numbers `{name}` have no column `{factor}`");
-            let fault = faults.fault(&place, message).label("asked for by this table");
+            let fault = faults.fault(place, message).label("asked for by this table");
             let help = format!(
                 "where the paper did not vary it: `{name}: {{file: FILE, for-all: [{factor}]}}`"
             );

@@ -3,12 +3,11 @@
 use super::assumptions::{assumptions, tried_with};
 use super::content::{Citation, Figure, Headline, OutcomeCount, ReportContent, ReportTable};
 use super::evaluation::{Evaluated, evaluation};
-use super::inline_svg::described;
 use super::origin::provenance;
 use super::{claim, limits, tables};
-use crate::bundle::{Bundle, assemble};
+use crate::bundle::{Bundle, assemble, figures as drawings};
 use crate::plan::{Plan, Selection};
-use crate::studies::{FigureLayout, TrialRecord};
+use crate::studies::{Findings, TrialRecord};
 
 /// What the page of `bundle` says, `plan` and `selection` being those made again from it.
 ///
@@ -59,7 +58,7 @@ pub fn content_of(
         }),
         headline,
         tables,
-        figures: figures(bundle, plan),
+        figures: figures(bundle, plan, &findings),
         claims,
         machine_claims,
         assumptions: assumptions(experiment),
@@ -91,38 +90,20 @@ fn headline(bundle: &Bundle, plan: &Plan, records: &[TrialRecord]) -> Headline {
     }
 }
 
-fn figures(bundle: &Bundle, plan: &Plan) -> Vec<Figure> {
+fn figures(bundle: &Bundle, plan: &Plan, findings: &Findings<'_>) -> Vec<Figure> {
     plan.experiment
         .figures
         .iter()
         .filter_map(|request| {
             let file = format!("figures/{}.svg", request.id);
-            let svg = String::from_utf8_lossy(bundle.result(&file)?).into_owned();
-            let (caption, kind) = match &request.layout {
-                FigureLayout::CoverageCurve(_) => (
-                    "Median of the trials with a band from the 10th to the 90th percentile; hollow markers are the \
-                     paper's means with one standard deviation.",
-                    "Line chart",
-                ),
-                FigureLayout::WorldPlan(_) => (
-                    "The world at the height of the laser scanner, with the robot's start.",
-                    "Floor plan",
-                ),
-                FigureLayout::PriorOverWorld(_) => (
-                    "The world at the height of the laser scanner; orange, the obstacles of the prior map.",
-                    "Floor plan with a prior map over it",
-                ),
-                FigureLayout::OutcomeBars(_) => (
-                    "Bars are ours with 95 % intervals; hollow markers are the paper's numbers.",
-                    "Bar chart",
-                ),
-            };
+            let bytes = bundle.result(&file)?;
+            let drawn = drawings::draw(plan, findings, request);
             Some(Figure {
                 id: request.id.clone(),
                 title: request.title.clone(),
-                caption: caption.to_owned(),
-                alt: format!("{kind}: {}", described(&svg, &request.title)),
-                svg,
+                caption: drawn.caption.to_owned(),
+                alt: drawn.alt,
+                svg: String::from_utf8_lossy(bytes).into_owned(),
                 file: format!("results/{file}"),
             })
         })

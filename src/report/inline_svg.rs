@@ -63,31 +63,6 @@ pub(super) fn inline_svg(text: &str, alt: &str) -> Option<String> {
     Some(out)
 }
 
-/// What a drawing shows, for those who cannot see it: its own description where it has one, else `title` and the words
-/// written in it.
-pub(super) fn described(svg: &str, title: &str) -> String {
-    let Ok(document) = Document::parse(svg) else { return title.to_owned() };
-    let own = document.root_element().children().find(|node| node.has_tag_name("desc"));
-    if let Some(text) = own.and_then(|node| node.text()).map(str::trim).filter(|t| !t.is_empty()) {
-        return text.to_owned();
-    }
-    let mut words: Vec<String> = Vec::new();
-    for node in document.descendants().filter(|node| node.tag_name().name() == "text") {
-        let parts = node.descendants().filter(Node::is_text).filter_map(|part| part.text());
-        let label = parts.collect::<Vec<_>>().join(" ");
-        let label = label.split_whitespace().collect::<Vec<_>>().join(" ");
-        // Ticks of an axis are numbers: a list of them tells nothing.
-        let says = label.chars().filter(|c| c.is_alphabetic()).count() > 1;
-        if says && label != title && !words.contains(&label) {
-            words.push(label);
-        }
-    }
-    match words.as_slice() {
-        [] => title.to_owned(),
-        words => format!("{title}. Written in it: {}.", words.join("; ")),
-    }
-}
-
 fn write(node: Node, alt: Option<&str>, out: &mut String) {
     let name = node.tag_name().name();
     if !ELEMENTS.contains(&name) || alt.is_some() != (name == "svg") {
@@ -139,18 +114,5 @@ mod tests {
         );
         assert_eq!(inline_svg("<svg", "x"), None);
         assert_eq!(inline_svg("<html/>", "x"), None);
-    }
-
-    #[test]
-    fn a_drawing_is_described_by_its_own_words() {
-        let drawing = |inside: &str| {
-            described(&format!("<svg xmlns=\"http://www.w3.org/2000/svg\">{inside}</svg>"), "Time")
-        };
-        let text = "<text>Time</text><text>0</text><text>time <tspan>(s)</tspan></text><text>no prior</text>\
-                    <text>no prior</text>";
-        assert_eq!(drawing(text), "Time. Written in it: time (s); no prior.");
-        assert_eq!(drawing("<desc>Two lines rise.</desc><text>no prior</text>"), "Two lines rise.");
-        assert_eq!(drawing(""), "Time");
-        assert_eq!(described("no drawing", "Time"), "Time");
     }
 }

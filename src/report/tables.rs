@@ -3,8 +3,8 @@
 use super::Agreement;
 use super::content::{Measured, ReportCell, ReportRow, ReportTable};
 use crate::plan::Plan;
-use crate::studies::deadline::results::OutcomeCell;
-use crate::studies::deadline::{ManeuverTable, OutcomeTable, Quantity};
+use crate::studies::deadline::ManeuverTable;
+use crate::studies::outcomes::{OutcomeCell, OutcomeTable, Quantity};
 use crate::studies::prior_map::effects::Effect;
 use crate::studies::prior_map::measures::MeasureCell;
 use crate::studies::prior_map::results::CoverageCell;

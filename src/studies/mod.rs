@@ -7,7 +7,9 @@ pub mod deadline;
 mod dictionary;
 mod factor_value;
 mod findings;
+pub mod outcomes;
 pub mod prior_map;
+mod published_scatter;
 mod record;
 pub mod recording;
 mod requests;
@@ -16,6 +18,7 @@ mod state_chain;
 pub use dictionary::Dictionary;
 pub use factor_value::FactorValue;
 pub use findings::Findings;
+pub use published_scatter::{PublishedScatter, Scale};
 pub use record::{CHAIN_STEP_S, Outcome, SeriesPoint, TrialRecord, first_divergence};
 pub use requests::{FigureLayout, FigureRequest, TableLayout, TableRequest, coverage_tables};
 

@@ -1,6 +1,6 @@
 //! What a manifest may ask to see: tables and figures in its study's layouts.
 
-use super::{deadline, prior_map};
+use super::{PublishedScatter, deadline, outcomes, prior_map};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -31,7 +31,7 @@ pub enum TableLayout {
     /// Prior map: measures of whole trials side by side, as the numbers of section 4.5.
     MeasuresTable(prior_map::MeasuresTable),
     /// Deadline: shares of outcomes, means and ratios by condition, as in Tables 1 and 2.
-    OutcomeTable(deadline::OutcomeTable),
+    OutcomeTable(outcomes::OutcomeTable),
     /// Deadline: the six maneuvers as calibrated and as they went in the study's own trials.
     ManeuverTable(deadline::ManeuverTable),
 }
@@ -75,8 +75,15 @@ pub enum FigureLayout {
     WorldPlan(prior_map::PlanFigure),
     /// Prior map: the obstacles of a prior map over the floor plan, as in Figure 5.
     PriorOverWorld(prior_map::PlanFigure),
-    /// Deadline: one bar per value of a factor in groups of conditions, as in Figures 4 and 5.
-    OutcomeBars(deadline::OutcomeTable),
+    /// One estimate per value of a factor with its interval, in panels of conditions: bars of shares, dots of means, as in the
+    /// deadline study's Figures 4 and 5.
+    OutcomeBars(outcomes::OutcomeTable),
+    /// How the ways in which trials ended add up, one bar per value of a factor, in panels of conditions.
+    OutcomeShares(outcomes::OutcomeShares),
+    /// The paper's numbers against ours, one point per cell of a table.
+    PublishedScatter(PublishedScatter),
+    /// Deadline: policies on the toposemantic graph of the building, from a start to the goal.
+    PolicyGraph(deadline::PolicyGraph),
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! The paper's tables in 80 columns.
 
-use crate::studies::deadline::OutcomeTable;
+use crate::studies::outcomes::OutcomeTable;
 use crate::studies::prior_map::CoverageTable;
 use crate::studies::prior_map::results::CoverageCell;
 use crate::studies::{Findings, TableLayout, TableRequest, coverage_tables};

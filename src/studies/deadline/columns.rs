@@ -2,7 +2,7 @@
 //! claims and tables may speak of.
 
 use super::calibration::{MOTIONS, SPEEDS, maneuver_name};
-use super::requests::{OutcomeTable, Percent, Quantity};
+use crate::studies::outcomes::{OutcomeTable, Percent, Quantity};
 use crate::table::{Column, unit_of};
 
 /// The measures of a whole trial.

@@ -4,9 +4,12 @@ mod body;
 mod exploration;
 mod graph;
 mod passage;
+mod policy_chart;
 mod tally;
 #[cfg(test)]
 mod tests;
+
+pub use policy_chart::policy_chart;
 
 use super::{Setup, Task};
 use crate::geometry::Outline;

@@ -197,3 +197,35 @@ fn the_golden_trial_has_not_changed() {
 }
 
 const GOLDEN: (usize, &str) = (1252, "5026d7ee");
+
+#[test]
+fn the_policy_chart_knows_the_whole_building_and_tells_equal_policies_once() {
+    let setup = |start: &str| {
+        let world = building();
+        let pose = world.starts[start];
+        Setup::new(Arc::new(world), pioneer(), pose, Some(calibration()), Parameters::default())
+    };
+    let chart = policy_chart("Policy", &setup("A"), &[]).unwrap();
+    assert_eq!((chart.vertices.len(), chart.edges.len()), (49, 49));
+    let how: Vec<&str> = chart.panels.iter().map(|p| &p.how[..5]).collect();
+    assert_eq!(how, ["slack", "bindi", "canno"], "30, 15 and 9 s an edge: {:?}", chart.panels);
+    for panel in &chart.panels {
+        let to_goal: f64 =
+            panel.moves.iter().filter(|m| m.to == chart.goal).map(|m| m.passes).sum();
+        assert!((to_goal - 1.0).abs() < 1e-9, "every pass ends at the goal");
+        assert!(panel.moves.iter().all(|m| m.probability > 0.0 && m.passes > 0.0));
+    }
+    let drawn = &chart.panels[1].moves;
+    assert!(drawn.iter().any(|m| m.probability < 0.999), "only chance meets it exactly: {drawn:?}");
+    let twice = policy_chart("Policy", &setup("B"), &[500.0, 400.0]).unwrap();
+    assert_eq!(twice.panels.len(), 1, "the same is done within both: {:?}", twice.panels);
+    assert_eq!(twice.panels[0].name, "t_d = 500 s, and t_d = 400 s");
+    let alone = Setup::new(
+        Arc::new(building()),
+        pioneer(),
+        building().starts["A"],
+        None,
+        Parameters::default(),
+    );
+    assert_eq!(policy_chart("Policy", &alone, &[]).unwrap_err(), "the planner has no calibration");
+}

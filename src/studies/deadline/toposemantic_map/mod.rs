@@ -26,6 +26,11 @@ use std::fmt;
 pub struct VertexId(usize);
 
 impl VertexId {
+    /// The vertex at which the robot began.
+    pub const fn first() -> Self {
+        Self(0)
+    }
+
     /// The number, from 0.
     pub const fn index(self) -> usize {
         self.0

@@ -1,7 +1,6 @@
-//! From records to the paper's Tables 1 and 2 and Figures 4 and 5, and to whatever else is asked by condition.
+//! From records to the deadline study's Tables 1 and 2, and to whatever else is asked by condition.
 
-use super::requests::{OutcomeTable, Percent, Quantity};
-use crate::figure::{Bar, BarChart, BarGroup};
+use super::{OutcomeTable, Percent, Quantity};
 use crate::stats::proportion::{Proportion, wilson};
 use crate::stats::summary::Summary;
 use crate::studies::findings::{Findings, rounded};
@@ -146,41 +145,6 @@ impl Findings<'_> {
         }
         table
     }
-
-    /// A requested figure: grouped bars with intervals, the paper's numbers as hollow markers.
-    pub fn outcome_figure(&self, title: &str, request: &OutcomeTable) -> BarChart {
-        let series = self.columns_of(request);
-        let groups = self
-            .outcome_cells(request)
-            .chunks(series.len().max(1))
-            .map(|line| BarGroup {
-                name: line.first().map_or_else(String::new, |cell| {
-                    cell.rows.iter().map(|(_, v)| v.as_str()).collect::<Vec<_>>().join(" ")
-                }),
-                bars: line
-                    .iter()
-                    .map(|cell| Bar {
-                        value: cell.ours.map(|e| e.value),
-                        interval: cell.ours.and_then(|e| e.interval),
-                        published: cell.published.map(|p| p.0),
-                        published_interval: None,
-                    })
-                    .collect(),
-            })
-            .collect();
-        let percent = !matches!(request.show, Quantity::Mean(_));
-        BarChart {
-            title: title.to_owned(),
-            x_title: request.rows.join(", "),
-            y_title: request.show.describe(),
-            meaning: "95 % interval".to_owned(),
-            series,
-            groups,
-            at_least: percent
-                .then_some(100.0)
-                .filter(|_| matches!(request.show, Quantity::Share(_))),
-        }
-    }
 }
 
 impl OutcomeCell {
@@ -221,7 +185,7 @@ fn estimate(quantity: &Quantity, trials: &[&TrialRecord]) -> Option<Estimate> {
             })
         }
         Quantity::Mean(measure) => {
-            let values: Vec<f64> = trials.iter().filter_map(|r| value_of(r, measure)).collect();
+            let values = measured(trials, measure);
             (!values.is_empty()).then(|| {
                 let summary = Summary::of(&values);
                 let several = summary.n > 1;
@@ -242,6 +206,22 @@ fn estimate(quantity: &Quantity, trials: &[&TrialRecord]) -> Option<Estimate> {
             ratio(&pairs)
         }
     }
+}
+
+/// The interval of a share that the paper prints (percent) of `n` trials.
+pub(in crate::studies) fn published_share(percent: f64, n: u64) -> Option<(f64, f64)> {
+    if n == 0 || !(0.0..=100.0).contains(&percent) {
+        return None;
+    }
+    let hits = (percent / 100.0 * crate::stats::real(n)).round();
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to n")]
+    let interval = wilson(Proportion::new(hits as u64, n), CONFIDENCE);
+    Some((100.0 * interval.low, 100.0 * interval.high))
+}
+
+/// The values of `measure` of those `trials` that have one.
+pub(in crate::studies) fn measured(trials: &[&TrialRecord], measure: &str) -> Vec<f64> {
+    trials.iter().filter_map(|record| value_of(record, measure)).collect()
 }
 
 fn value_of(record: &TrialRecord, measure: &str) -> Option<f64> {

@@ -1,0 +1,151 @@
+//! What figures ask for, held against factors, tables and published numbers.
+
+use super::crossing::{Factor, known_or_near};
+use super::document::ManifestDoc;
+use super::faults::Faults;
+use super::published::{check_columns, check_only, check_outcomes, check_published, foreign};
+use crate::studies::outcomes::OutcomeShares;
+use crate::studies::{FigureLayout, Outcome, PublishedScatter, StudyKind, TableLayout};
+use crate::table::Table;
+use std::collections::BTreeMap;
+
+/// Faults of the requests for figures.
+pub(super) fn check_figures(
+    doc: &ManifestDoc,
+    factors: &[Factor],
+    published: &BTreeMap<String, Table>,
+    faults: &mut Faults<'_>,
+) {
+    for (i, figure) in doc.figures.iter().enumerate() {
+        match &figure.layout {
+            FigureLayout::CoverageCurve(curve) => {
+                let pointer = format!("/figures/{i}/coverage-curve");
+                foreign(doc, StudyKind::PriorMap, &pointer, faults);
+                faults.check_factor(factors, &curve.by, &format!("{pointer}/by"), false);
+                check_only(&curve.only, &pointer, factors, faults);
+            }
+            FigureLayout::WorldPlan(plan) => {
+                let pointer = format!("/figures/{i}/world-plan");
+                foreign(doc, StudyKind::PriorMap, &pointer, faults);
+                check_only(&plan.only, &pointer, factors, faults);
+            }
+            FigureLayout::PriorOverWorld(plan) => {
+                let pointer = format!("/figures/{i}/prior-over-world");
+                foreign(doc, StudyKind::PriorMap, &pointer, faults);
+                check_only(&plan.only, &pointer, factors, faults);
+                let chosen = plan.only.get("prior").map(|value| value.0.as_str());
+                if chosen.or(doc.prior.as_deref()).is_none_or(|name| name == "none") {
+                    let message = "the figure has no prior to lay over the world";
+                    let fault = faults.key_fault(&pointer, message.to_owned());
+                    let help = "say which, as in `where: {prior: bounding-box}`";
+                    faults.push(fault.label("expected a prior other than `none`").help(help));
+                }
+            }
+            FigureLayout::OutcomeBars(bars) => {
+                let pointer = format!("/figures/{i}/outcome-bars");
+                check_outcomes(bars, &pointer, doc, factors, published, faults);
+            }
+            FigureLayout::OutcomeShares(wanted) => {
+                let pointer = format!("/figures/{i}/outcome-shares");
+                check_shares(wanted, &pointer, doc, factors, published, faults);
+            }
+            FigureLayout::PublishedScatter(wanted) => {
+                let pointer = format!("/figures/{i}/published-scatter");
+                check_scatter(wanted, &pointer, doc, factors, faults);
+            }
+            FigureLayout::PolicyGraph(wanted) => {
+                let pointer = format!("/figures/{i}/policy-graph");
+                foreign(doc, StudyKind::Deadline, &pointer, faults);
+                check_only(&wanted.only, &pointer, factors, faults);
+            }
+        }
+    }
+}
+
+fn check_shares(
+    wanted: &OutcomeShares,
+    pointer: &str,
+    doc: &ManifestDoc,
+    factors: &[Factor],
+    published: &BTreeMap<String, Table>,
+    faults: &mut Faults<'_>,
+) {
+    check_only(&wanted.only, pointer, factors, faults);
+    check_columns(&wanted.by, &wanted.rows, pointer, factors, faults);
+    let mut counted: Vec<Outcome> = Vec::new();
+    for (i, share) in wanted.published.iter().enumerate() {
+        let place = format!("{pointer}/published/{i}");
+        for outcome in &share.of {
+            if counted.contains(outcome) {
+                let message = format!("`{}` is counted twice", outcome.name());
+                faults.at(&format!("{place}/of"), message, "shares must not overlap");
+            }
+            counted.push(*outcome);
+        }
+        check_published(
+            Some(&share.table),
+            &wanted.by,
+            &wanted.rows,
+            &format!("{place}/table"),
+            doc,
+            published,
+            faults,
+        );
+    }
+}
+
+fn check_scatter(
+    wanted: &PublishedScatter,
+    pointer: &str,
+    doc: &ManifestDoc,
+    factors: &[Factor],
+    faults: &mut Faults<'_>,
+) {
+    let place = format!("{pointer}/table");
+    let with_numbers: Vec<(&str, &TableLayout)> = doc
+        .tables
+        .iter()
+        .filter(|table| match &table.layout {
+            TableLayout::CoverageTable(table) => table.published.is_some(),
+            TableLayout::OutcomeTable(table) => table.published.is_some(),
+            _ => false,
+        })
+        .map(|table| (table.id.as_str(), &table.layout))
+        .collect();
+    let Some((_, layout)) = with_numbers.iter().find(|(id, _)| *id == wanted.table) else {
+        let message = format!("`{}` is no table with numbers of the paper's", wanted.table);
+        let fault = faults
+            .fault(&place, message)
+            .label("expected the id of an outcome or coverage table with `published`");
+        let known: Vec<&str> = with_numbers.iter().map(|(id, _)| *id).collect();
+        faults.push(fault.help(known_or_near(&wanted.table, &known)));
+        return;
+    };
+    let (by, rows) = match layout {
+        TableLayout::CoverageTable(table) => (&table.by, &table.rows),
+        TableLayout::OutcomeTable(table) => (&table.by, &table.rows),
+        _ => return,
+    };
+    if let Some(looks) = &wanted.by
+        && looks != by
+        && !rows.contains(looks)
+    {
+        faults.check_factor(factors, looks, &format!("{pointer}/by"), false);
+        if factors.iter().any(|factor| factor.name == *looks) {
+            let message = format!("the table `{}` does not tell `{looks}` apart", wanted.table);
+            let known: Vec<&str> = rows.iter().chain([by]).map(String::as_str).collect();
+            let label = format!("expected one of {}", known.join(", "));
+            faults.at(&format!("{pointer}/by"), message, &label);
+        }
+    }
+    let has_baseline =
+        matches!(layout, TableLayout::CoverageTable(table) if table.baseline.is_some());
+    if wanted.ratios && !has_baseline {
+        let message = format!("the table `{}` has no baseline", wanted.table);
+        faults.at(
+            &format!("{pointer}/ratios"),
+            message,
+            "ratios are to a coverage table's `baseline`",
+        );
+    }
+}

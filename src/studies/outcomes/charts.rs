@@ -1,0 +1,374 @@
+//! Charts of outcomes and measures by condition.
+
+use super::{
+    Estimate as Found, OutcomeCell, OutcomeShares, OutcomeTable, Quantity, measured,
+    published_share,
+};
+use crate::figure::{Estimate, EstimateChart, Look, Panel, PanelLine, Part, ShareChart, Shares};
+use crate::stats::summary::quantile;
+use crate::studies::Outcome;
+use crate::studies::findings::Findings;
+use crate::table::Value;
+
+/// The factor that limits the time of trials, where there is one.
+const DEADLINE: &str = "deadline-s";
+const TIME: &str = "time-s";
+
+/// Outcomes in the order in which they are stacked. Panicked trials are counted nowhere.
+const STACK: [(Outcome, Look); 7] = [
+    (Outcome::Reached, Look::Good),
+    (Outcome::Explored, Look::Good),
+    (Outcome::Late, Look::Slow),
+    (Outcome::TimeLimit, Look::Slow),
+    (Outcome::Stalled, Look::Idle),
+    (Outcome::Collided, Look::Bad),
+    (Outcome::Stuck, Look::Bad),
+];
+
+/// A factor's value in words: `deadline 680 s`, `furnished true`.
+pub(in crate::studies) fn named(factor: &str, value: &str) -> String {
+    let units = [("-m-s", "m/s"), ("-s", "s"), ("-m", "m"), ("-deg", "°"), ("-percent", "%")];
+    for (suffix, unit) in units {
+        if let Some(name) = factor.strip_suffix(suffix)
+            && value.parse::<f64>().is_ok()
+        {
+            return format!("{} {value} {unit}", name.replace('-', " "));
+        }
+    }
+    format!("{} {value}", factor.replace('-', " "))
+}
+
+/// Values in words, separated by commas.
+fn all_named(values: &[(String, String)]) -> String {
+    values.iter().map(|(f, v)| named(f, v)).collect::<Vec<_>>().join(", ")
+}
+
+/// Panels of `cells`, `abreast` rows each, in lines by the first of several factors that have rows.
+fn lines<C, R>(
+    cells: &[C],
+    abreast: usize,
+    rows_of: impl Fn(&C) -> &[(String, String)],
+    row: impl Fn(&C) -> R,
+) -> Vec<PanelLine<R>> {
+    let mut lines: Vec<PanelLine<R>> = Vec::new();
+    for group in cells.chunks(abreast.max(1)) {
+        let Some(first) = group.first() else { continue };
+        let values = rows_of(first);
+        let (line, panel) = values.split_at(usize::from(values.len() > 1));
+        let line = all_named(line);
+        let limit = panel.iter().find(|(factor, _)| factor == DEADLINE);
+        let panel = Panel {
+            name: all_named(panel),
+            rows: group.iter().map(&row).collect(),
+            mark: limit.and_then(|(_, value)| value.parse().ok()),
+        };
+        match lines.last_mut() {
+            Some(last) if last.name == line => last.panels.push(panel),
+            _ => lines.push(PanelLine { name: line, panels: vec![panel] }),
+        }
+    }
+    lines
+}
+
+impl Findings<'_> {
+    /// A requested figure: estimates with intervals, the paper's numbers under ours.
+    pub fn outcome_figure(&self, title: &str, request: &OutcomeTable) -> EstimateChart {
+        let names = self.columns_of(request);
+        let cells = self.outcome_cells(request);
+        let is_mean = matches!(request.show, Quantity::Mean(_));
+        let by_deadline = matches!(&request.show, Quantity::Mean(measure) if measure == TIME)
+            && request.rows.iter().any(|factor| factor == DEADLINE);
+        let row = |cell: &OutcomeCell| self.estimate(request, cell);
+        let mut lines = lines(&cells, names.len(), |cell| &cell.rows, row);
+        if !by_deadline {
+            lines.iter_mut().flat_map(|l| &mut l.panels).for_each(|panel| panel.mark = None);
+        }
+        EstimateChart {
+            title: title.to_owned(),
+            quantity: request.show.axis_title(),
+            interval: "95 % interval".to_owned(),
+            boxes: if is_mean { "middle half of trials".to_owned() } else { String::new() },
+            mark: if by_deadline { "deadline".to_owned() } else { String::new() },
+            names,
+            lines,
+            end: matches!(request.show, Quantity::Share(_)).then_some(100.0),
+        }
+    }
+
+    fn estimate(&self, request: &OutcomeTable, cell: &OutcomeCell) -> Estimate {
+        let middle_half = match &request.show {
+            Quantity::Mean(measure) => {
+                let mut fixed: Vec<(String, String)> =
+                    request.only.iter().map(|(f, v)| (f.clone(), v.0.clone())).collect();
+                fixed.extend(cell.rows.iter().cloned());
+                fixed.push((request.by.clone(), cell.by.clone()));
+                let mut trials = self.matching(&fixed);
+                trials.retain(|record| record.outcome != Outcome::Panicked);
+                let values = measured(&trials, measure);
+                (values.len() > 3).then(|| (quantile(&values, 0.25), quantile(&values, 0.75)))
+            }
+            Quantity::Share(_) | Quantity::Percent(_) => None,
+        };
+        let is_share = matches!(request.show, Quantity::Share(_));
+        let published_interval =
+            cell.published.filter(|_| is_share).and_then(|(value, n)| published_share(value, n?));
+        Estimate {
+            value: cell.ours.map(|e: Found| e.value),
+            interval: cell.ours.and_then(|e| e.interval),
+            middle_half,
+            n: Some(cell.ours.map_or(0, |e| e.n)),
+            published: cell.published.map(|p| p.0),
+            published_interval,
+        }
+    }
+
+    /// A requested figure: how the ways in which trials ended add up, the paper's shares in thin bars under ours.
+    pub fn shares_figure(&self, title: &str, request: &OutcomeShares) -> ShareChart {
+        let table = OutcomeTable {
+            show: Quantity::Share(Vec::new()),
+            by: request.by.clone(),
+            rows: request.rows.clone(),
+            only: request.only.clone(),
+            published: None,
+        };
+        let names = self.columns_of(&table);
+        let cells = self.outcome_cells(&table);
+        let ended = |outcome: Outcome| self.records.iter().any(|r| r.outcome == outcome);
+        let printed =
+            |outcome| request.published.iter().any(|share| share.of.first() == Some(&outcome));
+        let parts: Vec<(Outcome, Look)> =
+            STACK.into_iter().filter(|(outcome, _)| ended(*outcome) || printed(*outcome)).collect();
+        let row = |cell: &OutcomeCell| {
+            let mut fixed: Vec<(String, String)> =
+                request.only.iter().map(|(f, v)| (f.clone(), v.0.clone())).collect();
+            fixed.extend(cell.rows.iter().cloned());
+            fixed.push((request.by.clone(), cell.by.clone()));
+            self.shares(request, &parts, &fixed)
+        };
+        let named_part = |(outcome, look): &(Outcome, Look)| {
+            let with = request.published.iter().find(|share| share.of.first() == Some(outcome));
+            let all = with.map_or(&[][..], |share| share.of.as_slice());
+            let names: Vec<&str> = all.iter().map(|other| other.name()).collect();
+            let name = if names.len() < 2 {
+                outcome.name().to_owned()
+            } else {
+                format!("{} (paper: {})", outcome.name(), names.join(" or "))
+            };
+            Part { name, look: *look }
+        };
+        ShareChart {
+            title: title.to_owned(),
+            quantity: "share of trials (%)".to_owned(),
+            parts: parts.iter().map(named_part).collect(),
+            names,
+            lines: lines(&cells, self.columns_of(&table).len(), |cell| &cell.rows, row),
+        }
+    }
+
+    fn shares(
+        &self,
+        request: &OutcomeShares,
+        parts: &[(Outcome, Look)],
+        fixed: &[(String, String)],
+    ) -> Shares {
+        let mut trials = self.matching(fixed);
+        trials.retain(|record| record.outcome != Outcome::Panicked);
+        let all = crate::stats::length(&trials);
+        let share = |(outcome, _): &(Outcome, Look)| {
+            let of: Vec<_> = trials.iter().filter(|r| r.outcome == *outcome).collect();
+            100.0 * crate::stats::length(&of) / all
+        };
+        // What the paper counts together stands at the first of its outcomes.
+        let printed = |(outcome, _): &(Outcome, Look)| {
+            let of = request.published.iter().find(|share| share.of.first() == Some(outcome))?;
+            let (table, row) = self.published_row(&of.table, fixed)?;
+            Some(Value::as_f64(table.value(row, "value")).unwrap_or(0.0))
+        };
+        let published: Vec<Option<f64>> = parts.iter().map(printed).collect();
+        let known = published.iter().any(Option::is_some);
+        Shares {
+            ours: if trials.is_empty() { Vec::new() } else { parts.iter().map(share).collect() },
+            published: published.into_iter().filter(|_| known).map(|p| p.unwrap_or(0.0)).collect(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::PublishedShare;
+    use super::*;
+    use crate::studies::{PublishedScatter, Scale, TableLayout, TableRequest, TrialRecord};
+    use crate::table::Table;
+    use std::collections::BTreeMap;
+
+    /// Ten trials each of two strategies within two deadlines; `slow` is late in the three last, without a time.
+    fn records() -> Vec<TrialRecord> {
+        let line = format!(
+            "{{\"key\":\"{}\",\"condition\":[],\"trial\":0,\"outcome\":\"reached\",\"measures\":{{}},\"series\":[],\
+             \"sim-seconds\":1,\"chain\":[]}}",
+            "0".repeat(64)
+        );
+        let blank = TrialRecord::from_line(&line).unwrap();
+        let mut records = Vec::new();
+        for (deadline, strategy) in
+            [("90", "quick"), ("90", "slow"), ("30", "quick"), ("30", "slow")]
+        {
+            for trial in 0..10_u32 {
+                let late = strategy == "slow" && trial > 6;
+                let mut record = blank.clone();
+                record.condition =
+                    [("start", "A"), ("deadline-s", deadline), ("strategy", strategy)]
+                        .map(|(f, v)| (f.to_owned(), v.to_owned()))
+                        .to_vec();
+                record.trial = trial;
+                record.outcome = if late { Outcome::Late } else { Outcome::Reached };
+                let time = (!late).then_some(20.0 + f64::from(trial));
+                record.measures.insert("time-s".to_owned(), time);
+                records.push(record);
+            }
+        }
+        records
+    }
+
+    fn with_findings<T>(ask: impl FnOnce(&Findings<'_>) -> T) -> T {
+        let factors = [
+            ("start", &["A"][..]),
+            ("deadline-s", &["90", "30"]),
+            ("strategy", &["quick", "slow"]),
+        ]
+        .map(|(name, values)| (name.to_owned(), values.iter().map(|v| (*v).to_owned()).collect()));
+        let csv = |text: &str| Table::from_csv(text).unwrap();
+        let published = BTreeMap::from([
+            (
+                "reached".to_owned(),
+                csv(
+                    "deadline-s,strategy,value,n\n90,quick,80,50\n90,slow,30,50\n30,quick,100,50\n",
+                ),
+            ),
+            ("late".to_owned(), csv("deadline-s,strategy,value\n90,quick,20\n90,slow,70\n")),
+        ]);
+        let records = records();
+        ask(&Findings {
+            factors: &factors,
+            records: &records,
+            published: &published,
+            calibration: None,
+        })
+    }
+
+    fn table(show: Quantity, published: Option<&str>) -> OutcomeTable {
+        OutcomeTable {
+            show,
+            by: "strategy".to_owned(),
+            rows: vec!["start".to_owned(), "deadline-s".to_owned()],
+            only: BTreeMap::new(),
+            published: published.map(str::to_owned),
+        }
+    }
+
+    #[test]
+    fn factors_are_told_with_their_units() {
+        let told = [
+            ("deadline-s", "68"),
+            ("node-noise-m", "0.5"),
+            ("prior", "none"),
+            ("ray-stop", "even"),
+        ]
+        .map(|(factor, value)| named(factor, value));
+        assert_eq!(told, ["deadline 68 s", "node noise 0.5 m", "prior none", "ray stop even"]);
+    }
+
+    #[test]
+    fn panels_are_deadlines_in_a_line_for_each_start_with_the_papers_interval() {
+        let chart = with_findings(|f| {
+            f.outcome_figure(
+                "Success",
+                &table(Quantity::Share(vec![Outcome::Reached]), Some("reached")),
+            )
+        });
+        let line = &chart.lines[0];
+        assert_eq!((chart.lines.len(), line.name.as_str()), (1, "start A"));
+        let names: Vec<&str> = line.panels.iter().map(|panel| panel.name.as_str()).collect();
+        assert_eq!(names, ["deadline 90 s", "deadline 30 s"]);
+        let slow = line.panels[0].rows[1];
+        assert_eq!((slow.value, slow.published, chart.end), (Some(70.0), Some(30.0), Some(100.0)));
+        let (low, high) = slow.published_interval.unwrap();
+        assert!(
+            (low - 19.1).abs() < 0.1 && (high - 43.75).abs() < 0.1,
+            "Wilson's of 15 of 50: {low} {high}"
+        );
+        assert_eq!(line.panels[1].rows[1].published, None, "not printed");
+    }
+
+    #[test]
+    fn times_stand_against_their_deadline_with_the_trials_behind_them() {
+        let chart = with_findings(|f| {
+            f.outcome_figure("Time", &table(Quantity::Mean("time-s".to_owned()), None))
+        });
+        let panel = &chart.lines[0].panels[1];
+        assert_eq!((panel.mark, chart.mark.as_str()), (Some(30.0), "deadline"));
+        let slow = panel.rows[1];
+        assert_eq!(
+            (slow.value, slow.n, slow.middle_half),
+            (Some(23.0), Some(7), Some((21.5, 24.5)))
+        );
+    }
+
+    #[test]
+    fn shares_add_up_and_what_the_paper_counts_together_is_one_part() {
+        let chart = with_findings(|f| {
+            let share = |of: &[Outcome], table: &str| PublishedShare {
+                of: of.to_vec(),
+                table: table.to_owned(),
+            };
+            f.shares_figure(
+                "Ends",
+                &OutcomeShares {
+                    by: "strategy".to_owned(),
+                    rows: vec!["deadline-s".to_owned()],
+                    only: BTreeMap::new(),
+                    published: vec![
+                        share(&[Outcome::Reached], "reached"),
+                        share(&[Outcome::Late, Outcome::Stalled], "late"),
+                    ],
+                },
+            )
+        });
+        let parts: Vec<&str> = chart.parts.iter().map(|part| part.name.as_str()).collect();
+        assert_eq!(parts, ["reached", "late (paper: late or stalled)"]);
+        let row = &chart.lines[0].panels[0].rows[1];
+        assert_eq!(
+            (row.ours.as_slice(), row.published.as_slice()),
+            (&[70.0, 30.0][..], &[30.0, 70.0][..])
+        );
+        assert!(chart.lines[0].panels[1].rows[1].published.is_empty(), "not printed");
+    }
+
+    #[test]
+    fn a_scatter_has_a_point_for_each_printed_number_and_tells_how_near_it_is() {
+        let show = Quantity::Share(vec![Outcome::Reached]);
+        let tables = [TableRequest {
+            id: "success".to_owned(),
+            title: String::new(),
+            layout: TableLayout::OutcomeTable(table(show, Some("reached"))),
+        }];
+        let wanted = |table: &str| PublishedScatter {
+            table: table.to_owned(),
+            by: Some("deadline-s".to_owned()),
+            scale: Scale::Linear,
+            ratios: false,
+        };
+        let chart = with_findings(|f| f.scatter_figure("Both", &wanted("success"), &tables));
+        let points: Vec<_> = chart.points.iter().map(|p| (p.group, p.published, p.ours)).collect();
+        assert_eq!(points, [(0, 80.0, 100.0), (0, 30.0, 70.0), (1, 100.0, 100.0)]);
+        assert_eq!(chart.groups, ["deadline 90 s", "deadline 30 s"]);
+        // Differences of 20, 40 and 0.
+        assert_eq!(
+            chart.notes,
+            ["3 cells, r = 0.96", "RMSE 26 points", "mean +20 points to paper"]
+        );
+        assert!(
+            with_findings(|f| f.scatter_figure("Both", &wanted("none"), &tables)).points.is_empty()
+        );
+    }
+}
