@@ -37,6 +37,14 @@ impl Terminal {
         self.utf8
     }
 
+    /// How many characters fit on a line of stdout: those of the terminal, 80 where it is none. Less than 40 is legible to
+    /// nobody.
+    #[expect(clippy::unused_self, reason = "whoever writes asks the terminal")]
+    pub(super) fn columns(self) -> usize {
+        let size = console::Term::stdout().size_checked();
+        size.map_or(80, |(_, columns)| usize::from(columns)).max(40)
+    }
+
     pub(super) fn color(self) -> bool {
         self.color
     }
