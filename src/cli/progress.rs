@@ -159,10 +159,14 @@ impl Observer for Progress {
                     counted(*trials, "trial"),
                     counted(*jobs, "thread")
                 );
-                self.bar.println(match &self.label {
-                    Some(label) => format!("{label}: {heading}"),
-                    None => heading,
-                });
+                if self.terminal.is_watched() {
+                    let heading = match &self.label {
+                        Some(label) => format!("{label}: {heading}"),
+                        None => heading,
+                    };
+                    // The bar's own way to print fills the line with spaces and lets the terminal wrap it.
+                    self.bar.suspend(|| self.terminal.note(&heading));
+                }
                 self.tell(&mut state);
             }
             RunEvent::Finished { index, record, cached } => {

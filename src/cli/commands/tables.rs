@@ -80,7 +80,7 @@ fn outcome_table(findings: &Findings<'_>, wanted: &OutcomeTable, width: usize) -
     let mut text = aligned(&table, keys, &[], width);
     if wanted.published.is_some() {
         text.push_str(&wrapped(
-            "(ours, then the paper's: ✓ ours is within 10 % of it, ≈ within 20 %, ≠ farther off)",
+            "(ours, then the paper's: ✓ within 10 % of it, ≈ 20 %, ≠ farther off)",
             2,
             width,
         ));
@@ -198,4 +198,89 @@ fn difference(percent: Option<f64>) -> String {
 fn censored(cell: &CoverageCell) -> String {
     let reached = cell.ours.map_or(0, |ours| ours.n);
     if reached < cell.trials { format!("{reached} of {}", cell.trials) } else { String::new() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::digest::{Sha256Digest, TrialKey};
+    use crate::studies::deadline::Quantity;
+    use crate::studies::{Outcome, TrialRecord};
+    use std::collections::BTreeMap;
+
+    const STRATEGIES: [&str; 5] =
+        ["random", "frontier", "normalized-frontier", "corridors-first", "complete-corridor"];
+
+    fn record(deadline: &str, strategy: &str, trial: u32, outcome: Outcome) -> TrialRecord {
+        let pair = |name: &str, value: &str| (name.to_owned(), value.to_owned());
+        TrialRecord {
+            key: TrialKey(Sha256Digest::of(format!("{deadline}{strategy}{trial}"))),
+            condition: vec![
+                pair("start", "A"),
+                pair("deadline-s", deadline),
+                pair("strategy", strategy),
+            ],
+            trial,
+            outcome,
+            cause: String::new(),
+            measures: BTreeMap::new(),
+            series: Vec::new(),
+            sim_seconds: 1.0,
+            chain: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn five_strategies_beside_the_papers_numbers_fit_into_80_columns() {
+        let factor = |name: &str, values: &[&str]| {
+            (name.to_owned(), values.iter().map(|v| (*v).to_owned()).collect::<Vec<_>>())
+        };
+        let factors = [
+            factor("start", &["A"]),
+            factor("deadline-s", &["680", "68"]),
+            factor("strategy", &STRATEGIES),
+        ];
+        let mut records = Vec::new();
+        for deadline in ["680", "68"] {
+            for (i, strategy) in (0..).zip(STRATEGIES) {
+                for trial in 0..4 {
+                    let outcome = if trial < i { Outcome::Reached } else { Outcome::Late };
+                    records.push(record(deadline, strategy, trial, outcome));
+                }
+            }
+        }
+        let csv = "start,deadline-s,strategy,value,n\nA,680,frontier,26,50\nA,680,normalized-frontier,59,50\n\
+                   A,680,corridors-first,12,50\nA,680,complete-corridor,100,50\n";
+        let published = BTreeMap::from([("success".to_owned(), Table::from_csv(csv).unwrap())]);
+        let findings = Findings {
+            factors: &factors,
+            records: &records,
+            published: &published,
+            calibration: None,
+        };
+        let request = TableRequest {
+            id: "table-1".to_owned(),
+            title: "Table 1, success rate (%)".to_owned(),
+            layout: TableLayout::OutcomeTable(OutcomeTable {
+                show: Quantity::Share(vec![Outcome::Reached]),
+                by: "strategy".to_owned(),
+                rows: vec!["start".to_owned(), "deadline-s".to_owned()],
+                only: BTreeMap::new(),
+                published: Some("success".to_owned()),
+            }),
+        };
+        let text = table(&findings, &request, &[], 80);
+        assert_eq!(
+            text,
+            "Table 1, success rate (%)
+         deadline-                     normalized-  corridors-  complete-
+  start          s  random   frontier     frontier       first   corridor
+      A        680  0 ·  -    25 ✓ 26      50 ≈ 59     75 ≠ 12  100 ✓ 100
+      A         68  0 ·  -    25 ·  -      50 ·  -     75 ·  -   100 ·  -
+  (ours, then the paper's: ✓ within 10 % of it, ≈ 20 %, ≠ farther off)
+"
+        );
+        let narrow = table(&findings, &request, &[], 40);
+        assert!(narrow.lines().all(|line| line.chars().count() <= 40), "{narrow}");
+    }
 }
