@@ -29,6 +29,8 @@ pub struct Environment {
     pub store: Option<PathBuf>,
     /// Whether colours are unwanted (`NO_COLOR` set and not empty).
     pub no_color: bool,
+    /// Whether the locale says that the terminal reads UTF-8 (`LC_ALL`, else `LC_CTYPE`, else `LANG`).
+    pub utf8: bool,
     /// Where the original worlds of the studies are, for the tests that compare with them.
     pub original_worlds: Option<PathBuf>,
 }
@@ -64,6 +66,12 @@ impl Environment {
                 .or_else(|| cache.map(|cache| cache.join("reenact")))
                 .or_else(|| path("HOME").map(|home| home.join(".cache/reenact"))),
             no_color: lookup("NO_COLOR").is_some(),
+            utf8: ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().find_map(&lookup).is_some_and(
+                |locale| {
+                    let locale = locale.to_ascii_lowercase();
+                    locale.contains("utf-8") || locale.contains("utf8")
+                },
+            ),
             original_worlds: path("REENACT_ORIGINAL_WORLDS"),
         })
     }

@@ -41,6 +41,7 @@ const DOORS: &[(&str, &[&str])] = &[
     ("clap", &["cli/"]),
     ("clap_complete", &["cli/"]),
     ("clarabel", &["cmdp/solve.rs"]),
+    ("console", &["cli/"]),
     ("fs_err", &["store.rs"]),
     ("indicatif", &["cli/"]),
     ("libm", &["math.rs"]),

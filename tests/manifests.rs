@@ -548,7 +548,7 @@ fn every_column_of_every_table_of_every_study_is_described() {
         let (experiment, _) = resolve_file("manifests", &file).map_err(|f| told(&f)).unwrap();
         let kind = experiment.kind;
         let selection = Selection { trials: Some(1), ..Selection::default() };
-        let plan = Plan::of(experiment, &selection).unwrap();
+        let plan = Plan::select(experiment, &selection).unwrap();
         let records: Vec<TrialRecord> =
             plan.trials.iter().map(|spec| with_every_measure(kind, spec)).collect();
         let content = assemble::assemble(&plan, b"", &selection, &records).unwrap();

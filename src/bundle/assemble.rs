@@ -47,7 +47,8 @@ pub fn assemble(
     };
     let (results, mut tables) = results(plan, records)?;
     tables.extend(described_inputs(plan));
-    tables.sort_by(|a, b| a.path.cmp(&b.path));
+    // What was found before what was given.
+    tables.sort_by_key(|table| (table.path.starts_with(format::INPUTS), table.path.clone()));
     Ok(BundleContent {
         name: experiment.name.clone(),
         title: experiment.title.clone(),

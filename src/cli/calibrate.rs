@@ -42,7 +42,7 @@ impl Calibrator<'_> {
             Self::StandIn => Vec::new(),
             Self::Stored(store) => stored(&plan, store, path)?,
             Self::Run { scheduler, store } => {
-                let progress = Progress::new(terminal);
+                let progress = Progress::of(&plan.trials, terminal).labelled(&plan.experiment.name);
                 let store = store.map(|store| store as &dyn TrialStore);
                 let records = scheduler.run(&plan.trials, &studies::execute, store, &progress);
                 progress.finish();

@@ -5,6 +5,7 @@
 mod args;
 mod calibrate;
 mod commands;
+mod estimate;
 mod exit;
 mod load;
 mod progress;

@@ -1,36 +1,89 @@
-//! Progress for people: a bar where stderr is a terminal, silence in pipes.
+//! Progress for people: a bar where stderr is a terminal, in pipes a line now and then.
+//!
+//! What matters most comes first, so that a narrow terminal cuts off what matters least.
 
+use super::estimate::{Estimate, in_words};
 use super::terminal::{Terminal, counted};
+use crate::provenance::RunClock;
 use crate::runner::{Observer, RunEvent};
+use crate::studies::{Outcome, TrialSpec};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
 
-/// A bar with trials done, cached and failed, time left and how much faster than real time it goes.
+/// Least time (s) between two lines in a pipe where another tenth of the trials is done.
+const SPARSE_S: f64 = 30.0;
+/// Time (s) after which a line comes though it is not: silence looks like a hang to whoever reads a log.
+const SILENT_S: f64 = 120.0;
+
+/// Trials done, failed and cached, time left and how much faster than real time it goes.
 #[derive(Debug)]
 pub(super) struct Progress {
+    terminal: Terminal,
+    /// What runs, where there is more than one thing.
+    label: Option<String>,
     bar: ProgressBar,
-    simulated_ms: AtomicU64,
-    cached: AtomicU64,
-    failed: AtomicU64,
+    /// Condition of every trial, by number.
+    conditions: Vec<usize>,
+    state: Mutex<State>,
+}
+
+#[derive(Debug)]
+struct State {
+    clock: RunClock,
+    estimate: Estimate,
+    trials: usize,
+    cached: usize,
+    failed: usize,
+    /// When the last line was written (s), and how many tenths were done.
+    told: (f64, usize),
 }
 
 impl Progress {
-    pub(super) fn new(terminal: Terminal) -> Self {
+    /// Of a run of `trials`.
+    pub(super) fn of(trials: &[TrialSpec], terminal: Terminal) -> Self {
+        let mut seen = Vec::new();
+        let number = |spec: &TrialSpec| {
+            // Trials of one condition follow one another.
+            if seen.last() != Some(&spec.condition) {
+                seen.push(spec.condition.clone());
+            }
+            seen.len() - 1
+        };
+        Self::new(trials.iter().map(number).collect(), terminal)
+    }
+
+    /// Of a run whose trials are told when it begins.
+    pub(super) fn unplanned(terminal: Terminal) -> Self {
+        Self::new(Vec::new(), terminal)
+    }
+
+    /// The same, with what runs told in front.
+    #[must_use]
+    pub(super) fn labelled(self, label: &str) -> Self {
+        Self { label: Some(label.to_owned()), ..self }
+    }
+
+    fn new(conditions: Vec<usize>, terminal: Terminal) -> Self {
         let bar = if terminal.is_watched() {
             ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr())
         } else {
             ProgressBar::hidden()
         };
-        let template = if terminal.color() {
-            "{bar:24.cyan} {pos}/{len} trials  {msg}  {eta} left"
-        } else {
-            "{bar:24} {pos}/{len} trials  {msg}  {eta} left"
-        };
+        let template =
+            if terminal.color() { "{bar:12.cyan} {wide_msg}" } else { "{bar:12} {wide_msg}" };
         if let Ok(style) = ProgressStyle::with_template(template) {
-            bar.set_style(style.progress_chars("━╸ "));
+            bar.set_style(style.progress_chars(if terminal.utf8() { "━╸ " } else { "=> " }));
         }
-        let zero = || AtomicU64::new(0);
-        Self { bar, simulated_ms: zero(), cached: zero(), failed: zero() }
+        let state = State {
+            clock: RunClock::start(),
+            estimate: Estimate::default(),
+            trials: 0,
+            cached: 0,
+            failed: 0,
+            told: (0.0, 0),
+        };
+        Self { terminal, label: None, bar, conditions, state: Mutex::new(state) }
     }
 
     /// Takes the bar away.
@@ -38,51 +91,118 @@ impl Progress {
         self.bar.finish_and_clear();
     }
 
-    fn message(&self) -> String {
-        let elapsed = self.bar.elapsed().as_secs_f64();
-        #[expect(clippy::cast_precision_loss, reason = "a rate for people")]
-        let simulated = self.simulated_ms.load(Ordering::Relaxed) as f64 / 1000.0;
-        let mut message = if elapsed > 0.5 {
-            format!("{:.0}x real time", simulated / elapsed)
-        } else {
-            String::new()
-        };
-        for (count, what) in [(&self.cached, "cached"), (&self.failed, "failed")] {
-            let count = count.load(Ordering::Relaxed);
-            if count > 0 {
-                message.push_str(&format!("  {count} {what}"));
-            }
+    /// Tells the state where it is to be seen.
+    fn tell(&self, state: &mut State) {
+        let elapsed = state.clock.elapsed_seconds();
+        if self.terminal.is_watched() {
+            let message = match &self.label {
+                Some(label) => format!("{label}: {}", state.in_words(elapsed)),
+                None => state.in_words(elapsed),
+            };
+            self.bar.set_message(message);
+            return;
         }
-        message
+        let done = state.trials - state.estimate.left();
+        let tenths = 10 * done / state.trials.max(1);
+        let since = elapsed - state.told.0;
+        let due = since >= SILENT_S || (since >= SPARSE_S && tenths > state.told.1);
+        if due && done < state.trials {
+            let label = self.label.as_deref().unwrap_or("running");
+            self.terminal.note(&format!("{label}: {}", state.in_words(elapsed)));
+            state.told = (elapsed, tenths);
+        }
+    }
+}
+
+impl State {
+    fn in_words(&self, elapsed: f64) -> String {
+        let mut words =
+            vec![format!("{}/{} trials", self.trials - self.estimate.left(), self.trials)];
+        if self.failed > 0 {
+            words.push(format!("{} failed", self.failed));
+        }
+        // The first moments say little.
+        if elapsed > 0.5 {
+            let left = self.estimate.left_s(elapsed);
+            words.extend(left.map(|seconds| format!("{} left", in_words(seconds))));
+        }
+        if self.cached > 0 {
+            words.push(format!("{} cached", self.cached));
+        }
+        if elapsed > 0.5 {
+            let rate = self.estimate.rate(elapsed);
+            words.extend(rate.map(|rate| format!("{rate:.0}x real time")));
+        }
+        words.join(", ")
     }
 }
 
 impl Observer for Progress {
     fn notice(&self, event: &RunEvent<'_>) {
+        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         match event {
             RunEvent::Started { trials, cached, jobs } => {
+                let known = self.conditions.len() == *trials;
+                let conditions = if known { self.conditions.clone() } else { vec![0; *trials] };
+                *state = State {
+                    clock: RunClock::start(),
+                    estimate: Estimate::new(conditions, *cached, *jobs),
+                    trials: *trials,
+                    cached: *cached,
+                    failed: 0,
+                    told: (0.0, 0),
+                };
+                self.bar.reset();
                 self.bar.set_length(*trials as u64);
-                let threads = counted(*jobs, "thread");
-                self.bar.println(format!("running {trials} trials, {cached} cached, on {threads}"));
+                let heading = format!(
+                    "running {}, {cached} cached, on {}",
+                    counted(*trials, "trial"),
+                    counted(*jobs, "thread")
+                );
+                if self.terminal.is_watched() {
+                    let heading = match &self.label {
+                        Some(label) => format!("{label}: {heading}"),
+                        None => heading,
+                    };
+                    // The bar's own way to print fills the line with spaces and lets the terminal wrap it.
+                    self.bar.suspend(|| self.terminal.note(&heading));
+                }
+                self.tell(&mut state);
             }
-            RunEvent::Finished { record, cached, .. } => {
-                if *cached {
-                    self.cached.fetch_add(1, Ordering::Relaxed);
-                } else {
-                    #[expect(
-                        clippy::cast_possible_truncation,
-                        clippy::cast_sign_loss,
-                        reason = "simulated seconds are positive and few"
-                    )]
-                    let ms = (record.sim_seconds * 1000.0) as u64;
-                    self.simulated_ms.fetch_add(ms, Ordering::Relaxed);
+            RunEvent::Finished { index, record, cached } => {
+                state.estimate.finished(*index, record.sim_seconds, *cached);
+                if record.outcome == Outcome::Panicked {
+                    state.failed += 1;
                 }
-                if record.outcome == crate::studies::Outcome::Panicked {
-                    self.failed.fetch_add(1, Ordering::Relaxed);
-                }
-                self.bar.set_message(self.message());
-                self.bar.inc(1);
+                self.tell(&mut state);
+                self.bar.set_position((state.trials - state.estimate.left()) as u64);
             }
         }
+    }
+}
+
+/// Something under way of which nobody knows how long it takes; it is told to whoever watches, and taken away when dropped.
+#[derive(Debug)]
+pub(super) struct Working(ProgressBar);
+
+impl Working {
+    pub(super) fn at(what: &str, terminal: Terminal) -> Self {
+        if !terminal.is_watched() {
+            return Self(ProgressBar::hidden());
+        }
+        let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
+        if let Ok(style) = ProgressStyle::with_template("{spinner} {wide_msg}") {
+            let ticks = if terminal.utf8() { "⠋⠙⠸⠴⠦⠇ " } else { "|/-\\ " };
+            bar.set_style(style.tick_chars(ticks));
+        }
+        bar.set_message(what.to_owned());
+        bar.enable_steady_tick(Duration::from_millis(120));
+        Self(bar)
+    }
+}
+
+impl Drop for Working {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
     }
 }

@@ -14,21 +14,35 @@ static LOST: AtomicBool = AtomicBool::new(false);
 pub(super) struct Terminal {
     color: bool,
     watched: bool,
+    utf8: bool,
 }
 
 impl Terminal {
     pub(super) fn new(environment: &Environment) -> Self {
         let watched = std::io::stderr().is_terminal();
-        Self { color: watched && !environment.no_color, watched }
+        Self { color: watched && !environment.no_color, watched, utf8: environment.utf8 }
     }
 
     pub(super) fn plain() -> Self {
-        Self { color: false, watched: false }
+        Self { color: false, watched: false, utf8: false }
     }
 
     /// Whether a person watches stderr: bars are drawn for people only.
     pub(super) fn is_watched(self) -> bool {
         self.watched
+    }
+
+    /// Whether the terminal's character set has more than ASCII.
+    pub(super) fn utf8(self) -> bool {
+        self.utf8
+    }
+
+    /// How many characters fit on a line of stdout: those of the terminal, 80 where it is none. Less than 40 is legible to
+    /// nobody.
+    #[expect(clippy::unused_self, reason = "whoever writes asks the terminal")]
+    pub(super) fn columns(self) -> usize {
+        let size = console::Term::stdout().size_checked();
+        size.map_or(80, |(_, columns)| usize::from(columns)).max(40)
     }
 
     pub(super) fn color(self) -> bool {

@@ -22,13 +22,15 @@ pub(crate) struct Canvas {
     bounds: Bounds,
     scale: f64,
     elements: Vec<Element>,
+    /// Lines of text below everything else.
+    key: usize,
 }
 
 impl Canvas {
     /// A sheet for `bounds` (m) with about `width` by at most `height` px for the drawing.
     pub(crate) fn new(bounds: Bounds, width: f64, height: f64) -> Self {
         let scale = (width / bounds.width()).min(height / bounds.height());
-        let mut canvas = Self { bounds, scale, elements: Vec::new() };
+        let mut canvas = Self { bounds, scale, elements: Vec::new(), key: 0 };
         let (w, h) = canvas.size();
         canvas.push(Element::new("rect").at("width", w).at("height", h).set("fill", "#fff"));
         canvas
@@ -271,6 +273,46 @@ impl Canvas {
         }
     }
 
+    /// What numbers in the drawing stand for, in lines below the legend.
+    pub(crate) fn key(&mut self, entries: &[String]) {
+        let (width, height) = self.size();
+        let (mut lines, mut wide) = (vec![String::new()], 0.0);
+        for entry in entries {
+            #[expect(clippy::cast_precision_loss, reason = "names are short")]
+            let advance = entry.chars().count() as f64 * 6.0 + 16.0;
+            if wide + advance > width - LEFT - RIGHT && wide > 0.0 {
+                lines.push(String::new());
+                wide = 0.0;
+            }
+            if let Some(line) = lines.last_mut() {
+                line.push_str(&format!("{entry}\u{2003}"));
+            }
+            wide += advance;
+        }
+        if entries.is_empty() {
+            return;
+        }
+        #[expect(clippy::cast_precision_loss, reason = "a few lines")]
+        let ground = 17.0 * lines.len() as f64 + 6.0;
+        let ground = Element::new("rect").at("y", height).at("width", width).at("height", ground);
+        self.push(ground.set("fill", "#fff"));
+        for (i, line) in lines.iter().enumerate() {
+            #[expect(clippy::cast_precision_loss, reason = "a few lines")]
+            let y = height + 8.0 + 17.0 * i as f64;
+            let text = Element::new("text").at("x", LEFT).at("y", y).at("font-size", 11.0);
+            self.push(text.set("fill", INK).text(line.trim_end()));
+        }
+        self.key = lines.len();
+    }
+
+    /// Height of the sheet with its key (px).
+    fn whole(&self) -> (f64, f64) {
+        let (width, height) = self.size();
+        #[expect(clippy::cast_precision_loss, reason = "a few lines")]
+        let key = if self.key == 0 { 0.0 } else { 17.0 * self.key as f64 + 6.0 };
+        (width, height + key)
+    }
+
     /// Where a legend of one's own begins, and the height of its line (px).
     pub(crate) fn legend_at(&self) -> (f64, f64) {
         let (_, height) = self.size();
@@ -279,13 +321,13 @@ impl Canvas {
 
     /// The finished file.
     pub(crate) fn finish(self, title: &str) -> String {
-        let (width, height) = self.size();
+        let (width, height) = self.whole();
         svg::document(width, height, title, self.elements)
     }
 
     /// The finished file with another sheet below this one.
     pub(crate) fn finish_above(self, below: Self, title: &str) -> String {
-        let ((width, height), (other_width, other_height)) = (self.size(), below.size());
+        let ((width, height), (other_width, other_height)) = (self.whole(), below.whole());
         let moved = format!("translate(0 {})", svg::number(height));
         let group = below
             .elements

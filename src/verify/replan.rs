@@ -6,34 +6,47 @@ use crate::digest::Sha256Digest;
 use crate::document::Source;
 use crate::manifest::{self, Experiment, Inputs, WrittenIn};
 use crate::plan::{ENGINE_VERSION, Plan, Selection};
-use crate::runner::{RunError, Scheduler, Silent};
+use crate::runner::{Observer, RunError, Scheduler, Silent};
 use crate::studies::{self, TrialRecord, TrialSpec};
 use std::cell::RefCell;
 
 /// This program's own pipeline.
-#[derive(Debug)]
-pub struct Reenactment {
+pub struct Reenactment<'o> {
     scheduler: Scheduler,
+    observer: &'o dyn Observer,
 }
 
-impl Reenactment {
+impl Reenactment<'static> {
     /// The pipeline on `jobs` threads.
     ///
     /// # Errors
     /// Where the system does not give them.
     pub fn new(jobs: usize) -> Result<Self, RunError> {
-        Ok(Self { scheduler: Scheduler::new(jobs)? })
+        Ok(Self { scheduler: Scheduler::new(jobs)?, observer: &Silent })
     }
 }
 
-impl Pipeline for Reenactment {
+impl Reenactment<'_> {
+    /// The same, with `observer` told of the trials that are executed again.
+    pub fn observed_by(self, observer: &dyn Observer) -> Reenactment<'_> {
+        Reenactment { scheduler: self.scheduler, observer }
+    }
+}
+
+impl Pipeline for Reenactment<'_> {
     fn engine(&self) -> &str {
         ENGINE_VERSION
     }
 
     fn replan<'a>(&'a self, bundle: &'a Bundle) -> Result<Box<dyn Replanned + 'a>, String> {
         let (plan, selection) = plan_of(bundle)?;
-        Ok(Box::new(Study { bundle, plan, selection, scheduler: &self.scheduler }))
+        Ok(Box::new(Study {
+            bundle,
+            plan,
+            selection,
+            scheduler: &self.scheduler,
+            observer: self.observer,
+        }))
     }
 }
 
@@ -170,6 +183,7 @@ struct Study<'a> {
     plan: Plan,
     selection: Selection,
     scheduler: &'a Scheduler,
+    observer: &'a dyn Observer,
 }
 
 impl Replanned for Study<'_> {
@@ -192,7 +206,7 @@ impl Replanned for Study<'_> {
     fn execute(&self, indices: &[usize]) -> Vec<String> {
         let specs: Vec<TrialSpec> = indices.iter().map(|&i| self.plan.trials[i].clone()).collect();
         self.scheduler
-            .run(&specs, &studies::execute, None, &Silent)
+            .run(&specs, &studies::execute, None, self.observer)
             .map(|records| records.iter().map(TrialRecord::to_line).collect())
             .unwrap_or_default()
     }
@@ -213,7 +227,7 @@ impl Replanned for Study<'_> {
         let (plan, selection) = plan_with(self.bundle, Some(seed))?;
         let records = self
             .scheduler
-            .run(&plan.trials, &studies::execute, None, &Silent)
+            .run(&plan.trials, &studies::execute, None, self.observer)
             .map_err(|e| e.to_string())?;
         assemble::assemble(&plan, self.bundle.study_yaml(), &selection, &records)
     }

@@ -73,7 +73,7 @@ impl Execution {
         times: Times,
         terminal: Terminal,
     ) -> Result<Executed, Failure> {
-        let progress = Progress::new(terminal);
+        let progress = Progress::of(&plan.trials, terminal).labelled(&plan.experiment.name);
         let cached = AtomicUsize::new(0);
         let observer = |event: &RunEvent<'_>| {
             if let RunEvent::Started { cached: known, .. } = event {

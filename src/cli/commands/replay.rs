@@ -3,6 +3,7 @@
 use crate::cli::args::ReplayArgs;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::load;
+use crate::cli::progress::Working;
 use crate::cli::terminal::{Terminal, counted};
 use crate::plan::Plan;
 use crate::report::{GainView, Note, Shown, bag, gain_svg, replay_page, still_svg};
@@ -31,10 +32,12 @@ pub(in crate::cli) fn run(args: &ReplayArgs, terminal: Terminal) -> Result<Exit,
     for wanted in &args.trials {
         let spec = plan.find(wanted).map_err(Failure::not_understood)?;
         let name = format!("{}/{}", spec.condition.slug(), spec.trial);
+        let working = Working::at(&format!("re-enacting {name}"), terminal);
         let (record, recording) = match args.mcap {
             Some(_) if played.is_empty() => studies::reenact_sensing(spec),
             _ => studies::reenact(spec),
         };
+        drop(working);
         let same = archived
             .iter()
             .find(|r| r.key == spec.key)

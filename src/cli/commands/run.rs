@@ -1,6 +1,7 @@
 //! `reenact run`: plan, simulate, seal.
 
 use super::execution::{Executed, Execution, Times};
+use super::fold::wrapped;
 use super::locked::{self, Held};
 use super::{probe, tables, verdicts};
 use crate::bundle::wall_time;
@@ -129,7 +130,7 @@ impl Done {
     }
 
     fn tell(&self, terminal: Terminal) {
-        let mut text = format!("{}\n", self.plan.experiment.title);
+        let mut text = wrapped(&self.plan.experiment.title, 0, terminal.columns());
         if self.plan.partial {
             text.push_str("PARTIAL: part of the study only; no claim is judged\n");
         }
@@ -137,11 +138,12 @@ impl Done {
         let factors = assemble::factors(&self.plan);
         let findings = assemble::findings(&self.plan, &self.records, &factors);
         for request in &self.plan.experiment.tables {
-            text.push_str(&tables::table(&findings, request, &self.plan.experiment.tables));
+            let tables = &self.plan.experiment.tables;
+            text.push_str(&tables::table(&findings, request, tables, terminal.columns()));
             text.push('\n');
         }
         text.push_str(&verdicts::in_words(&self.verdicts, &self.machine_verdicts));
-        text.push_str(&self.summary());
+        text.push_str(&wrapped(&self.summary(), 0, terminal.columns()));
         if self.twice {
             text.push_str("every trial was executed twice and gave the same bytes\n");
         }

@@ -3,6 +3,7 @@
 use crate::cli::args::{Format, VerifyArgs};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::load;
+use crate::cli::progress::Progress;
 use crate::cli::terminal::Terminal;
 use crate::provenance::{Environment, RunClock, processors, unforeseen_seed};
 use crate::verify::{
@@ -37,11 +38,13 @@ pub(in crate::cli) fn run(
         now,
     };
     let jobs = args.jobs.unwrap_or_else(processors);
-    let pipeline = Reenactment::new(jobs).map_err(Failure::failed)?;
+    let progress = Progress::unplanned(terminal);
+    let pipeline = Reenactment::new(jobs).map_err(Failure::failed)?.observed_by(&progress);
     let seed = args.sample_seed.unwrap_or_else(unforeseen_seed);
     let options = Options { level, sample: args.sample, seed };
     let reviewer = Reviewer { vouching, clock: &|| clock.elapsed_seconds() };
     let report = climb_for(&reviewer, load::archive(&args.bundle)?, &options, &pipeline);
+    progress.finish();
     terminal.result(&match args.format {
         Format::Human => report.to_human(),
         Format::Json => report.to_json(),

@@ -6,8 +6,10 @@
 mod describe;
 mod graph;
 mod grid;
+mod labels;
 mod prior;
 mod robot;
+mod topo_metric;
 mod world;
 
 pub use describe::{describe_grid, describe_robot, describe_world};
@@ -19,6 +21,7 @@ pub use world::world_svg;
 use crate::document::{Diagnostic, Source};
 use crate::grid::OccupancyGrid;
 use crate::robot::urdf;
+use crate::studies::prior_map::tour;
 use crate::world::topology::{TagFault, TagScheme, Topology};
 use crate::world::{document as world_document, map_server, sdf};
 
@@ -39,7 +42,7 @@ pub struct Drawing {
 }
 
 /// Draws the robot, world or map in the file `name`, told apart by content: URDF, SDF, `map_server` YAML (with an
-/// `image:`) or world YAML. Worlds are cut at `height` m; all their layers are drawn.
+/// `image:`), topo-metric map or world YAML. Worlds are cut at `height` m; all their layers are drawn.
 ///
 /// `models` is asked for a world's meshes, `fetch` for a map's image, by its path relative to the descriptor's folder; its error is a fragment
 /// that says why not.
@@ -76,6 +79,9 @@ pub fn draw(
             text: describe_grid(name, &map),
             warnings: Vec::new(),
         });
+    }
+    if text.lines().any(|line| line.starts_with("reenact-topo-metric-map:")) {
+        return Ok(topo_metric::drawn(name, &tour::read(&source)?));
     }
     Ok(drawn_world(&world_document::read(&source, None)?, height))
 }

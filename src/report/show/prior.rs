@@ -1,15 +1,17 @@
 //! Prior knowledge drawn: what is derived from a world, and a map laid over the world that it is to fit.
 
 use super::world::world_under_svg;
-use super::{Drawing, describe_grid, describe_world, drawn_world, grid_png, grid_svg};
+use super::{Drawing, describe_grid, describe_world, drawn_world, grid_png, grid_svg, topo_metric};
 use crate::document::{Diagnostic, Source};
-use crate::geometry::{Outline, Point};
-use crate::grid::{GridFrame, Occupancy, OccupancyGrid};
+use crate::figure::canvas::metres;
+use crate::geometry::{Bounds, Outline, Point};
+use crate::grid::{Cell, GridFrame, Occupancy, OccupancyGrid};
+use crate::studies::prior_map::tour;
 use crate::world::floor_plan::{self, Plan};
 use crate::world::{World, document, sdf};
 
 /// How near (m) to something solid an occupied cell of a prior counts as on it.
-const NEAR: f64 = 0.2;
+pub(super) const NEAR: f64 = 0.2;
 
 /// What is derived from a world as prior knowledge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -101,29 +103,73 @@ pub fn draw_over(
     over: Over<'_>,
     fetch: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
 ) -> Result<Drawing, Vec<Diagnostic>> {
-    let source = Source::new(over.name, text_of(over.name, over.bytes)?);
+    let text = text_of(over.name, over.bytes)?;
+    let source = Source::new(over.name, text);
+    if text.lines().any(|line| line.starts_with("reenact-topo-metric-map:")) {
+        return Ok(topo_metric::drawn_over(over.name, &tour::read(&source)?, world, height));
+    }
     let map = super::read_map(over.name, &source, fetch)?;
     let frame = GridFrame { origin: map.frame().origin + over.start, ..*map.frame() };
     let map = OccupancyGrid::from_cells(frame, map.values().to_vec());
     let mut drawing = drawn_world(world, height);
     drawing.svg = world_under_svg(world, height, &map);
     drawing.text = describe_world(world, height) + &describe_grid(over.name, &map);
-    let (near, all) = agreement(&map, &world.slice(height));
-    drawing.text.push_str(&format!(
-        "agreement: {near} of {all} occupied cells lie within {NEAR} m of something solid\n"
-    ));
+    let solids = world.slice(height);
+    drawing.text.push_str(&alignment(&map, over.start, &solids));
     Ok(drawing)
 }
 
-/// How many occupied cells of `map` are near one of `outlines`, and how many there are.
-fn agreement(map: &OccupancyGrid, outlines: &[Outline]) -> (usize, usize) {
+/// How `map`, laid with its origin relative to `start`, lies on `solids`, in words.
+fn alignment(map: &OccupancyGrid, start: Point, solids: &[Outline]) -> String {
     let frame = map.frame();
-    let occupied = || frame.cells().filter(|cell| map.at(*cell) == Occupancy::Occupied);
-    let near = |at: Point| {
-        let close = |o: &&Outline| o.bounds().grown(NEAR).contains(at) && o.distance(at) <= NEAR;
-        outlines.iter().any(|outline| close(&outline))
-    };
-    (occupied().filter(|cell| near(frame.center(*cell))).count(), occupied().count())
+    let mut off: Vec<f64> = frame
+        .cells()
+        .filter(|cell| map.at(*cell) == Occupancy::Occupied)
+        .map(|cell| distance(frame.center(cell), solids))
+        .collect();
+    off.sort_by(f64::total_cmp);
+    let near = off.partition_point(|distance| *distance <= NEAR);
+    let mut text = String::new();
+    if let (false, Some(most)) = (solids.is_empty(), off.last()) {
+        let span =
+            |bounds: Bounds| format!("{} x {} m", metres(bounds.width()), metres(bounds.height()));
+        let occupied = frame.cells().filter(|cell| map.at(*cell) == Occupancy::Occupied);
+        let of_map =
+            occupied.fold(Bounds::EMPTY, |bounds, cell| bounds.including(frame.center(cell)));
+        let of_world =
+            solids.iter().fold(Bounds::EMPTY, |bounds, solid| bounds.union(solid.bounds()));
+        let shift = (of_map.min + of_map.max - of_world.min - of_world.max) * 0.5;
+        text.push_str(&format!(
+            "laid: origin moved by ({}, {}) m, neither turned nor scaled\n\
+             extent: occupied {}, solid {}; middles ({}, {}) m apart\n\
+             distance to something solid: median {:.2} m, 90 % below {:.2} m, at most {:.2} m\n",
+            metres(start.x),
+            metres(start.y),
+            span(of_map.grown(0.5 * frame.resolution)),
+            span(of_world),
+            metres((shift.x * 100.0).round() / 100.0),
+            metres((shift.y * 100.0).round() / 100.0),
+            off[off.len() / 2],
+            off[(off.len() * 9 / 10).min(off.len() - 1)],
+            most,
+        ));
+    }
+    text.push_str(&format!(
+        "agreement: {near} of {} occupied cells lie within {NEAR} m of something solid\n",
+        off.len()
+    ));
+    text
+}
+
+/// How far (m) `at` is from the nearest of `solids`; infinite where there is none.
+fn distance(at: Point, solids: &[Outline]) -> f64 {
+    solids.iter().map(|solid| solid.distance(at)).fold(f64::INFINITY, f64::min)
+}
+
+/// Whether `cell` of `map` is near one of `outlines`.
+pub(super) fn is_near(map: &OccupancyGrid, outlines: &[Outline], cell: Cell) -> bool {
+    let at = map.frame().center(cell);
+    outlines.iter().any(|o| o.bounds().grown(NEAR).contains(at) && o.distance(at) <= NEAR)
 }
 
 fn text_of<'b>(name: &str, bytes: &'b [u8]) -> Result<&'b str, Vec<Diagnostic>> {

@@ -16,7 +16,7 @@ pub fn robot_svg(robot: &Robot) -> String {
     let radius = robot.circumscribed_radius();
     let body = robot.footprint.bounds();
     let margin = 0.75 * radius.max(robot.drive.wheel_separation / 2.0);
-    // Fields of view are cut off: they show the direction, not the range.
+    // Fields of view are cut off: they show the direction; how far they reach is on the sheet below.
     let (reach, cone_reach) = (2.1 * radius, 1.6 * radius);
     let mut bounds = body.grown(margin);
     if let Some(lidar) = &robot.lidar {
@@ -70,7 +70,15 @@ pub fn robot_svg(robot: &Robot) -> String {
         .set("stroke", "#555")
         .set("stroke-dasharray", "2 3");
     canvas.push(axle);
-    canvas.arrow(Point::ZERO, Point::new(0.45 * radius, 0.0), INK);
+    // Axes as ROS has them (REP 103).
+    let (ahead, aside) = (Point::new(0.45 * radius, 0.0), Point::new(0.0, 0.45 * radius));
+    canvas.arrow(Point::ZERO, ahead, INK);
+    canvas.arrow(Point::ZERO, aside, INK);
+    for (tip, shift, text) in [(ahead, (-2.0, 15.0), "x, ahead"), (aside, (-26.0, 4.0), "y, left")]
+    {
+        let label = canvas.label(tip, shift, 10.5, text);
+        canvas.push(label);
+    }
     if let Some(lidar) = &robot.lidar {
         let at = Outline::Circle { center: lidar.mount.position(), radius: 0.04 * radius };
         let dot = canvas.outline(&at).set("fill", ACCENT);
@@ -136,7 +144,60 @@ pub fn robot_svg(robot: &Robot) -> String {
         legend.push(("logical camera".to_owned(), "#f8ebde", CONE));
     }
     canvas.legend(&legend);
-    canvas.finish(&format!("Robot {} from above", robot.name))
+    let title = format!("Robot {} from above", robot.name);
+    match reach_sheet(robot) {
+        Some(reach) => canvas.finish_above(reach, &title),
+        None => canvas.finish(&title),
+    }
+}
+
+/// How far the sensors see, to scale with the body; `None` without any.
+fn reach_sheet(robot: &Robot) -> Option<Canvas> {
+    let mut views = Vec::new();
+    if let Some(lidar) = &robot.lidar {
+        let mut view = wedge(lidar.mount, lidar.min_angle, lidar.max_angle, lidar.max_range);
+        if lidar.max_angle - lidar.min_angle < 6.2 {
+            view.push(lidar.mount.position());
+        }
+        views.push((view, ACCENT, "5 4", 0.12));
+    }
+    if let Some(camera) = &robot.camera {
+        let half = camera.horizontal_fov / 2.0;
+        let mut view = wedge(camera.mount, -half, half, camera.far);
+        view.extend(wedge(camera.mount, -half, half, camera.near).into_iter().rev());
+        views.push((view, CONE, "2 3", 0.2));
+    }
+    let points = views.iter().flat_map(|(view, ..)| view.iter().copied());
+    let bounds = points.fold(robot.footprint.bounds(), Bounds::including);
+    let span = bounds.width().max(bounds.height());
+    if views.is_empty() {
+        return None;
+    }
+    let mut canvas = Canvas::new(bounds.grown(0.06 * span), 620.0, 480.0);
+    canvas.raster();
+    for (view, color, dash, opacity) in views {
+        let view = canvas.path(&view, true).set("fill", color).set("fill-opacity", opacity);
+        canvas.push(view.set("stroke", color).set("stroke-dasharray", dash));
+    }
+    let body = canvas.outline(&robot.footprint).set("fill", INK);
+    canvas.push(body);
+    canvas.axes();
+    let of_lidar =
+        robot.lidar.as_ref().map(|lidar| format!("scanner to {} m", metres(lidar.max_range)));
+    let of_camera = robot.camera.as_ref().map(|camera| {
+        format!("logical camera from {} to {} m", metres(camera.near), metres(camera.far))
+    });
+    let words: Vec<String> = of_lidar.into_iter().chain(of_camera).collect();
+    canvas.heading("How far it sees", &format!("to scale with the body: {}", words.join(", ")));
+    let mut legend = vec![("body".to_owned(), INK, INK)];
+    if robot.lidar.is_some() {
+        legend.push(("range scanner".to_owned(), "#e2ecf4", ACCENT));
+    }
+    if robot.camera.is_some() {
+        legend.push(("logical camera".to_owned(), "#f8ebde", CONE));
+    }
+    canvas.legend(&legend);
+    Some(canvas)
 }
 
 /// The arc of `reach` m that the scanner looks along, in the base frame.

@@ -201,7 +201,7 @@ fn a_map_is_laid_over_the_world_that_it_is_to_fit() {
     assert!(on.text.ends_with(near), "{}", on.text);
     let far = near.replacen('1', "0", 1);
     assert!(beside.text.ends_with(&far), "{}", beside.text);
-    assert!(texts(&on.svg).iter().any(|t| t == "occupied in the prior map"));
+    assert!(texts(&on.svg).iter().any(|t| t == "prior, farther off"));
     assert_eq!(on.svg.matches("M0 0h1v1h-1z").count(), 1, "the upper left cell alone");
 }
 
@@ -230,6 +230,53 @@ fn priors_are_derived_from_the_layers_asked_for() {
         faults[0].render(false),
         "error: `w.world` has no layer `doors`\n |\n = help: all of a Gazebo world is its layer `walls`\n"
     );
+}
+
+#[test]
+fn what_lies_off_in_a_prior_is_told_apart_and_in_numbers() {
+    let world = read_world("w.world", WORLD.as_bytes(), None, &mut NoModels).unwrap();
+    let over = Over { name: "m.yaml", bytes: MAP.as_bytes(), start: Point::ZERO };
+    let mut image = |_: &str| Ok(b"P2 2 2 255\n0 254 254 254".to_vec());
+    let drawing = draw_over(&world, 0.1602, over, &mut image).unwrap();
+    assert!(drawing.text.contains("laid: origin moved by (0, 0) m"), "{}", drawing.text);
+    assert!(drawing.text.contains("distance to something solid: median "), "{}", drawing.text);
+    let far = drawing.svg.split("M0 0h1v1h-1z").nth(1).unwrap();
+    assert!(far.starts_with("\" fill=\"#b2182b\""), "{}", &far[..80]);
+}
+
+#[test]
+fn a_robots_sensors_are_drawn_to_scale_too() {
+    let robot =
+        |text: &str| {
+            texts(
+                &draw("r.urdf", text.as_bytes(), CUT_HEIGHT, &mut NoModels, &mut |_| {
+                    Err(String::new())
+                })
+                .unwrap()
+                .svg,
+            )
+        };
+    let said = robot(KOBUKI);
+    assert!(said.iter().any(|text| text == "How far it sees"), "{said:?}");
+    assert!(said.iter().any(|text| text == "to scale with the body: scanner to 10 m"), "{said:?}");
+    assert!(said.iter().any(|text| text == "x, ahead"), "{said:?}");
+}
+
+#[test]
+fn a_topo_metric_map_is_drawn_alone_and_over_its_world() {
+    let map = "reenact-topo-metric-map: 1\nname: m\nsource: ours\nnodes:\n  hall: {at-m: [0, 0]}\n  door: {at-m: [3, 4]}\n\
+               edges: [[hall, door]]\n";
+    let alone =
+        draw("m.yaml", map.as_bytes(), CUT_HEIGHT, &mut NoModels, &mut |_| Err(String::new()))
+            .unwrap();
+    assert!(alone.text.contains("2 places, 1 direct ways, 5 m together"), "{}", alone.text);
+    assert!(
+        ["hall", "door", "place"].iter().all(|name| texts(&alone.svg).iter().any(|t| t == name))
+    );
+    let world = read_world("w.world", WORLD.as_bytes(), None, &mut NoModels).unwrap();
+    let over = Over { name: "m.yaml", bytes: map.as_bytes(), start: Point::ZERO };
+    let over = draw_over(&world, CUT_HEIGHT, over, &mut |_| Err(String::new())).unwrap();
+    assert!(over.text.contains("over the world: "), "{}", over.text);
 }
 
 proptest! {

@@ -1,10 +1,13 @@
-//! A world cut at the lidar's height: layers in grey, regions, starts, goals and tags. Where its tags mean a graph, as
+//! A world cut at the lidar's height: layers told apart, regions, starts, goals and tags. Where its tags mean a graph, as
 //! the deadline study's Figures 2 and 3: the building above, the graph below.
 
 use super::graph::{Mark, badge, graph_sheet, legend_entry, star, tag_mark};
 use super::graph_of;
-use super::grid::{cells_group, runs};
-use crate::figure::canvas::{ACCENT, Canvas, FAINT, INK};
+use super::grid::cells_group;
+use super::labels::{Taken, name_regions};
+use super::prior::{NEAR, is_near};
+use crate::figure::canvas::{ACCENT, Canvas, FAINT, INK, metres};
+use crate::figure::cell_runs;
 use crate::figure::svg::Element;
 use crate::geometry::{Bounds, Cardinal, Outline, Point};
 use crate::grid::{Cell, Occupancy, OccupancyGrid};
@@ -12,11 +15,13 @@ use crate::math;
 use crate::world::topology::{TagScheme, Topology};
 use crate::world::{RegionKind, World};
 
-/// Greys of the layers, in the order walls first, then by name.
-const GREYS: [&str; 5] = ["#2b2b2b", "#8c8c8c", "#b8b8b8", "#6a6a6a", "#d2d2d2"];
+/// Fills of the layers, walls first, then by name: told apart by hue, and in print by how dark they are.
+const FILLS: [&str; 6] = ["#2b2b2b", "#8c8c8c", "#e0a458", "#4f6d8f", "#c9b8dd", "#6b8e4e"];
 
-/// Fill of what a prior map holds to be occupied.
-const PRIOR: &str = "#d1495b";
+/// Fill of what a prior map holds to be occupied, where something solid is near.
+const PRIOR_NEAR: &str = "#56b4e9";
+/// The same where nothing is: darker, so that it is also told in grey.
+const PRIOR_FAR: &str = "#b2182b";
 
 /// The world at `lidar_height` m, as an SVG file. What the plane misses is drawn as a thin outline.
 pub fn world_svg(world: &World, lidar_height: f64) -> String {
@@ -67,15 +72,15 @@ fn building_sheet(
     }
     let mut layers = world.layers();
     layers.sort_by_key(|name| (*name != "walls", *name));
-    let grey = |layer: &str| {
-        GREYS[layers.iter().position(|name| *name == layer).unwrap_or(0) % GREYS.len()]
+    let fill_of = |layer: &str| {
+        FILLS[layers.iter().position(|name| *name == layer).unwrap_or(0) % FILLS.len()]
     };
     let mut missed = false;
     let mut cut = Vec::new();
     for solid in &world.solids {
         let met = solid.body.slice(lidar_height);
         if !met.is_empty() {
-            cut.extend(met.into_iter().map(|outline| (grey(&solid.layer), outline)));
+            cut.extend(met.into_iter().map(|outline| (fill_of(&solid.layer), outline)));
             continue;
         }
         for outline in solid.body.shadow(f64::NEG_INFINITY, f64::INFINITY) {
@@ -88,6 +93,7 @@ fn building_sheet(
             canvas.push(shape);
         }
     }
+    let standing: Vec<Outline> = cut.iter().map(|(_, outline)| outline.clone()).collect();
     for (fill, outline) in cut {
         let shape = match &outline {
             // A table leg of 2 cm must not vanish.
@@ -100,18 +106,20 @@ fn building_sheet(
         canvas.push(shape.set("fill", fill));
     }
     if let Some(prior) = prior {
-        let cells = Element::new("path").set("d", runs(prior, Occupancy::Occupied));
-        let cells = cells.set("fill", PRIOR).set("fill-opacity", 0.6);
-        let group = cells_group(&canvas, prior.frame()).child(cells);
+        let [near, far] = [true, false].map(|wanted| {
+            let is = |cell| {
+                prior.at(cell) == Occupancy::Occupied && is_near(prior, &standing, cell) == wanted
+            };
+            Element::new("path").set("d", cell_runs(prior, |cell, _| is(cell)))
+        });
+        let near = near.set("fill", PRIOR_NEAR).set("fill-opacity", 0.7);
+        let far = far.set("fill", PRIOR_FAR).set("stroke", PRIOR_FAR).set("stroke-width", 0.4);
+        let group = cells_group(&canvas, prior.frame()).child(near).child(far);
         canvas.push(group);
     }
-    let stars = graph.map_or_else(Vec::new, |graph| goal_stars(&canvas, graph));
-    let marks: Vec<Point> = world.tags.iter().map(|t| t.pose.position()).chain(stars).collect();
-    for region in &world.regions {
-        let at = free_spot(&canvas, &region.polygon, &marks);
-        let label = canvas.label(at, (0.0, 4.0), 12.0, &region.name);
-        canvas.push(label);
-    }
+    let marks = marks(&canvas, world, graph);
+    let mut taken = Taken { marks, solids: &standing };
+    let key = name_regions(&mut canvas, &world.regions, &mut taken);
     match graph {
         Some(graph) => marked(&mut canvas, world, graph),
         None => unmarked(&mut canvas, world),
@@ -121,12 +129,17 @@ fn building_sheet(
         format!("{:.2} x {:.2} m, cut at {lidar_height} m above the floor", size.0, size.1);
     canvas.heading(&world.name, &subtitle);
     let mut legend: Vec<(String, &str, &str)> =
-        layers.iter().map(|layer| ((*layer).to_owned(), grey(layer), INK)).collect();
+        layers.iter().map(|layer| ((*layer).to_owned(), fill_of(layer), INK)).collect();
     if missed {
         legend.push(("above or below the cut".to_owned(), "#fff", "#a8a8a8"));
     }
     if prior.is_some() {
-        legend.push(("occupied in the prior map".to_owned(), PRIOR, PRIOR));
+        legend.push((
+            format!("prior, within {} m of a solid", metres(NEAR)),
+            PRIOR_NEAR,
+            PRIOR_NEAR,
+        ));
+        legend.push(("prior, farther off".to_owned(), PRIOR_FAR, PRIOR_FAR));
     }
     for (kind, name, fill) in
         [(RegionKind::Room, "room", "#f3efe6"), (RegionKind::Corridor, "corridor", "#e6edf3")]
@@ -140,7 +153,30 @@ fn building_sheet(
     } else {
         canvas.legend(&legend);
     }
+    canvas.key(&key);
     canvas
+}
+
+/// What the names of regions keep off: tags, goals, and starts with what is written beside them.
+fn marks(canvas: &Canvas, world: &World, graph: Option<&Topology>) -> Vec<Bounds> {
+    let px = |at: Point, left: f64, right: f64, up: f64, down: f64| {
+        let scale = canvas.scale();
+        Bounds {
+            min: at - Point::new(left / scale, down / scale),
+            max: at + Point::new(right / scale, up / scale),
+        }
+    };
+    let tags = world.tags.iter().map(|tag| px(tag.pose.position(), 6.0, 6.0, 6.0, 6.0));
+    let starts = world.starts.iter().flat_map(|(name, start)| {
+        let tip = start.transform(Point::new(34.0 / canvas.scale(), 0.0));
+        #[expect(clippy::cast_precision_loss, reason = "names are short")]
+        let half = if graph.is_some() { 6.0 } else { 3.4 * (name.chars().count() + 6) as f64 };
+        [px(start.position(), half, half, 8.0, 22.0), px(tip, 8.0, 8.0, 8.0, 8.0)]
+    });
+    let stars = graph.map_or_else(Vec::new, |graph| goal_stars(canvas, graph));
+    let stars = stars.into_iter().map(|at| px(at, 11.0, 11.0, 11.0, 11.0));
+    let goals = world.goals.values().map(|at| px(*at, 26.0, 26.0, 22.0, 8.0));
+    tags.chain(starts).chain(stars).chain(goals).collect()
 }
 
 /// Tags, goals and starts of a world without a graph, each with its name.
@@ -236,50 +272,4 @@ fn mark_legend(canvas: &mut Canvas) {
     let disc =
         Element::new("circle").at("cx", x + 7.0).at("cy", y).at("r", 7.0).set("fill", ACCENT);
     legend_entry(canvas, x, disc, 14.0, "start");
-}
-
-/// Where a region's name stands: near its middle, away from `marks` and walls.
-fn free_spot(canvas: &Canvas, polygon: &[Point], marks: &[Point]) -> Point {
-    let center = middle(polygon);
-    let outline = Outline::Polygon(polygon.to_vec());
-    let bounds = outline.bounds();
-    let inside = |at: &Point| {
-        let margin = (15.0 / canvas.scale()).min(0.3 * bounds.width().min(bounds.height()));
-        outline.contains(*at) && outline.sides().all(|side| side.distance(*at) >= margin)
-    };
-    let score = |at: &Point| {
-        let near = marks.iter().map(|mark| mark.distance(*at));
-        let clear = (near.fold(f64::INFINITY, f64::min) * canvas.scale()).min(30.0);
-        clear - 0.1 * canvas.scale() * at.distance(center)
-    };
-    // A raster of about 12 px.
-    let steps = |length: f64| {
-        #[expect(clippy::cast_possible_truncation, reason = "at most a hundred")]
-        let count = (length * canvas.scale() / 12.0).ceil().clamp(1.0, 100.0) as i32;
-        (0..=count).map(move |i| length * f64::from(i) / f64::from(count))
-    };
-    steps(bounds.width())
-        .flat_map(|x| steps(bounds.height()).map(move |y| (x, y)))
-        .map(|(x, y)| bounds.min + Point::new(x, y))
-        .chain([center])
-        .filter(|at| *at == center || inside(at))
-        .max_by(|a, b| score(a).total_cmp(&score(b)))
-        .unwrap_or(center)
-}
-
-/// The centroid of a simple polygon; the mean of its corners where it has no area.
-fn middle(corners: &[Point]) -> Point {
-    let (mut area, mut sum) = (0.0, Point::ZERO);
-    for (i, a) in corners.iter().enumerate() {
-        let b = corners[(i + 1) % corners.len()];
-        let cross = a.cross(b);
-        area += cross;
-        sum = sum + (*a + b) * cross;
-    }
-    if area.abs() < 1e-9 {
-        #[expect(clippy::cast_precision_loss, reason = "a polygon has few corners")]
-        let count = corners.len().max(1) as f64;
-        return corners.iter().fold(Point::ZERO, |sum, corner| sum + *corner) * (1.0 / count);
-    }
-    sum * (1.0 / (3.0 * area))
 }

@@ -29,6 +29,11 @@ impl TopoMetricMap {
         self.nodes.iter().map(|node| node.at).collect()
     }
 
+    /// What the nodes are called, in the order of [`Self::positions`].
+    pub fn names(&self) -> Vec<&str> {
+        self.nodes.iter().map(|node| node.name.as_str()).collect()
+    }
+
     /// Between which places (m) there are direct ways.
     pub fn edges(&self) -> Vec<(Point, Point)> {
         self.edges.iter().map(|&(a, b)| (self.nodes[a].at, self.nodes[b].at)).collect()
