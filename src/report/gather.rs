@@ -69,7 +69,7 @@ pub fn content_of(
             .iter()
             .map(|a| Assumption {
                 path: a.path.clone(),
-                value: text_of(&a.value),
+                value: in_words(&a.value),
                 why: a.why.clone(),
                 tried: None,
             })
@@ -139,7 +139,29 @@ fn figures(bundle: &Bundle, plan: &Plan) -> Vec<Figure> {
         })
         .collect()
 }
+/// A value as one would say it; of one that depends on a factor, `17.5 for department-south, 5.6 for house`.
+fn in_words(value: &Value) -> String {
+    let Some(values) = value.get("by").and(value.get("values")).and_then(Value::as_object) else {
+        return value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+    };
+    let mut words: Vec<String> =
+        values.iter().map(|(level, value)| format!("{} for {level}", in_words(value))).collect();
+    if let Some(otherwise) = value.get("otherwise").filter(|otherwise| !otherwise.is_null()) {
+        words.push(format!("{} otherwise", in_words(otherwise)));
+    }
+    words.join(", ")
+}
 
-fn text_of(value: &Value) -> String {
-    value.as_str().map_or_else(|| value.to_string(), str::to_owned)
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn values_that_depend_on_a_factor_are_told_level_by_level() {
+        assert_eq!(in_words(&json!("nearest")), "nearest");
+        assert_eq!(in_words(&json!(0.25)), "0.25");
+        let by = json!({"by": "start", "values": {"A": 60, "B": {"by": "prior", "values": {"none": 1}}}, "otherwise": 15});
+        assert_eq!(in_words(&by), "60 for A, 1 for none for B, 15 otherwise");
+    }
 }
