@@ -261,11 +261,13 @@ pub fn of_agreement_table(name: &str) -> Option<Column> {
         "slope" => number(
             "Slope of our log ratios on the paper's: 1 agrees, below 1 our gains are smaller",
         ),
-        "slope-low" => number("Lower end of its 95 % interval (jackknife over blocks)"),
-        "slope-high" => number("Upper end of its 95 % interval (jackknife over blocks)"),
+        "slope-low" | "intercept-low" => {
+            number("Lower end of its 95 % interval (jackknife over blocks)")
+        }
+        "slope-high" | "intercept-high" => {
+            number("Upper end of its 95 % interval (jackknife over blocks)")
+        }
         "intercept" => number("Intercept of that line: 0 agrees"),
-        "intercept-low" => number("Lower end of its 95 % interval (jackknife over blocks)"),
-        "intercept-high" => number("Upper end of its 95 % interval (jackknife over blocks)"),
         "pearson" => correlation("Pearson's correlation of the log ratios"),
         "spearman" => correlation("Spearman's correlation of the log ratios"),
         "rmse-log-ratio" => {
@@ -281,11 +283,10 @@ pub fn of_agreement_table(name: &str) -> Option<Column> {
             name,
             "Log ratios around which the paper's spread and number of runs put a 95 % interval",
         ),
-        "ratios-inside" => Column::count(name, "How many of ours lie inside it"),
+        "ratios-inside" | "cells-inside" => Column::count(name, "How many of ours lie inside it"),
         "cells-with-interval" => {
             Column::count(name, "Cells around whose printed mean they put a 95 % interval")
         }
-        "cells-inside" => Column::count(name, "How many of ours lie inside it"),
         _ => return None,
     })
 }
