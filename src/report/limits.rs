@@ -90,7 +90,8 @@ pub(super) fn partial(plan: &Plan, selection: &Selection) -> Option<String> {
     }
     let mut parts = Vec::new();
     if let Some(trials) = selection.trials {
-        parts.push(format!("{trials} trials per condition instead of {}", plan.experiment.trials));
+        let trials = counted(trials as usize, "trial", "trials");
+        parts.push(format!("{trials} per condition instead of {}", plan.experiment.trials));
     }
     for (factor, values) in &selection.only {
         parts.push(format!("only {factor} {}", values.join(", ")));
