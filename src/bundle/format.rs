@@ -101,7 +101,7 @@ pub(super) fn check(path: &str, found: u64) -> Result<(), Fault> {
 /// The media type that archives expect for `path`, by its extension.
 pub fn media_type(path: &str) -> &'static str {
     match path.rsplit('.').next().unwrap_or_default() {
-        "yaml" | "yml" => "application/yaml",
+        "yaml" | "yml" | "cff" => "application/yaml",
         "urdf" | "sdf" | "world" | "xml" | "xacro" => "application/xml",
         "pgm" => "image/x-portable-graymap",
         "png" => "image/png",
@@ -110,7 +110,6 @@ pub fn media_type(path: &str) -> &'static str {
         "json" => "application/json",
         "jsonl" => "application/jsonl",
         "md" => "text/markdown",
-        "cff" => "application/yaml",
         "txt" => "text/plain",
         "html" => "text/html",
         "stl" => "model/stl",

@@ -29,8 +29,8 @@ pub(super) fn aligned(table: &Table, keys: usize, left: &[usize], width: usize) 
     let first = total(&narrow[..keys]);
     let mut blocks: Vec<Vec<usize>> = Vec::new();
     let mut taken = usize::MAX;
-    for column in keys..names.len() {
-        let more = GAP.len() + narrow[column];
+    for (column, room) in narrow.iter().enumerate().skip(keys) {
+        let more = GAP.len() + room;
         match blocks.last_mut() {
             Some(last) if taken + more <= width => {
                 last.push(column);
