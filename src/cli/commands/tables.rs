@@ -172,7 +172,10 @@ fn coverage_table(findings: &Findings<'_>, wanted: &CoverageTable, width: usize)
     }
     let mut text = aligned(&table, 2, &[1], width);
     let mut notes = Vec::new();
-    if let Some(baseline) = &wanted.baseline {
+    let compared = |cell: &CoverageCell| {
+        cell.difference_percent.or(cell.published_difference_percent).is_some()
+    };
+    if let Some(baseline) = wanted.baseline.as_ref().filter(|_| cells.iter().any(compared)) {
         notes.push(format!("%: of the mean against {}", baseline.0));
     }
     if is_published {

@@ -41,7 +41,11 @@ fn a_logical_camera_is_drawn_with_its_cone() {
         assert!(said.iter().any(|t| t == text), "{text}: {said:?}");
     }
     let cones = |svg: &str| svg.matches("stroke=\"#d98324\"").count();
-    assert_eq!((cones(&robot.svg), cones(&drawn("robots/kobuki.urdf", KOBUKI).svg)), (2, 0));
+    assert_eq!(
+        (cones(&robot.svg), cones(&drawn("robots/kobuki.urdf", KOBUKI).svg)),
+        (4, 0),
+        "cone and legend, on either sheet"
+    );
 }
 
 #[test]

@@ -7,7 +7,6 @@
 pub mod agreement;
 mod cell_tests;
 pub mod choice;
-pub mod columns;
 pub mod effects;
 pub mod explorer;
 mod field_of_view;
@@ -39,6 +38,7 @@ use crate::world::World;
 use std::sync::{Arc, OnceLock};
 use tour::TopoMetricMap;
 
+pub use mission::columns;
 pub use mission::{
     FURTHER_AT_MILESTONES, MILESTONES, POSE_ERRORS, Prepared, SharedReference,
     coverage_at_distance, explored_map, plan_figure, run,

@@ -1,5 +1,6 @@
 //! One trial: the simulator on one end, the mind on the other, and what is measured in between.
 
+pub mod columns;
 mod plan_figure;
 mod pose_errors;
 mod recorder;

@@ -1,8 +1,10 @@
 //! What the measures of a trial say, and the columns of this study's tables: one place for the data dictionary and for what
 //! claims and tables may speak of.
 
-use super::mission::{FURTHER_AT_MILESTONES, MILESTONES, POSE_ERRORS, coverage_at_distance};
-use super::requests::{CoverageTable, EffectsTable, MeasuresTable, Metric};
+use super::FURTHER_AT_MILESTONES;
+use super::pose_errors::POSE_ERRORS;
+use super::trace::{MILESTONES, coverage_at_distance};
+use crate::studies::prior_map::requests::{CoverageTable, EffectsTable, MeasuresTable, Metric};
 use crate::table::{Column, unit_of};
 
 /// The measures that are told at the end of every trial, and those that a manifest asks for.
@@ -261,13 +263,15 @@ pub fn of_agreement_table(name: &str) -> Option<Column> {
         "slope" => number(
             "Slope of our log ratios on the paper's: 1 agrees, below 1 our gains are smaller",
         ),
-        "slope-low" | "intercept-low" => {
-            number("Lower end of its 95 % interval (jackknife over blocks)")
-        }
-        "slope-high" | "intercept-high" => {
-            number("Upper end of its 95 % interval (jackknife over blocks)")
-        }
+        "slope-low" => number("Lower end of the slope's 95 % interval (jackknife over blocks)"),
+        "slope-high" => number("Upper end of the slope's 95 % interval (jackknife over blocks)"),
         "intercept" => number("Intercept of that line: 0 agrees"),
+        "intercept-low" => {
+            number("Lower end of the intercept's 95 % interval (jackknife over blocks)")
+        }
+        "intercept-high" => {
+            number("Upper end of the intercept's 95 % interval (jackknife over blocks)")
+        }
         "pearson" => correlation("Pearson's correlation of the log ratios"),
         "spearman" => correlation("Spearman's correlation of the log ratios"),
         "rmse-log-ratio" => {
@@ -283,10 +287,11 @@ pub fn of_agreement_table(name: &str) -> Option<Column> {
             name,
             "Log ratios around which the paper's spread and number of runs put a 95 % interval",
         ),
-        "ratios-inside" | "cells-inside" => Column::count(name, "How many of ours lie inside it"),
+        "ratios-inside" => Column::count(name, "How many of our log ratios lie inside it"),
         "cells-with-interval" => {
             Column::count(name, "Cells around whose printed mean they put a 95 % interval")
         }
+        "cells-inside" => Column::count(name, "How many of our cells lie inside it"),
         _ => return None,
     })
 }
