@@ -119,7 +119,10 @@ mod tests {
 
     /// The published quickstart: ten trials without and ten with a floor plan, nothing claimed.
     fn quickstart() -> (Bundle, Plan, Selection) {
-        let zip = include_bytes!("../../artifacts/quickstart-published.zip");
+        let zip = include_bytes!(concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/artifacts/quickstart-published.zip"
+        ));
         let bundle = Bundle::read(zip, &Limits::default()).unwrap();
         let (plan, selection) = plan_of(&bundle).unwrap();
         (bundle, plan, selection)

@@ -1,6 +1,6 @@
 //! What every column of every table of a study says: factors, what all studies share, and each study's own.
 
-use super::{StudyKind, TableLayout, TableRequest, deadline, prior_map};
+use super::{StudyKind, TableLayout, TableRequest, deadline, outcomes, prior_map};
 use crate::claims::Judgement;
 use crate::claims::metric::WALL_TIME_COLUMNS;
 use crate::table::{Column, unit_of};
@@ -96,7 +96,7 @@ impl Dictionary<'_> {
             TableLayout::MeasuresTable(wanted) => {
                 prior_map::columns::of_measures_table(wanted, name)
             }
-            TableLayout::OutcomeTable(wanted) => deadline::columns::of_outcome_table(wanted, name),
+            TableLayout::OutcomeTable(wanted) => outcomes::of_outcome_table(wanted, name),
             TableLayout::ManeuverTable(_) => deadline::columns::of_maneuver_table(name),
         };
         // A factor that is called like a column of numbers would be taken for one; its column comes first in the table.

@@ -277,10 +277,10 @@ mod tests {
         assert_eq!(
             text,
             "Table 1, success rate (%)
-         deadline-                     normalized-  corridors-  complete-
-  start          s  random   frontier     frontier       first   corridor
-      A        680  0 ·  -    25 ✓ 26      50 ≈ 59     75 ≠ 12  100 ✓ 100
-      A         68  0 ·  -    25 ·  -      50 ·  -     75 ·  -   100 ·  -
+         deadline-                    normalized-  corridors-  complete-
+  start          s  random  frontier     frontier       first   corridor
+      A        680  0 ·  -   25 ✓ 26      50 ≈ 59     75 ≠ 12  100 ✓ 100
+      A         68  0 ·  -   25 ·  -      50 ·  -     75 ·  -   100 ·  -
   (ours, then the paper's: ✓ within 10 % of it, ≈ 20 %, ≠ farther off)
 "
         );

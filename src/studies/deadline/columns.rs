@@ -2,7 +2,6 @@
 //! claims and tables may speak of.
 
 use super::calibration::{MOTIONS, SPEEDS, maneuver_name};
-use crate::studies::outcomes::{OutcomeTable, Percent, Quantity};
 use crate::table::{Column, unit_of};
 
 /// The measures of a whole trial.
@@ -90,44 +89,6 @@ pub fn measure(name: &str) -> Option<Column> {
     })
 }
 
-/// A column of an outcome table, factors aside.
-pub fn of_outcome_table(wanted: &OutcomeTable, name: &str) -> Option<Column> {
-    let (unit, what, least, most) = match &wanted.show {
-        Quantity::Share(_) => ("%", wanted.show.describe(), Some(0.0), Some(100.0)),
-        Quantity::Percent(Percent { part, whole }) => {
-            let what = format!("{part} as a share of {whole}, both summed over trials");
-            ("%", what, Some(0.0), Some(100.0))
-        }
-        Quantity::Mean(measured) => {
-            let unit = unit_of(measured);
-            (unit, format!("mean of {measured} over the trials that have it"), None, None)
-        }
-    };
-    let number = |meaning: &str| {
-        let column = Column::number(name, unit, meaning);
-        Column { least, most, ..column }.empty_where("no trial of the cell has the quantity")
-    };
-    let few = "no trial, or too few for an interval";
-    Some(match name {
-        "value" => number(&sentence(&what)),
-        "low" => number("Lower end of its 95 % interval").empty_where(few),
-        "high" => number("Upper end of its 95 % interval").empty_where(few),
-        "sd" => number("Standard deviation over trials (n - 1)")
-            .at_least(0.0)
-            .empty_where("the quantity is a share, or fewer than two trials have it"),
-        "n" => Column::count(name, "Trials behind the value"),
-        "trials" => {
-            Column::count(name, "All trials of the cell but those in which the program failed")
-        }
-        "published" => {
-            number("The number that the paper prints").empty_where("the paper prints none")
-        }
-        "published-n" => Column::count(name, "Trials behind the paper's number")
-            .empty_where("the paper does not say"),
-        _ => return None,
-    })
-}
-
 /// A column of a table of maneuvers.
 pub fn of_maneuver_table(name: &str) -> Option<Column> {
     let time = |meaning| Column::number(name, "s", meaning).at_least(0.0);
@@ -174,12 +135,6 @@ pub fn of_calibration(name: &str) -> Option<Column> {
         "failure-high" => Column::probability(name, "Upper end of its 95 % interval"),
         _ => return None,
     })
-}
-
-/// `text` with a capital.
-fn sentence(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 #[cfg(test)]

@@ -3,10 +3,12 @@
 
 mod cells;
 mod charts;
+mod columns;
 
 pub use cells::{Estimate, OutcomeCell};
 pub(super) use cells::{measured, published_share};
 pub(super) use charts::named;
+pub(super) use columns::of_outcome_table;
 
 use crate::studies::{FactorValue, Outcome};
 use schemars::JsonSchema;
