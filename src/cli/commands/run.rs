@@ -1,7 +1,6 @@
 //! `reenact run`: plan, simulate, seal.
 
 use super::execution::{Executed, Execution, Times};
-use super::fold::wrapped;
 use super::locked::{self, Held};
 use super::{probe, tables, verdicts};
 use crate::bundle::wall_time;
@@ -9,6 +8,7 @@ use crate::bundle::{Additions, Form, Sealed, assemble, capsule, seal_with};
 use crate::claims::Verdict;
 use crate::cli::args::{Format, RunArgs};
 use crate::cli::exit::{Exit, Failure};
+use crate::cli::fold::wrapped;
 use crate::cli::load;
 use crate::cli::terminal::{Terminal, counted};
 use crate::compare::Lock;
@@ -127,7 +127,8 @@ impl Done {
     fn tell(&self, terminal: Terminal) {
         let mut text = wrapped(&self.plan.experiment.title, 0, terminal.columns());
         if self.plan.partial {
-            text.push_str("PARTIAL: part of the study only; no claim is judged\n");
+            let partial = "PARTIAL: part of the study only; no claim is judged";
+            text.push_str(&wrapped(partial, 0, terminal.columns()));
         }
         text.push('\n');
         let factors = assemble::factors(&self.plan);

@@ -1,6 +1,6 @@
 //! The paper's tables in as many columns as the terminal has, 80 in a pipe.
 
-use super::fold::{aligned, wrapped};
+use crate::cli::fold::{aligned, wrapped};
 use crate::report::{Agreement, Measured};
 use crate::studies::deadline::{ManeuverTable, OutcomeTable};
 use crate::studies::prior_map::CoverageTable;
@@ -276,10 +276,10 @@ mod tests {
         assert_eq!(
             text,
             "Table 1, success rate (%)
-         deadline-                     normalized-  corridors-  complete-
-  start          s  random   frontier     frontier       first   corridor
-      A        680  0 ·  -    25 ✓ 26      50 ≈ 59     75 ≠ 12  100 ✓ 100
-      A         68  0 ·  -    25 ·  -      50 ·  -     75 ·  -   100 ·  -
+         deadline-                    normalized-  corridors-  complete-
+  start          s  random  frontier     frontier       first   corridor
+      A        680  0 ·  -   25 ✓ 26      50 ≈ 59     75 ≠ 12  100 ✓ 100
+      A         68  0 ·  -   25 ·  -      50 ·  -     75 ·  -   100 ·  -
   (ours, then the paper's: ✓ within 10 % of it, ≈ 20 %, ≠ farther off)
 "
         );
