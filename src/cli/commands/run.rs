@@ -8,7 +8,7 @@ use crate::bundle::{Additions, Form, Sealed, assemble, capsule, seal_with};
 use crate::claims::Verdict;
 use crate::cli::args::{Format, RunArgs};
 use crate::cli::exit::{Exit, Failure};
-use crate::cli::fold::wrapped;
+use crate::cli::fold::{narrowed, wrapped};
 use crate::cli::load;
 use crate::cli::terminal::{Terminal, counted};
 use crate::compare::Lock;
@@ -138,7 +138,8 @@ impl Done {
             text.push_str(&tables::table(&findings, request, tables, terminal.columns()));
             text.push('\n');
         }
-        text.push_str(&verdicts::in_words(&self.verdicts, &self.machine_verdicts));
+        let verdicts = verdicts::in_words(&self.verdicts, &self.machine_verdicts);
+        text.push_str(&narrowed(&verdicts, terminal.columns()));
         text.push_str(&wrapped(&self.summary(), 0, terminal.columns()));
         if self.twice {
             text.push_str("every trial was executed twice and gave the same bytes\n");
