@@ -7,6 +7,7 @@ mod calibrate;
 mod commands;
 mod estimate;
 mod exit;
+mod fold;
 mod load;
 mod progress;
 mod terminal;

@@ -3,6 +3,7 @@
 //! What matters most comes first, so that a narrow terminal cuts off what matters least.
 
 use super::estimate::{Estimate, in_words};
+use super::fold::wrapped;
 use super::terminal::{Terminal, counted};
 use crate::provenance::RunClock;
 use crate::runner::{Observer, RunEvent};
@@ -165,6 +166,7 @@ impl Observer for Progress {
                         None => heading,
                     };
                     // The bar's own way to print fills the line with spaces and lets the terminal wrap it.
+                    let heading = wrapped(&heading, 0, self.terminal.columns());
                     self.bar.suspend(|| self.terminal.note(&heading));
                 }
                 self.tell(&mut state);

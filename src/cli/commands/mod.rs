@@ -6,7 +6,6 @@ pub(super) mod completions;
 pub(super) mod diff;
 mod execution;
 pub(super) mod export;
-mod fold;
 pub(super) mod init;
 pub(super) mod lock;
 mod locked;

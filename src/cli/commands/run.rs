@@ -1,7 +1,6 @@
 //! `reenact run`: plan, simulate, seal.
 
 use super::execution::{Executed, Execution, Times};
-use super::fold::wrapped;
 use super::locked::{self, Held};
 use super::{probe, tables, verdicts};
 use crate::bundle::wall_time;
@@ -9,6 +8,7 @@ use crate::bundle::{Additions, Form, Sealed, assemble, capsule, format, seal_wit
 use crate::claims::Verdict;
 use crate::cli::args::{Format, RunArgs};
 use crate::cli::exit::{Exit, Failure};
+use crate::cli::fold::{narrowed, wrapped};
 use crate::cli::load;
 use crate::cli::terminal::{Terminal, counted};
 use crate::compare::Lock;
@@ -132,7 +132,8 @@ impl Done {
     fn tell(&self, terminal: Terminal) {
         let mut text = wrapped(&self.plan.experiment.title, 0, terminal.columns());
         if self.plan.partial {
-            text.push_str("PARTIAL: part of the study only; no claim is judged\n");
+            let partial = "PARTIAL: part of the study only; no claim is judged";
+            text.push_str(&wrapped(partial, 0, terminal.columns()));
         }
         text.push('\n');
         let factors = assemble::factors(&self.plan);
@@ -142,7 +143,8 @@ impl Done {
             text.push_str(&tables::table(&findings, request, tables, terminal.columns()));
             text.push('\n');
         }
-        text.push_str(&verdicts::in_words(&self.verdicts, &self.machine_verdicts));
+        let verdicts = verdicts::in_words(&self.verdicts, &self.machine_verdicts);
+        text.push_str(&narrowed(&verdicts, terminal.columns()));
         text.push_str(&wrapped(&self.summary(), 0, terminal.columns()));
         if self.twice {
             text.push_str("every trial was executed twice and gave the same bytes\n");

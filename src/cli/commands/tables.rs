@@ -1,6 +1,6 @@
 //! The paper's tables in as many columns as the terminal has, 80 in a pipe.
 
-use super::fold::{aligned, wrapped};
+use crate::cli::fold::{aligned, wrapped};
 use crate::report::{Agreement, Measured};
 use crate::studies::deadline::ManeuverTable;
 use crate::studies::outcomes::OutcomeTable;

@@ -105,6 +105,15 @@ pub(super) fn wrapped(text: &str, indent: usize, width: usize) -> String {
     out + &format!("{:indent$}{line}\n", "")
 }
 
+/// `text` with every line that is longer than `width` wrapped, below its own beginning.
+pub(super) fn narrowed(text: &str, width: usize) -> String {
+    let narrow = |line: &str| {
+        let indent = length(line) - length(line.trim_start());
+        if length(line) <= width { format!("{line}\n") } else { wrapped(line, indent, width) }
+    };
+    text.lines().map(narrow).collect()
+}
+
 fn length(text: &str) -> usize {
     text.chars().count()
 }
@@ -195,5 +204,6 @@ mod tests {
     fn texts_are_wrapped_between_words() {
         assert_eq!(wrapped("one two three", 2, 9), "  one two\n  three\n");
         assert_eq!(wrapped("unbreakable", 2, 5), "  unbreakable\n");
+        assert_eq!(narrowed("a  b\n    one two three\n\n", 12), "a  b\n    one two\n    three\n\n");
     }
 }
