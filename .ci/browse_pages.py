@@ -88,7 +88,7 @@ def sorting(page):
 
 
 def filtering(page):
-    rows = page.locator("tr[data-verdict]")
+    rows = page.locator("#claims tr[data-verdict]")
     for button in page.locator(".filter button").all():
         button.focus()
         page.keyboard.press("Enter")

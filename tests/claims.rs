@@ -81,7 +81,8 @@ Claims
   claim  we find           paper's table
   P1     cannot-be-tested  supports
          (prior=floor-plan) has 1 runs to compare, fewer than the minimum of 10
-reproduction: 0 of 1 claims supported, 0 contradicted, 0 inconclusive, 1 cannot be tested
+reproduction: 0 of 1 claims supported, 0 contradicted, 0 inconclusive, 1 cannot
+be tested
 
 Claims about the machine (not among the results)
   claim  we find           paper's table
@@ -110,8 +111,9 @@ Claims about the machine (not among the results)
     // From the store nothing is measured, and what was not measured is not passed over.
     let stored = reenact(folder, &words, false);
     let unmeasured = "  P21    cannot-be-tested  silent
-         2 of 2 runs of (all trials) never reached wall-time-s-per-selection; say with `censored` whether those that \
-         did are compared (reached-only) or the others rank last (worst)
+         2 of 2 runs of (all trials) never reached wall-time-s-per-selection;
+         say with `censored` whether those that did are compared (reached-only)
+         or the others rank last (worst)
 ";
     assert!(stored.contains(unmeasured), "{stored}");
 

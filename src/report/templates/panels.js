@@ -42,6 +42,9 @@ function panelOf(trial) {
   const status = make("p", "now");
   const scroll = make("div", "scroll"), table = make("table", "decision"), events = make("ul", "events");
   const policy = make("table", "decision");
+  // Scrolled by keyboard too, where the tables are wider than the screen.
+  Object.entries({ tabindex: 0, role: "region", "aria-label": `What ${trial.name} chose among` })
+    .forEach(([name, value]) => scroll.setAttribute(name, value));
   scroll.append(table, policy);
   side.append(status, scroll, events);
   view.append(canvas, side);
