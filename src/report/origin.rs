@@ -93,6 +93,9 @@ fn role(as_written: &str) -> &'static str {
     if as_written.ends_with(".maneuvers.csv") || as_written.contains("calibration") {
         return "calibration";
     }
+    if as_written.ends_with(".sensitivity.csv") {
+        return "sensitivity";
+    }
     match as_written.rsplit('.').next() {
         Some("urdf") => "robot",
         Some("csv") => "published",
@@ -100,5 +103,21 @@ fn role(as_written: &str) -> &'static str {
         Some("png" | "pgm") => "prior",
         _ if as_written.contains("world") => "world",
         _ => "input",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tables_are_told_apart_by_what_made_them() {
+        let files = [
+            "a.maneuvers.csv",
+            "manifests/a.sensitivity.csv",
+            "reference/a.csv",
+            "../robots/a.urdf",
+        ];
+        assert_eq!(files.map(role), ["calibration", "sensitivity", "published", "robot"]);
     }
 }
