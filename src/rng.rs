@@ -104,6 +104,20 @@ impl Stream {
         (radius * cos, radius * sin)
     }
 
+    /// `count` different places out of `of`, in order; all of them where there are no more.
+    pub fn places(&mut self, count: usize, of: usize) -> Vec<usize> {
+        let mut places: Vec<usize> = (0..of).collect();
+        let count = count.min(of);
+        for i in 0..count {
+            #[expect(clippy::cast_possible_truncation, reason = "below a usize")]
+            let pick = i + self.below((of - i) as u64) as usize;
+            places.swap(i, pick);
+        }
+        places.truncate(count);
+        places.sort_unstable();
+        places
+    }
+
     /// One standard normal number; the pair's other half is dropped, so that draws stay countable.
     pub fn normal(&mut self) -> f64 {
         self.normal_pair().0

@@ -163,7 +163,7 @@ fn a_study_with_a_failed_trial_is_a_bundle_too() {
     let claims: serde_json::Value =
         serde_json::from_slice(claims.result("claims.json").unwrap()).unwrap();
     assert_eq!(claims[0]["verdict"], "cannot-be-tested");
-    let options = Options { level: Level::Derived, sample: 0, seed: 0 };
+    let options = Options { level: Level::Derived, sample: 0, rows: None, seed: 0 };
     let pipeline = Reenactment::new(1).unwrap();
     let report = climb(archive::read(&zip, &Limits::default()), &options, &pipeline);
     assert_eq!(report.verdict(), Verdict::Holds, "{}", report.to_human());

@@ -4,6 +4,7 @@
 use super::content::{Author, BundleContent, Citation, SealedCondition, SealedInput};
 use super::{figures, format, wall_time};
 use crate::claims::{self, Claim, Verdict};
+use crate::manifest::Input;
 use crate::plan::{ENGINE_VERSION, Plan, Selection};
 use crate::studies::{
     Dictionary, Findings, Outcome, StudyKind, TableLayout, TrialRecord, coverage_tables,
@@ -73,6 +74,11 @@ pub fn assemble(
         conditions: sealed_conditions(plan, records),
         results,
         tables,
+        robustness: experiment.sensitivity.as_ref().and_then(|known| {
+            let of_it = |input: &&Input| input.as_written == known.as_written;
+            let input = experiment.inputs.iter().find(of_it)?;
+            Some(format!("{}{}", format::INPUTS, input.name))
+        }),
         partial: plan.partial,
     })
 }
@@ -258,7 +264,11 @@ fn described_inputs(plan: &Plan) -> Vec<DescribedTable> {
         let calibration =
             table.columns.iter().all(|name| Dictionary::of_calibration(name).is_some());
         let varied = table.columns.iter().all(|name| Dictionary::of_sensitivity(name).is_some());
-        described.push(if varied {
+        let passages = table.columns.iter().all(|name| Dictionary::of_passages(name).is_some());
+        described.push(if passages {
+            let words = ("Passages of the calibration", "one isolated passage, in plan order");
+            DescribedTable::of(&table, path, words, Dictionary::of_passages)
+        } else if varied {
             let words = ("Claims at other values of the assumptions", "one claim at one value");
             DescribedTable::of(&table, path, words, Dictionary::of_sensitivity)
         } else if calibration {

@@ -1,10 +1,15 @@
 //! The bag's tag files (RFC 8493): written in one form, read in every harmless one.
 
-use super::{Circumstance, Fault, Limits, Moment, Tree, format, names};
+use super::{Circumstance, Fault, Limits, Tree, format, names};
 use crate::digest::{ResultsDigest, Sha256Digest, StudyDigest};
 
 /// The declaration.
 pub const DECLARATION: &str = "BagIt-Version: 1.0\nTag-File-Character-Encoding: UTF-8\n";
+
+/// The label that names the program that bagged.
+pub(crate) const AGENT: &str = "Bag-Software-Agent";
+/// The label of the identifier that is made of the manifest's digest.
+pub(crate) const IDENTIFIER: &str = "External-Identifier";
 
 /// Manifest lines of `files`, in their order.
 pub(super) fn manifest<'a>(files: impl IntoIterator<Item = (&'a String, &'a Vec<u8>)>) -> String {
@@ -58,6 +63,10 @@ fn excerpt(line: &str) -> String {
 
 /// Lines of `bag-info.txt` that are read; it has a dozen.
 const MOST_LINES: usize = 10_000;
+/// Labels of `bag-info.txt` that are told as none of its own.
+const MOST_LABELS: usize = 20;
+/// Labels that tell when and where the run was.
+const CIRCUMSTANCES: [&str; 4] = ["Bagging-Date", "Run-Ended", "Run-Environment", "Run-Started"];
 
 /// The labels of `bag-info.txt` in the order written; a label may stand several times.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -65,7 +74,7 @@ pub struct BagInfo(pub Vec<(String, String)>);
 
 impl BagInfo {
     /// What this program writes; without circumstances where it bags a payload whose bag was lost.
-    pub(super) fn of(
+    pub(crate) fn of(
         payload: &Tree,
         circumstance: Option<&Circumstance>,
         results: ResultsDigest,
@@ -76,9 +85,9 @@ impl BagInfo {
         let octets: usize = payload.values().map(Vec::len).sum();
         let version = circumstance.map_or(format::VERSION, |c| c.version.as_str());
         let mut labels = vec![
-            ("Bag-Software-Agent", format!("reenact {version} <{}>", format::HOME)),
+            (AGENT, format!("reenact {version} <{}>", format::HOME)),
             ("Bundle-Format", format::FORMAT.to_string()),
-            ("External-Identifier", format!("urn:uuid:{uuid}")),
+            (IDENTIFIER, format!("urn:uuid:{uuid}")),
             ("Partial", partial.to_string()),
             ("Payload-Oxum", format!("{octets}.{}", payload.len())),
             ("Results-Digest", format!("sha256:{results}")),
@@ -94,6 +103,13 @@ impl BagInfo {
             labels.push(("Run-Environment", one_line(&format!("{name}={value}"))));
         }
         Self(labels.into_iter().map(|(label, value)| (label.to_owned(), value)).collect())
+    }
+
+    /// The same with the value of `label` replaced.
+    pub(crate) fn set(&mut self, label: &str, value: &str) {
+        for (_, known) in self.0.iter_mut().filter(|(known, _)| known == label) {
+            value.clone_into(known);
+        }
     }
 
     pub(super) fn to_text(&self) -> String {
@@ -127,22 +143,50 @@ impl BagInfo {
         self.0.iter().find(|(name, _)| name == label).map(|(_, value)| value.as_str())
     }
 
-    /// The circumstances that this file tells; `None` where it does not tell them as this program writes them.
-    pub fn circumstance(&self) -> Option<Circumstance> {
-        let agent = self.get("Bag-Software-Agent")?.strip_prefix("reenact ")?;
-        Some(Circumstance {
-            version: agent.split(' ').next()?.to_owned(),
-            started: Moment::from_iso(self.get("Run-Started")?)?,
-            ended: Moment::from_iso(self.get("Run-Ended")?)?,
-            environment: self
-                .0
-                .iter()
-                .filter(|(label, _)| label == "Run-Environment")
-                .filter_map(|(_, value)| value.split_once('='))
-                .map(|(name, value)| (name.to_owned(), value.to_owned()))
-                .collect(),
-            files: Vec::new(),
-        })
+    /// What is wrong with the labels, given those that are right: each of them as often as there, and no other. Whether the
+    /// `version` of the program that bagged matters is said by the caller, for whoever bags a lost crate again may be another.
+    pub(crate) fn faults(&self, right: &Self) -> Vec<Fault> {
+        let mut faults = Vec::new();
+        let values = |info: &Self, label: &str| -> Vec<String> {
+            info.0.iter().filter(|(l, _)| l == label).map(|(_, value)| value.clone()).collect()
+        };
+        let mut labels: Vec<&str> = right.0.iter().map(|(label, _)| label.as_str()).collect();
+        labels.dedup();
+        for label in labels {
+            let (expected, found) = (values(right, label), values(self, label));
+            // Said twice, readers differ in which they believe.
+            if expected != found {
+                let shown = |values: &[String]| match values {
+                    [] => "nothing".to_owned(),
+                    values => values.join(", then "),
+                };
+                let expected = format!("{label}: {}", shown(&expected));
+                let fault = Fault::new(format::BAG_INFO, expected, shown(&found));
+                let is_format = label == "Bundle-Format";
+                faults.push(if is_format { fault.hint(format::NO_FORMAT_HINT) } else { fault });
+            }
+        }
+        let mut others: Vec<&str> = self.0.iter().map(|(label, _)| label.as_str()).collect();
+        others.retain(|label| !right.0.iter().any(|(known, _)| known == label));
+        others.dedup();
+        for label in others.into_iter().take(MOST_LABELS) {
+            let expected =
+                "only labels that follow from the run (docs/bundle-format.md lists them)";
+            let found = excerpt(&format!("{label}: {}", self.get(label).unwrap_or_default()));
+            faults.push(Fault::new(format::BAG_INFO, expected, found));
+        }
+        faults
+    }
+
+    /// Whether it tells anything of when and where the run was.
+    pub(crate) fn tells_circumstances(&self) -> bool {
+        self.0.iter().any(|(label, _)| CIRCUMSTANCES.contains(&label.as_str()))
+    }
+
+    /// Takes over what `info` tells of when and where the run was.
+    pub(crate) fn keep_circumstances(&mut self, info: &Self) {
+        let told = info.0.iter().filter(|(label, _)| CIRCUMSTANCES.contains(&label.as_str()));
+        self.0.extend(told.take(MOST_LABELS).cloned());
     }
 }
 
@@ -154,6 +198,7 @@ pub(super) fn one_line(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Moment;
     use super::*;
     use proptest::prelude::*;
 
@@ -196,15 +241,27 @@ mod tests {
         let back = BagInfo::parse(info.to_text().as_bytes());
         assert_eq!(back, info);
         assert_eq!(back.get("Partial"), Some("false"), "a value cannot smuggle a label in");
-        let expected = [("host".to_owned(), "a=b Partial: true".to_owned())];
-        assert_eq!(back.circumstance().unwrap().environment, expected);
+        assert_eq!(back.get("Run-Environment"), Some("host=a=b Partial: true"));
+        assert_eq!(back.faults(&info), []);
+        let mut more = info.to_text();
+        more.push_str("Partial: true\nSource-Organization: ACM Artifact Evaluation\n");
+        let more = more.replace("Run-Ended: 1970-01-01T00:00:09+00:00\n", "");
+        let told = BagInfo::parse(more.as_bytes()).faults(&info);
+        let told: Vec<String> = told.iter().map(ToString::to_string).collect();
+        let expected = [
+            "bag-info.txt: expected Partial: false, found false, then true",
+            "bag-info.txt: expected Run-Ended: 1970-01-01T00:00:09+00:00, found nothing",
+            "bag-info.txt: expected only labels that follow from the run (docs/bundle-format.md lists them), found \
+             `Source-Organization: ACM Artifact Evalua`",
+        ];
+        assert_eq!(told, expected);
     }
 
     proptest! {
         #[test]
         fn any_bytes_are_read_or_refused(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
             let _ = parse_manifest("m", &bytes);
-            let _ = BagInfo::parse(&bytes).circumstance();
+            let _ = BagInfo::parse(&bytes).faults(&BagInfo::default());
         }
     }
 }

@@ -38,6 +38,8 @@ pub struct BundleContent {
     /// What the columns of CSV files say, also of such as are there only where the machine was measured: paths relative to
     /// the payload.
     pub tables: Vec<DescribedTable>,
+    /// Where the table of verdicts at other values of the assumptions is, relative to the payload.
+    pub robustness: Option<String>,
     /// Whether only part of the study was run.
     pub partial: bool,
 }

@@ -12,6 +12,7 @@ pub mod assemble;
 pub mod bag;
 pub mod capsule;
 mod citation;
+mod class;
 mod content;
 mod crate_actions;
 mod crate_entities;
@@ -27,6 +28,7 @@ mod preview;
 mod reader;
 mod readme;
 mod resolved;
+mod told;
 pub mod wall_time;
 mod writer;
 
@@ -35,6 +37,7 @@ pub(crate) mod sample;
 
 pub use archive::{Archive, Form, Limits};
 pub use capsule::Capsule;
+pub use class::{Class, class_of, is_tag_file, table_in_markdown};
 pub use content::{
     Author, BundleContent, Circumstance, Citation, SealedCondition, SealedInput, seal_inputs,
 };
@@ -42,7 +45,8 @@ pub use fault::{Fault, visible};
 pub use moment::Moment;
 pub use reader::{Bundle, OpenError};
 pub use resolved::{ConditionEntry, InputEntry, Resolved};
-pub use writer::{Additions, SealError, Sealed, in_bag, seal, seal_with};
+pub use told::is_version;
+pub use writer::{Additions, SealError, Sealed, in_bag, in_bag_info, seal, seal_with};
 
 use crate::digest::{ResultsDigest, Sha256Digest};
 use std::collections::BTreeMap;

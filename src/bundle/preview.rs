@@ -28,9 +28,18 @@ pub(super) fn page(
         fact("Reproduces", escape(&cite.text));
     }
     fact("Licence", escape(&content.license));
-    fact("Run", escape(&circumstance.ended.iso()));
+    fact("Run", format!("{} (as the run tells it)", escape(&circumstance.ended.iso())));
     fact("Engine", escape(&content.engine));
     fact("Results digest", format!("<code>sha256:{digest}</code>"));
+    // The time of the run is its own word; this is the author's.
+    if let Some(path) = &content.robustness {
+        let path = escape(path);
+        let words = format!(
+            "<a href=\"{path}\">{path}</a> is the author's word until its runs are done again: <code>reenact verify --level 4 \
+             --robustness all</code>"
+        );
+        fact("Robustness", words);
+    }
 
     let (mut figures, mut files) = (String::new(), String::new());
     for (path, bytes) in payload {

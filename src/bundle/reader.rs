@@ -2,7 +2,7 @@
 
 use super::{
     Archive, Circumstance, ConditionEntry, Fault, Form, InputEntry, Limits, Resolved, Tree,
-    archive, bag, format, results_digest,
+    archive, bag, format, results_digest, told,
 };
 use crate::digest::{BundleId, ResultsDigest, Sha256Digest, StudyDigest};
 use crate::studies::TrialRecord;
@@ -112,6 +112,11 @@ impl Bundle {
         &self.resolved.engine
     }
 
+    /// The version of its layout and of what is derived.
+    pub fn format(&self) -> u64 {
+        self.resolved.bundle_format
+    }
+
     /// Whether only part of the study was run.
     pub fn is_partial(&self) -> bool {
         self.resolved.partial
@@ -130,6 +135,14 @@ impl Bundle {
     /// Every input by every path it is known by.
     pub fn inputs(&self) -> &[InputEntry] {
         &self.resolved.inputs
+    }
+
+    /// What the resolved study says of the input at `path` within the payload.
+    pub fn resolved_input(&self, path: &str) -> Option<&serde_json::Value> {
+        let known = &self.resolved.inputs;
+        let entry = known.iter().find(|input| input.path == path)?;
+        let inputs = self.resolved.study["inputs"].as_array()?;
+        inputs.iter().find(|input| input["as-written"] == entry.as_written.as_str())
     }
 
     /// The bytes of the input that the study calls `as_written`.
@@ -214,9 +227,9 @@ impl Bundle {
         self.tree.get(format::TAG_MANIFEST).map(|bytes| BundleId(Sha256Digest::of(bytes)))
     }
 
-    /// The circumstances of the run, where the bag tells them.
+    /// The circumstances of the run, where the crate's metadata tells them as this program writes them.
     pub fn circumstance(&self) -> Option<Circumstance> {
-        let told = bag::BagInfo::parse(self.tree.get(format::BAG_INFO)?).circumstance()?;
+        let told = told::circumstance(&self.tree)?;
         let files = self.circumstance_files();
         let files = files.map(|(path, bytes)| (path.to_owned(), bytes.to_vec())).collect();
         Some(Circumstance { files, ..told })
@@ -295,12 +308,12 @@ mod tests {
     fn a_newer_format_is_not_mistaken_for_damage() {
         let mut archive = archive::read(sample::zip(), &Limits::default()).unwrap();
         let info = String::from_utf8(archive.tree["bag-info.txt"].clone()).unwrap();
-        let info = info.replace("Bundle-Format: 1", "Bundle-Format: 2");
+        let info = info.replace("Bundle-Format: 2", "Bundle-Format: 3");
         archive.tree.insert("bag-info.txt".into(), info.into_bytes());
         let error = Bundle::open(archive).unwrap_err();
         assert!(matches!(error, OpenError::Newer(_)));
         assert!(error.to_string().starts_with(
-            "bag-info.txt: expected bundle format 1 or older, found bundle format 2 (this is reenact "
+            "bag-info.txt: expected bundle format 2 or older, found bundle format 3 (this is reenact "
         ));
     }
 

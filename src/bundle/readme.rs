@@ -61,14 +61,12 @@ Checksums show that nothing changed since they were made; who made them, only a 
 | `ro-crate-metadata.json` | the same for machines: RO-Crate 1.1, Provenance Run Crate 0.5 |
 "
     ));
-    if additions.description {
-        text.push_str(
-            "| `data-dictionary.md` | every column of every CSV file: unit, range, meaning, when it is empty |
+    text.push_str(
+        "| `data-dictionary.md` | every column of every CSV file: unit, range, meaning, when it is empty |
 | `datapackage.json` | the same for programs: Frictionless Data Package with Table Schema |
 | `CITATION.cff`, `.zenodo.json` | how to cite this bundle; what Zenodo asks of a deposit |
 ",
-        );
-    }
+    );
     if !circumstance.files.is_empty() {
         text.push_str(
             "| `circumstances/` | wall times on the machine of the run and verdicts on them: not part of the results |\n",
@@ -95,9 +93,7 @@ The crates that it needs are named in its `Cargo.lock`, each with its digest; th
             capsule.path
         );
     }
-    if additions.description {
-        text.push_str(&reading(content));
-    }
+    text.push_str(&reading(content));
     text + &later
 }
 

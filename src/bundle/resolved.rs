@@ -91,7 +91,7 @@ impl Resolved {
         }
         let path = format!("{}{}", format::PAYLOAD, format::RESOLVED);
         let fault = |problem: String| {
-            Fault::new(&path, "the resolved study of format 1 (docs/bundle-format.md)", problem)
+            Fault::new(&path, "a resolved study (docs/bundle-format.md)", problem)
         };
         let version: Version = serde_json::from_slice(bytes)
             .map_err(|e| fault(e.to_string()).hint(format::NO_FORMAT_HINT))?;
@@ -138,12 +138,12 @@ mod tests {
     fn older_and_missing_formats_are_refused_with_help() {
         assert_eq!(
             Resolved::read(br#"{"bundle-format": 0}"#).unwrap_err().to_string(),
-            "data/study.resolved.json: expected bundle format 1, found bundle format 0 (no release wrote that format: ask the \
+            "data/study.resolved.json: expected bundle format 1 to 2, found bundle format 0 (no release wrote that format: ask the \
              author for the bundle as `reenact run` sealed it, or run its study.yaml again)"
         );
         assert_eq!(
             Resolved::read(b"{}").unwrap_err().to_string(),
-            "data/study.resolved.json: expected the resolved study of format 1 (docs/bundle-format.md), found missing field \
+            "data/study.resolved.json: expected a resolved study (docs/bundle-format.md), found missing field \
              `bundle-format` at line 1 column 2 (every release writes its format's number: ask the author for the bundle as \
              `reenact run` sealed it)"
         );
@@ -155,8 +155,8 @@ mod tests {
         assert_eq!(
             fault.to_string(),
             format!(
-                "data/study.resolved.json: expected bundle format 1 or older, found bundle format 7 (this is reenact {}, \
-                 which reads formats 1 to 1; install the version named after `Bag-Software-Agent` in bag-info.txt (or \
+                "data/study.resolved.json: expected bundle format 2 or older, found bundle format 7 (this is reenact {}, \
+                 which reads formats 1 to 2; install the version named after `Bag-Software-Agent` in bag-info.txt (or \
                  any newer one) to read format 7)",
                 format::VERSION
             )

@@ -137,6 +137,7 @@ pub(crate) fn content_of(
             .collect(),
         results: results(&all),
         tables: tables(),
+        robustness: None,
         partial: false,
     }
 }

@@ -89,18 +89,10 @@ pub fn seal(content: &BundleContent, circumstance: &Circumstance) -> Result<Seal
 }
 
 /// What a bundle holds beside content and circumstances.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct Additions<'a> {
     /// The source of the engine that ran it.
     pub source: Option<&'a Capsule>,
-    /// Data dictionary and citation, which the first bundles do not have.
-    pub description: bool,
-}
-
-impl Default for Additions<'_> {
-    fn default() -> Self {
-        Self { source: None, description: true }
-    }
 }
 
 /// Seals `content` together with `additions`.
@@ -145,18 +137,14 @@ pub fn seal_with(
     if let Some(capsule) = additions.source {
         payload.add(&capsule.path, capsule.bytes.clone())?;
     }
-    if additions.description {
-        let there =
-            |path: &String| payload.tree.contains_key(&format!("{}{path}", format::PAYLOAD));
-        let tables: Vec<_> =
-            content.tables.iter().filter(|table| there(&table.path)).cloned().collect();
-        let package = data_package::package(content, &tables, &payload.tree, results_digest);
-        payload.add(format::DATA_PACKAGE, package)?;
-        payload.add(format::DICTIONARY, data_package::dictionary(content, &tables).into())?;
-        payload
-            .add(format::CITATION, citation::cff(content, circumstance, results_digest).into())?;
-        payload.add(format::ZENODO, citation::zenodo(content, results_digest))?;
-    }
+    let there = |path: &String| payload.tree.contains_key(&format!("{}{path}", format::PAYLOAD));
+    let tables: Vec<_> =
+        content.tables.iter().filter(|table| there(&table.path)).cloned().collect();
+    let package = data_package::package(content, &tables, &payload.tree, results_digest);
+    payload.add(format::DATA_PACKAGE, package)?;
+    payload.add(format::DICTIONARY, data_package::dictionary(content, &tables).into())?;
+    payload.add(format::CITATION, citation::cff(content, circumstance, results_digest).into())?;
+    payload.add(format::ZENODO, citation::zenodo(content, results_digest))?;
     let readme = readme::readme(content, circumstance, results_digest, additions);
     payload.add(format::README, readme.into())?;
     payload.add(format::LICENSE, readme::license(content).into())?;
@@ -225,17 +213,34 @@ pub fn in_bag(bundle: &Bundle) -> Tree {
     bagged(payload, None, digests, bundle.is_partial()).0
 }
 
+/// What `bag-info.txt` says of `bundle`, with the circumstances of its run or without any.
+pub fn in_bag_info(bundle: &Bundle, circumstance: Option<&Circumstance>) -> bag::BagInfo {
+    let payload = bundle.tree().iter().filter(|(path, _)| path.starts_with(format::PAYLOAD));
+    let payload: Tree = payload.map(|(path, bytes)| (path.clone(), bytes.clone())).collect();
+    let digests = (bundle.results_digest(), bundle.study_digest());
+    info_of(&payload, circumstance, digests, bundle.is_partial())
+}
+
+fn info_of(
+    payload: &Tree,
+    circumstance: Option<&Circumstance>,
+    (results, study): (ResultsDigest, StudyDigest),
+    partial: bool,
+) -> bag::BagInfo {
+    let uuid = uuid(&Sha256Digest::of(bag::manifest(payload)));
+    bag::BagInfo::of(payload, circumstance, results, study, partial, &uuid)
+}
+
 /// `payload` with the tag files of its bag.
 fn bagged(
     payload: Tree,
     circumstance: Option<&Circumstance>,
-    (results, study): (ResultsDigest, StudyDigest),
+    digests: (ResultsDigest, StudyDigest),
     partial: bool,
 ) -> (Tree, BundleId) {
     let mut tree = payload;
     let manifest = bag::manifest(&tree);
-    let uuid = uuid(&Sha256Digest::of(&manifest));
-    let info = bag::BagInfo::of(&tree, circumstance, results, study, partial, &uuid);
+    let info = info_of(&tree, circumstance, digests, partial);
     let mut tags = Tree::new();
     tags.insert(format::BAGIT.to_owned(), bag::DECLARATION.into());
     tags.insert(format::BAG_INFO.to_owned(), info.to_text().into_bytes());

@@ -2,10 +2,21 @@
 //! the other values that its manifest states, on the same trial numbers and the same noise.
 
 use super::{Judgement, Verdict};
+use crate::digest::Sha256Digest;
 use crate::table::{Table, Value};
+use std::collections::BTreeMap;
 
-const COLUMNS: [&str; 7] =
-    ["setting", "chosen", "tried", "trials", "claim", "at-chosen", "at-tried"];
+const COLUMNS: [&str; 9] = [
+    "setting",
+    "chosen",
+    "tried",
+    "trials",
+    "claim",
+    "at-chosen",
+    "at-tried",
+    "records-at-chosen",
+    "records-at-tried",
+];
 
 /// One claim under one other value of one setting.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,6 +28,61 @@ struct Row {
     claim: String,
     at_chosen: Judgement,
     at_tried: Judgement,
+    records_at_chosen: Option<Sha256Digest>,
+    records_at_tried: Option<Sha256Digest>,
+}
+
+/// A run of the whole study that the table rests on: at the values that the manifest chose, or with one setting moved.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Run {
+    /// The setting and its other value, as [`in_words`]; `None` for the run at the chosen values.
+    pub moved: Option<(String, String)>,
+    /// Trials per condition.
+    pub trials: u32,
+    /// What each claim's verdict was.
+    pub verdicts: Vec<(String, Judgement)>,
+    /// Of the records of all its trials, in plan order; the first tables did not say it.
+    pub records: Option<Sha256Digest>,
+}
+
+impl std::fmt::Display for Run {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match &self.moved {
+            Some((setting, tried)) => write!(f, "with {setting} at {tried}"),
+            None => f.write_str("at the values that the manifest chose"),
+        }
+    }
+}
+
+impl Run {
+    /// What `fresh` verdicts and records would have the table say of this run.
+    #[must_use]
+    pub fn with(&self, fresh: &[Verdict], records: Sha256Digest) -> Self {
+        let verdicts = fresh.iter().map(|verdict| (verdict.id.clone(), verdict.judgement));
+        Self { verdicts: verdicts.collect(), records: Some(records), ..self.clone() }
+    }
+
+    /// The first difference from what the same run gave elsewhere: what it gave there, and what this says.
+    pub fn difference(&self, fresh: &Self) -> Option<(String, String)> {
+        for (claim, judgement) in &self.verdicts {
+            let again = fresh.verdicts.iter().find(|(id, _)| id == claim).map(|(_, j)| *j);
+            if again != Some(*judgement) {
+                let again = again.map_or("no verdict".to_owned(), |j| j.to_string());
+                return Some((format!("{again} for the claim {claim}"), judgement.to_string()));
+            }
+        }
+        let (fresh, said) = (fresh.records?, self.records?);
+        (fresh != said).then(|| (format!("records sha256:{fresh}"), format!("sha256:{said}")))
+    }
+
+    /// What `run --set` needs to do it again; `value_of` gives a setting's value as YAML by its path and its words.
+    pub fn overrides(&self, value_of: &dyn Fn(&str, &str) -> String) -> Vec<String> {
+        let mut set = vec!["sensitivity=null".to_owned(), format!("trials={}", self.trials)];
+        if let Some((setting, tried)) = &self.moved {
+            set.push(format!("{setting}={}", value_of(setting, tried)));
+        }
+        set
+    }
 }
 
 /// The verdicts under every value that was tried, setting by setting.
@@ -64,8 +130,13 @@ pub fn in_words(value: &serde_json::Value) -> String {
 }
 
 impl Sensitivity {
-    /// Adds what was found at one attempt: the verdicts at the chosen value and at the one tried, claim by claim.
-    pub fn push(&mut self, attempt: &Attempt, at_chosen: &[Verdict], at_tried: &[Verdict]) {
+    /// Adds what was found at one attempt: verdicts and records at the chosen value and at the one tried, claim by claim.
+    pub fn push(
+        &mut self,
+        attempt: &Attempt,
+        (at_chosen, records_at_chosen): (&[Verdict], Sha256Digest),
+        (at_tried, records_at_tried): (&[Verdict], Sha256Digest),
+    ) {
         for before in at_chosen {
             if let Some(after) = at_tried.iter().find(|after| after.id == before.id) {
                 self.rows.push(Row {
@@ -76,6 +147,8 @@ impl Sensitivity {
                     claim: before.id.clone(),
                     at_chosen: before.judgement,
                     at_tried: after.judgement,
+                    records_at_chosen: Some(records_at_chosen),
+                    records_at_tried: Some(records_at_tried),
                 });
             }
         }
@@ -96,6 +169,29 @@ impl Sensitivity {
             }
         }
         attempts
+    }
+
+    /// The runs that it rests on: the one at the chosen values first, then every attempt in the order of the table.
+    pub fn runs(&self) -> Vec<Run> {
+        let mut runs: Vec<Run> = Vec::new();
+        let mut add = |moved: Option<(String, String)>, row: &Row, judgement, records| {
+            let known = runs.iter_mut().find(|run| run.moved == moved && run.trials == row.trials);
+            let verdict = (row.claim.clone(), judgement);
+            match known {
+                Some(run) if run.verdicts.contains(&verdict) => {}
+                Some(run) => run.verdicts.push(verdict),
+                None => {
+                    runs.push(Run { moved, trials: row.trials, verdicts: vec![verdict], records });
+                }
+            }
+        };
+        for row in &self.rows {
+            add(None, row, row.at_chosen, row.records_at_chosen);
+            let moved = (row.setting.clone(), row.tried.clone());
+            add(Some(moved), row, row.at_tried, row.records_at_tried);
+        }
+        runs.sort_by_key(|run| run.moved.is_some());
+        runs
     }
 
     /// The verdicts that `attempt` changes.
@@ -134,6 +230,8 @@ impl Sensitivity {
                 row.claim.as_str().into(),
                 row.at_chosen.to_string().into(),
                 row.at_tried.to_string().into(),
+                row.records_at_chosen.map(|digest| digest.hex()).into(),
+                row.records_at_tried.map(|digest| digest.hex()).into(),
             ]);
         }
         table.to_csv()
@@ -145,9 +243,11 @@ impl Sensitivity {
     /// Where the text is no CSV, lacks a column, or a field is none of those that are written.
     pub fn from_csv(text: &str) -> Result<Self, SensitivityError> {
         let table = Table::from_csv(text).map_err(|e| SensitivityError(e.to_string()))?;
-        if table.columns != COLUMNS {
+        // The first tables held no digests of runs.
+        let without_digests = table.columns == COLUMNS[..7];
+        if table.columns != COLUMNS && !without_digests {
             return Err(SensitivityError(format!(
-                "expected the columns {}, found {}",
+                "expected the columns {}, found {}; `reenact vary` writes them",
                 COLUMNS.join(", "),
                 table.columns.join(", ")
             )));
@@ -167,10 +267,59 @@ impl Sensitivity {
             let trials = text(3).parse().map_err(|_| fault(3, "a number of trials"))?;
             let (at_chosen, at_tried) = (verdict(5)?, verdict(6)?);
             let (setting, chosen, tried, claim) = (text(0), text(1), text(2), text(4));
-            Ok(Row { setting, chosen, tried, trials, claim, at_chosen, at_tried })
+            let digest = |column: usize| {
+                if without_digests || fields[column] == Value::Missing {
+                    return Ok(None);
+                }
+                let found = Sha256Digest::from_hex(&text(column));
+                found.map(Some).ok_or_else(|| fault(column, "64 hex digits"))
+            };
+            Ok(Row {
+                setting,
+                chosen,
+                tried,
+                trials,
+                claim,
+                at_chosen,
+                at_tried,
+                records_at_chosen: digest(7)?,
+                records_at_tried: digest(8)?,
+            })
         };
         let rows: Result<_, _> = table.rows.iter().enumerate().map(read).collect();
-        Ok(Self { rows: rows? })
+        let read = Self { rows: rows? };
+        match read.contradiction() {
+            Some(problem) => Err(SensitivityError(problem)),
+            None => Ok(read),
+        }
+    }
+
+    /// The first row that says something else of a run than an earlier one, in words.
+    fn contradiction(&self) -> Option<String> {
+        let (mut records, mut verdicts) = (BTreeMap::new(), BTreeMap::new());
+        for (i, row) in self.rows.iter().enumerate() {
+            let tried = (Some((row.setting.as_str(), row.tried.as_str())), row.trials);
+            for (run, found, judgement) in [
+                ((None, row.trials), row.records_at_chosen, row.at_chosen),
+                (tried, row.records_at_tried, row.at_tried),
+            ] {
+                let known = *records.entry(run).or_insert(found);
+                let before = *verdicts.entry((run, row.claim.as_str())).or_insert(judgement);
+                if known != found || before != judgement {
+                    let (row, claim) = (i + 1, &row.claim);
+                    let by = |digest: Option<Sha256Digest>| {
+                        digest.map_or("none".to_owned(), |d| d.short())
+                    };
+                    return Some(format!(
+                        "row {row}: says {judgement} of {claim} by records {}, where an earlier row says {before} by {} of \
+                         the same run",
+                        by(found),
+                        by(known)
+                    ));
+                }
+            }
+        }
+        None
     }
 }
 
@@ -178,15 +327,26 @@ impl Sensitivity {
 mod tests {
     use super::*;
 
-    const TEXT: &str = "setting,chosen,tried,trials,claim,at-chosen,at-tried\n\
-        parameters.pilot.stop-m,0.05,0.1,15,D1,supported,supported\n\
-        parameters.pilot.stop-m,0.05,0.1,15,D2,inconclusive,contradicted\n\
-        parameters.sensing.drive-noise,uniform,gaussian,15,D1,supported,inconclusive\n";
+    /// A table of three rows, with digests that begin with `a` for the chosen values.
+    fn text() -> String {
+        let digest = |first: &str| format!("{first}{}", "0".repeat(63));
+        let row = |what: &str, tried: &str| format!("{what},{},{}\n", digest("a"), digest(tried));
+        [
+            COLUMNS.join(",") + "\n",
+            row("parameters.pilot.stop-m,0.05,0.1,15,D1,supported,supported", "b"),
+            row("parameters.pilot.stop-m,0.05,0.1,15,D2,inconclusive,contradicted", "b"),
+            row(
+                "parameters.sensing.drive-noise,uniform,gaussian,15,D1,supported,inconclusive",
+                "c",
+            ),
+        ]
+        .concat()
+    }
 
     #[test]
     fn a_table_of_verdicts_survives_a_round_trip_and_tells_what_flips() {
-        let read = Sensitivity::from_csv(TEXT).unwrap();
-        assert_eq!(read.to_csv(), TEXT);
+        let read = Sensitivity::from_csv(&text()).unwrap();
+        assert_eq!(read.to_csv(), text());
         assert_eq!(read.claims(), ["D1", "D2"]);
         let attempts = read.attempts();
         assert_eq!(attempts.len(), 2);
@@ -210,15 +370,80 @@ mod tests {
         let told = |text: &str| Sensitivity::from_csv(text).unwrap_err().to_string();
         assert_eq!(
             told("setting,value\n"),
-            "expected the columns setting, chosen, tried, trials, claim, at-chosen, at-tried, found setting, value"
+            "expected the columns setting, chosen, tried, trials, claim, at-chosen, at-tried, records-at-chosen, \
+             records-at-tried, found setting, value; `reenact vary` writes them"
         );
         assert_eq!(
-            told(&TEXT.replace("inconclusive,contradicted", "inconclusive,wrong")),
+            told(&text().replace("inconclusive,contradicted", "inconclusive,wrong")),
             "row 2: expected a verdict as at-tried, found `wrong`"
         );
         assert_eq!(
-            told(&TEXT.replace("gaussian,15", "gaussian,many")),
+            told(&text().replace("gaussian,15", "gaussian,many")),
             "row 3: expected a number of trials as trials, found `many`"
         );
+    }
+
+    #[test]
+    fn the_runs_behind_a_table_are_told_once_each() {
+        let read = Sensitivity::from_csv(&text()).unwrap();
+        let runs = read.runs();
+        let told: Vec<String> = runs.iter().map(ToString::to_string).collect();
+        let expected = [
+            "at the values that the manifest chose",
+            "with parameters.pilot.stop-m at 0.1",
+            "with parameters.sensing.drive-noise at gaussian",
+        ];
+        assert_eq!(told, expected);
+        assert_eq!(runs[0].verdicts.len(), 2);
+        let words = |path: &str, tried: &str| format!("<{path} {tried}>");
+        assert_eq!(
+            runs[2].overrides(&words),
+            [
+                "sensitivity=null",
+                "trials=15",
+                "parameters.sensing.drive-noise=<parameters.sensing.drive-noise gaussian>"
+            ]
+        );
+        assert_eq!(runs[1].difference(&runs[1].clone()), None);
+        let mut other = runs[1].clone();
+        other.records = Some(Sha256Digest::of("other"));
+        let (expected, found) = runs[1].difference(&other).unwrap();
+        assert!(expected.starts_with("records sha256:") && found.starts_with("sha256:b0"));
+        other.verdicts[1].1 = Judgement::Supported;
+        let told = runs[1].difference(&other).unwrap();
+        assert_eq!(told, ("supported for the claim D2".to_owned(), "contradicted".to_owned()));
+    }
+
+    #[test]
+    fn rows_that_contradict_one_another_are_refused() {
+        let told = |text: &str| Sensitivity::from_csv(text).unwrap_err().to_string();
+        assert_eq!(
+            told(
+                &text().replace("15,D1,supported,inconclusive", "15,D1,contradicted,inconclusive")
+            ),
+            "row 3: says contradicted of D1 by records a0000000, where an earlier row says supported by a0000000 of the same \
+             run"
+        );
+        assert_eq!(
+            told(&text().replacen(",b0", ",d0", 1)),
+            "row 2: says contradicted of D2 by records b0000000, where an earlier row says contradicted by d0000000 of the \
+             same run"
+        );
+        let cut = text().replace(&format!("c{}", "0".repeat(63)), "c0");
+        assert_eq!(told(&cut), "row 3: expected 64 hex digits as records-at-tried, found `c0`");
+    }
+
+    /// What was judged before digests were written down can still be judged again.
+    #[test]
+    fn tables_without_digests_are_read() {
+        let seven = |line: &str| line.split(',').take(7).collect::<Vec<_>>().join(",") + "\n";
+        let old: String = text().lines().map(seven).collect();
+        let read = Sensitivity::from_csv(&old).unwrap();
+        assert!(read.runs().iter().all(|run| run.records.is_none()));
+        assert!(read.to_csv().lines().nth(1).unwrap().ends_with(",supported,supported,,"));
+        assert_eq!(Sensitivity::from_csv(&read.to_csv()).unwrap(), read);
+        let mut other = read.runs()[0].clone();
+        other.verdicts[0].1 = Judgement::Contradicted;
+        assert!(read.runs()[0].difference(&other).is_some());
     }
 }

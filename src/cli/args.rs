@@ -1,5 +1,6 @@
 //! What can be typed.
 
+use crate::verify::Rows;
 use clap::{Args, CommandFactory as _, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -9,6 +10,17 @@ use std::path::PathBuf;
 pub(super) struct Arguments {
     #[command(subcommand)]
     pub(super) command: Command,
+}
+
+/// How many rows `--robustness` asks for.
+fn rows(text: &str) -> Result<Rows, String> {
+    match text {
+        "all" => Ok(Rows::All),
+        number => number
+            .parse()
+            .map(Rows::Drawn)
+            .map_err(|_| "expected a number of rows or `all`".to_owned()),
+    }
 }
 
 /// The clap command, for completions and for the test that holds it together.
@@ -158,6 +170,10 @@ pub(super) struct VerifyArgs {
     /// Trials to draw at level 4
     #[arg(long, value_name = "N", default_value_t = 59)]
     pub(super) sample: usize,
+    /// Rows of the robustness table (`sensitivity:`) to run again from level 4 on, each a run of the study at another value
+    /// of one setting: a number or `all` [default: 1 at level 4, 3 at level 5]
+    #[arg(long, value_name = "N|all", value_parser = rows)]
+    pub(super) robustness: Option<Rows>,
     /// The reviewer's seed for drawing them, and the experiment's at level 6 [default: a fresh one, printed]
     #[arg(long, value_name = "S")]
     pub(super) sample_seed: Option<u64>,

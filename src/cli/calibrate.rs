@@ -1,17 +1,14 @@
-//! What an experiment needs of runs before its own: what a deadline study's planner expects of its maneuvers, measured by
-//! running another manifest or taken from its trials in the store; and the maps of earlier explorations.
+//! What an experiment needs of runs before its own: the passages by which a deadline study's planner knows what to expect of
+//! its maneuvers, driven here or taken from the store; and the maps of earlier explorations.
 
-use super::load;
 use super::progress::Progress;
 use super::terminal::Terminal;
-use crate::cmdp::build::{Expectation, Maneuvers};
-use crate::manifest;
+use crate::manifest::{self, Experiment, Measured};
 use crate::plan::Plan;
 use crate::runner::{Scheduler, TrialStore};
 use crate::store::DirectoryStore;
-use crate::studies::deadline::Calibration;
+use crate::studies::deadline::PlannedPassages;
 use crate::studies::{self, TrialRecord, TrialSpec};
-use std::path::Path;
 
 /// How a calibration is had.
 #[derive(Clone, Copy)]
@@ -30,17 +27,19 @@ pub(super) enum Calibrator<'a> {
 }
 
 impl Calibrator<'_> {
-    /// The calibration of the manifest at `path` as CSV.
-    pub(super) fn csv(self, path: &Path, terminal: Terminal) -> Result<Vec<u8>, String> {
+    /// The passages of `calibration`.
+    pub(super) fn passages(
+        self,
+        calibration: &Experiment,
+        terminal: Terminal,
+    ) -> Result<Measured, String> {
         if matches!(self, Self::StandIn) {
-            return Ok(stand_in().to_csv().into_bytes());
+            return Ok(Measured::StandIn);
         }
-        let loaded = load::manifest(path, &[], Calibrator::StandIn, terminal)
-            .map_err(|failure| failure.message)?;
-        let plan = Plan::of(loaded.experiment);
+        let plan = Plan::of(calibration.clone());
         let records = match self {
             Self::StandIn => Vec::new(),
-            Self::Stored(store) => stored(&plan, store, path)?,
+            Self::Stored(store) => stored(&plan, store)?,
             Self::Run { scheduler, store } => {
                 let progress = Progress::of(&plan.trials, terminal).labelled(&plan.experiment.name);
                 let store = store.map(|store| store as &dyn TrialStore);
@@ -49,8 +48,10 @@ impl Calibrator<'_> {
                 records.map_err(|e| e.to_string())?
             }
         };
-        Calibration::of_trials(&plan.trials, &records)
-            .map(|calibration| calibration.to_csv().into_bytes())
+        let planned = PlannedPassages::of(&plan.experiment.conditions, plan.experiment.trials);
+        let showed = planned.and_then(|planned| planned.showed(&records));
+        showed
+            .map(|passages| Measured::Passages(passages.to_csv().into_bytes()))
             .map_err(|e| e.to_string())
     }
 
@@ -68,11 +69,7 @@ impl Calibrator<'_> {
     }
 }
 
-fn stored(
-    plan: &Plan,
-    store: &DirectoryStore,
-    manifest: &Path,
-) -> Result<Vec<TrialRecord>, String> {
+fn stored(plan: &Plan, store: &DirectoryStore) -> Result<Vec<TrialRecord>, String> {
     let mut records = Vec::new();
     for spec in &plan.trials {
         records.extend(store.get(&spec.key).map_err(|e| e.to_string())?);
@@ -80,17 +77,10 @@ fn stored(
     if records.len() == plan.trials.len() {
         return Ok(records);
     }
+    let manifest = plan.experiment.document.sources.first().map_or("", |source| &source.name);
     Err(format!(
-        "{} of its {} passages have not run yet: `reenact run {}` runs them",
+        "{} of its {} passages have not run yet: `reenact run {manifest}` runs them",
         plan.trials.len() - records.len(),
         plan.trials.len(),
-        manifest.display()
     ))
-}
-
-/// What a check takes in place of measured pairs.
-fn stand_in() -> Calibration {
-    let pair =
-        [Expectation { time_s: 10.0, failure: 0.01 }, Expectation { time_s: 6.0, failure: 0.02 }];
-    Calibration::assumed(&Maneuvers { corridor: pair, door_left: pair, door_right: pair })
 }

@@ -7,7 +7,7 @@ use super::terminal::{Terminal, counted};
 use crate::bundle::Bundle;
 use crate::bundle::archive::{Archive, Limits};
 use crate::document::{Severity, Source};
-use crate::manifest::{self, Experiment, Inputs, WrittenIn};
+use crate::manifest::{self, Experiment, Inputs, Measured, WrittenIn};
 use crate::plan::{Plan, Selection};
 use crate::store::{self, reason};
 use crate::studies::TrialSpec;
@@ -152,19 +152,8 @@ impl Inputs for Folder<'_> {
         }
     }
 
-    fn calibrate(
-        &self,
-        as_written: &str,
-        _sealed_as: &str,
-        written_in: WrittenIn,
-    ) -> Result<Vec<u8>, String> {
-        let here = Path::new(as_written);
-        let manifest = if written_in == WrittenIn::CommandLine && here.exists() {
-            here.to_owned()
-        } else {
-            self.path.join(as_written)
-        };
-        self.calibrator.csv(&manifest, self.terminal)
+    fn calibrate(&self, calibration: &Experiment, _: &str) -> Result<Measured, String> {
+        self.calibrator.passages(calibration, self.terminal)
     }
 
     fn explore(&self, spec: &TrialSpec, sealed_as: &[String; 2]) -> Result<[Vec<u8>; 2], String> {

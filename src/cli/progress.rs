@@ -142,7 +142,7 @@ impl Observer for Progress {
     fn notice(&self, event: &RunEvent<'_>) {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         match event {
-            RunEvent::Started { trials, cached, jobs } => {
+            RunEvent::Started { trials, cached, jobs, .. } => {
                 let known = self.conditions.len() == *trials;
                 let conditions = if known { self.conditions.clone() } else { vec![0; *trials] };
                 *state = State {

@@ -71,6 +71,17 @@ pub enum Motion {
     DoorRight,
 }
 
+impl Motion {
+    /// The name in files: `door-left`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Corridor => "corridor",
+            Self::DoorLeft => "door-left",
+            Self::DoorRight => "door-right",
+        }
+    }
+}
+
 /// How a motion is executed.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
@@ -81,6 +92,16 @@ pub enum Speed {
     Slow,
     /// Fast.
     Fast,
+}
+
+impl Speed {
+    /// The name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Slow => "slow",
+            Self::Fast => "fast",
+        }
+    }
 }
 
 /// What a motion at a speed is expected to take.

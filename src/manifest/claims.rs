@@ -3,18 +3,19 @@
 use super::Experiment;
 use crate::claims::metric::WALL_TIME_COLUMNS;
 use crate::claims::{self, Claim};
-use crate::document::Diagnostic;
+use crate::document::{Diagnostic, FaultList, Severity};
 use crate::studies::prior_map::coverage_at_distance;
 use crate::studies::{Setup, StudyKind};
 
 /// Every fault of the experiment's claims.
 pub fn check_claims(experiment: &Experiment) -> Vec<Diagnostic> {
     let tree = &experiment.document;
-    let mut faults = Vec::new();
+    let mut faults = FaultList::default();
     let mut claims: Vec<Claim> = Vec::new();
     for (i, written) in experiment.claims.iter().enumerate() {
         match serde_json::from_value(written.clone()) {
             Ok(claim) => claims.push(claim),
+            Err(_) if faults.is_full(Severity::Error) => faults.count_error(),
             Err(e) => faults.push(
                 tree.fault(tree.place(&format!("/claims/{i}")), format!("claim: {e}"))
                     .help("docs/claims.md shows every form with an example"),
@@ -22,7 +23,7 @@ pub fn check_claims(experiment: &Experiment) -> Vec<Diagnostic> {
         }
     }
     if !faults.is_empty() {
-        return faults;
+        return faults.finish();
     }
     let factors: Vec<_> =
         experiment.factors.iter().map(|f| (f.name.clone(), f.values.clone())).collect();
@@ -38,7 +39,7 @@ pub fn check_claims(experiment: &Experiment) -> Vec<Diagnostic> {
     measures.dedup();
     let problems = claims::check_all(&claims, &factors, &measures, &published);
     faults.extend(problems.into_iter().map(|problem| tree.fault(tree.place("/claims"), problem)));
-    faults
+    faults.finish()
 }
 
 /// What a claim or table of a study may speak of: success, outcomes and the columns of `results/trials.csv`.

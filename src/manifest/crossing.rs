@@ -11,6 +11,9 @@ use std::collections::{BTreeMap, BTreeSet};
 /// More conditions than any study has: a crossing gone wrong.
 const MOST_CONDITIONS: usize = 20_000;
 
+/// More factors than any study crosses: each cell holds a value of every one.
+const MOST_FACTORS: usize = 100;
+
 /// Columns of tables that no factor may be named after.
 const RESERVED: [&str; 7] = ["key", "trial", "outcome", "coverage-percent", "value", "sd", "n"];
 
@@ -29,6 +32,11 @@ pub(super) fn cross(doc: &ManifestDoc, faults: &mut Faults<'_>) -> (Vec<Factor>,
     let mut cells = vec![Condition(Vec::new())];
     for (name, written) in &doc.factors.0 {
         let pointer = step("/factors", name);
+        if factors.len() == MOST_FACTORS {
+            let message = format!("there are more than {MOST_FACTORS} factors");
+            faults.at_key(&pointer, message, "this is one too many");
+            return (factors, Vec::new());
+        }
         check_name(name, &pointer, faults);
         let mut values: Vec<String> = Vec::new();
         let mut note = |list: &[FactorValue], pointer: &str, faults: &mut Faults<'_>| {

@@ -1,10 +1,10 @@
 //! What is particular to manifests of the deadline study: keys it has and has not, its calibration, its conditions.
 
-use super::experiment::Meanings;
-use super::inputs::normalised;
+use super::experiment::{CalibrationRun, Experiment, Meanings};
+use super::inputs::{Measured, OfCalibration, WrittenIn, normalised};
 use super::lint;
-use super::resolve::{Calibrated, Parts, Resolved, Resolver};
-use crate::studies::deadline::{self, Calibration, Parameters, Task};
+use super::resolve::{Calibrated, Parts, Resolved, Resolver, resolve};
+use crate::studies::deadline::{self, Calibration, Parameters, PlannedPassages, Task};
 use crate::studies::{Condition, Setup, StudyKind};
 use serde_json::json;
 use std::sync::Arc;
@@ -74,18 +74,28 @@ impl Resolver<'_> {
             return None;
         };
         let pointer = "/calibration";
-        // The manifest itself is sealed too: whoever doubts the pairs can measure them again.
-        self.bytes(path, pointer)?;
-        let written_in = self.faults.written_in(pointer);
+        if let Some(other) = self.files.calibrates() {
+            let message =
+                format!("`{other}` is read as a calibration and asks for the calibration `{path}`");
+            let fault = self.faults.fault(pointer, message).label("one that is none of its own");
+            let help = "a calibration measures isolated passages: `mission: {task: passage}`, no `calibration`";
+            self.faults.push(fault.help(help));
+            return None;
+        }
+        let experiment = self.calibration_experiment(path, pointer)?;
         let path = normalised(path);
-        let sealed_as = format!("{}.maneuvers.csv", path.strip_suffix(".yaml").unwrap_or(&path));
-        let read = self
-            .files
-            .calibrate(&path, &sealed_as, written_in)
-            .and_then(|bytes| String::from_utf8(bytes.to_vec()).map_err(|e| e.to_string()))
-            .and_then(|text| Calibration::from_csv(&text).map_err(|e| e.to_string()));
-        match read {
-            Ok(calibration) => Some(Arc::new(calibration)),
+        let stem = path.strip_suffix(".yaml").unwrap_or(&path);
+        let [sealed_as, pairs] = ["passages", "maneuvers"].map(|what| format!("{stem}.{what}.csv"));
+        match self.measured(experiment, sealed_as) {
+            Ok((run, calibration)) => {
+                // What follows from the passages is sealed beside them, for people.
+                if run.passages.is_some() {
+                    let csv = calibration.to_csv();
+                    self.files.made(&pairs, WrittenIn::Calibration, csv.as_bytes());
+                }
+                self.calibration_run = Some(Arc::new(run));
+                Some(Arc::new(calibration))
+            }
             Err(problem) => {
                 let message = format!("`{path}` gives no calibration");
                 let fault = self.faults.fault(pointer, message).label(problem);
@@ -94,5 +104,46 @@ impl Resolver<'_> {
                 None
             }
         }
+    }
+
+    /// The experiment that the manifest `path`, written at `pointer`, describes. It and all that it reads are inputs, too:
+    /// whoever doubts the pairs can measure them again.
+    fn calibration_experiment(&mut self, path: &str, pointer: &str) -> Option<Experiment> {
+        let source = self.text(path, pointer)?;
+        let written_in = self.faults.written_in(pointer);
+        let files = OfCalibration::new(&mut self.files, &normalised(path), written_in);
+        let resolved = resolve(&source, &[], &files);
+        match resolved {
+            Ok((experiment, warnings)) => {
+                self.faults.extend(warnings);
+                Some(experiment)
+            }
+            Err(faults) => {
+                self.faults.extend(faults);
+                None
+            }
+        }
+    }
+
+    /// What the passages of `experiment` show.
+    fn measured(
+        &mut self,
+        experiment: Experiment,
+        sealed_as: String,
+    ) -> Result<(CalibrationRun, Calibration), String> {
+        let passages = PlannedPassages::of(&experiment.conditions, experiment.trials)
+            .map_err(|e| e.to_string())?;
+        let measured = match self.files.calibrate(&experiment, &sealed_as)? {
+            Measured::StandIn => None,
+            Measured::Passages(bytes) => {
+                let text = String::from_utf8(bytes).map_err(|e| e.to_string())?;
+                Some(passages.read(&text).map_err(|e| format!("`{sealed_as}`: {e}"))?)
+            }
+        };
+        let calibration = match &measured {
+            Some(passages) => passages.calibration().map_err(|e| e.to_string())?,
+            None => Calibration::stand_in(),
+        };
+        Ok((CalibrationRun { experiment, passages: measured, sealed_as }, calibration))
     }
 }

@@ -7,12 +7,14 @@ use crate::claims::Sensitivity;
 use crate::digest::MeaningDigest;
 use crate::document::Tree;
 use crate::json;
+use crate::studies::deadline::Passages;
 use crate::studies::{Condition, Setup, StudyKind};
 use crate::studies::{FigureRequest, TableRequest};
 use crate::table::Table;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// A resolved experiment.
 #[derive(Debug, Clone)]
@@ -58,13 +60,35 @@ pub struct Experiment {
     /// Values that the paper leaves open, with the reasons for them.
     pub assumptions: Vec<Assumption>,
     /// What the claims' verdicts were at other values of the assumptions, where that was tried.
-    pub sensitivity: Option<Sensitivity>,
+    pub sensitivity: Option<Robustness>,
+    /// The experiment that measured what the planner expects, where one did.
+    pub calibration: Option<Arc<CalibrationRun>>,
     /// `PATH=VALUE` from the command line, in order.
     pub overrides: Vec<String>,
     /// Every file that was read, once.
     pub inputs: Vec<Input>,
     /// The manifest's tree, to point at in later faults.
     pub document: Tree,
+}
+
+/// What `reenact vary` found, and where it is written.
+#[derive(Debug, Clone)]
+pub struct Robustness {
+    /// The file that holds it, as written.
+    pub as_written: String,
+    /// What was found.
+    pub table: Sensitivity,
+}
+
+/// An experiment of isolated passages and what it showed.
+#[derive(Debug, Clone)]
+pub struct CalibrationRun {
+    /// The experiment.
+    pub experiment: Experiment,
+    /// Its passages in plan order, one a trial; `None` where numbers stand in that nobody measured.
+    pub passages: Option<Passages>,
+    /// The path by which bundles know the passages.
+    pub sealed_as: String,
 }
 
 /// A parameter that the paper leaves open.
@@ -158,6 +182,9 @@ impl Experiment {
         // Studies that state none are resolved as they were before there was this key.
         if let (Value::Object(map), false) = (&mut resolved, self.limits.is_empty()) {
             map.insert("limits".to_owned(), json!(self.limits));
+        }
+        if let (Value::Object(map), Some(known)) = (&mut resolved, &self.sensitivity) {
+            map.insert("sensitivity".to_owned(), json!(known.as_written));
         }
         resolved
     }

@@ -19,11 +19,18 @@ impl<'a> Faults<'a> {
 
     /// An error at the value that `pointer` names, not yet collected.
     pub(super) fn fault(&self, pointer: &str, message: impl Into<String>) -> Diagnostic {
+        if self.is_full() {
+            // It is only counted: to look for its place would take time that grows with the manifest.
+            return Diagnostic::placeless(message);
+        }
         self.tree.fault(self.tree.place(pointer), message)
     }
 
     /// An error at the key of the value that `pointer` names, not yet collected.
     pub(super) fn key_fault(&self, pointer: &str, message: impl Into<String>) -> Diagnostic {
+        if self.is_full() {
+            return Diagnostic::placeless(message);
+        }
         self.tree.fault(self.tree.key_place(pointer), message)
     }
 

@@ -1,7 +1,9 @@
 //! The files a manifest names: asked for once each, by their path as written.
 
+use super::Experiment;
 use crate::digest::{FileDigest, Sha256Digest};
 use crate::studies::TrialSpec;
+use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -27,18 +29,18 @@ pub trait Inputs {
     /// Why there are none, in words (`no such file`).
     fn read(&self, as_written: &str, written_in: WrittenIn) -> Result<Vec<u8>, String>;
 
-    /// What the passages of the calibration manifest `as_written` showed, as CSV; in bundles it is sealed as `sealed_as`.
+    /// The passages of the experiment `calibration`, one row a trial; in bundles they are sealed as `sealed_as`.
     ///
     /// # Errors
-    /// Why there is none, in words.
-    fn calibrate(
-        &self,
-        as_written: &str,
-        sealed_as: &str,
-        written_in: WrittenIn,
-    ) -> Result<Vec<u8>, String> {
-        let _ = (sealed_as, written_in);
-        Err(format!("nobody here can run `{as_written}`"))
+    /// Why there are none, in words.
+    fn calibrate(&self, calibration: &Experiment, sealed_as: &str) -> Result<Measured, String> {
+        let _ = sealed_as;
+        Err(format!("nobody here can run `{}`", calibration.name))
+    }
+
+    /// The manifest on whose behalf these files are read, where that is a calibration: it has none of its own.
+    fn calibrates(&self) -> Option<&str> {
+        None
     }
 
     /// The map that the robot of `spec` ends with, as a `map_server` descriptor and the image that it names; in bundles
@@ -50,6 +52,15 @@ pub trait Inputs {
         let _ = sealed_as;
         Err(format!("nobody here can run the exploration {}", spec.key.short()))
     }
+}
+
+/// What calibrating gave.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Measured {
+    /// The passages, as `studies::deadline::Passages` writes them.
+    Passages(Vec<u8>),
+    /// Nothing was measured: numbers stand in that enter no result.
+    StandIn,
 }
 
 /// One file that was read.
@@ -90,17 +101,27 @@ impl<'a> InputFiles<'a> {
             .clone()
     }
 
-    /// What the calibration manifest `path` yields, kept as the input `sealed_as`.
+    /// What the experiment `calibration` yields; passages are kept as the input `sealed_as`.
     pub(super) fn calibrate(
         &mut self,
-        path: &str,
+        calibration: &Experiment,
         sealed_as: &str,
-        written_in: WrittenIn,
-    ) -> Result<Arc<[u8]>, String> {
-        self.files
-            .entry((sealed_as.to_owned(), WrittenIn::Calibration))
-            .or_insert_with(|| self.source.calibrate(path, sealed_as, written_in).map(Into::into))
-            .clone()
+    ) -> Result<Measured, String> {
+        let measured = self.source.calibrate(calibration, sealed_as)?;
+        if let Measured::Passages(bytes) = &measured {
+            self.made(sealed_as, WrittenIn::Calibration, bytes);
+        }
+        Ok(measured)
+    }
+
+    /// Keeps what was made from other inputs as the input `sealed_as`.
+    pub(super) fn made(&mut self, sealed_as: &str, written_in: WrittenIn, bytes: &[u8]) {
+        self.files.insert((sealed_as.to_owned(), written_in), Ok(bytes.into()));
+    }
+
+    /// The manifest on whose behalf these files are read, where that is a calibration.
+    pub(super) fn calibrates(&self) -> Option<&str> {
+        self.source.calibrates()
     }
 
     /// What the robot of `spec` mapped, kept as the inputs `sealed_as`.
@@ -143,6 +164,35 @@ impl<'a> InputFiles<'a> {
                 bytes,
             })
             .collect()
+    }
+}
+
+/// The files of the calibration manifest `manifest`, which are inputs of the manifest that names it, too.
+pub(super) struct OfCalibration<'f, 'a> {
+    files: RefCell<&'f mut InputFiles<'a>>,
+    manifest: String,
+    written_in: WrittenIn,
+}
+
+impl<'f, 'a> OfCalibration<'f, 'a> {
+    /// Files beside `manifest`, which is [`normalised`] and was written in `written_in`.
+    pub(super) fn new(
+        files: &'f mut InputFiles<'a>,
+        manifest: &str,
+        written_in: WrittenIn,
+    ) -> Self {
+        Self { files: RefCell::new(files), manifest: manifest.to_owned(), written_in }
+    }
+}
+
+impl Inputs for OfCalibration<'_, '_> {
+    fn read(&self, as_written: &str, _: WrittenIn) -> Result<Vec<u8>, String> {
+        let path = joined(&self.manifest, as_written);
+        self.files.borrow_mut().read(&path, self.written_in).map(|bytes| bytes.to_vec())
+    }
+
+    fn calibrates(&self) -> Option<&str> {
+        Some(&self.manifest)
     }
 }
 

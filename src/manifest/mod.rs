@@ -36,8 +36,8 @@ pub use document::{
     PreviousMapDoc, PreviousMapOf, PriorDoc, PriorFrame, PublishedDoc, PublishedFile, SeedDoc,
     StartDoc, UnknownAs, WorldDoc, WorldFile,
 };
-pub use experiment::{Assumption, Experiment, Meanings};
-pub use inputs::{Input, Inputs, WrittenIn};
+pub use experiment::{Assumption, CalibrationRun, Experiment, Meanings, Robustness};
+pub use inputs::{Input, Inputs, Measured, WrittenIn};
 pub use parameters::ParametersDoc;
 pub use pinned::{PinnedDoc, PinnedFileDoc};
 pub use previous::{explored, unexplored};

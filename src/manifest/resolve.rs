@@ -3,7 +3,7 @@
 use super::choice::{By, Choice};
 use super::crossing::{Factor, cross, is_kebab, kebab, known_or_near};
 use super::document::{FactorRef, ManifestDoc, StartDoc};
-use super::experiment::{Assumption, Experiment, Meanings};
+use super::experiment::{Assumption, CalibrationRun, Experiment, Meanings};
 use super::faults::{Faults, step};
 use super::inputs::{InputFiles, Inputs, WrittenIn, joined, normalised};
 use super::parameters::WrappedValue;
@@ -57,6 +57,7 @@ pub fn resolve(
         references: BTreeMap::new(),
         aligned: BTreeSet::new(),
         calibration: None,
+        calibration_run: None,
     };
     let mut experiment = resolver.run(overrides);
     let Resolver { faults, files, .. } = resolver;
@@ -109,6 +110,8 @@ pub(super) struct Resolver<'a> {
     aligned: BTreeSet<(MeaningDigest, MeaningDigest, String)>,
     /// What the calibration gave, once it was asked for.
     pub(super) calibration: Option<Calibrated>,
+    /// The experiment that gave it.
+    pub(super) calibration_run: Option<Arc<CalibrationRun>>,
 }
 
 impl Resolver<'_> {
@@ -172,6 +175,7 @@ impl Resolver<'_> {
             claims: doc.claims.clone(),
             assumptions,
             sensitivity,
+            calibration: self.calibration_run.take(),
             overrides: overrides.to_vec(),
             inputs: Vec::new(),
             document: self.faults.tree.clone(),

@@ -1,13 +1,14 @@
 //! `sensitivity: FILE`: what `reenact vary` found at the other values of the assumptions, read and held against them.
 
-use super::experiment::Assumption;
+use super::experiment::{Assumption, Robustness};
+use super::inputs::normalised;
 use super::resolve::Resolver;
 use crate::claims::Sensitivity;
 use crate::claims::sensitivity::in_words;
 
 /// The file that the manifest names, where it names one; a warning for every assumption of which it tells something else
 /// or nothing.
-pub(super) fn read(resolver: &mut Resolver<'_>, assumptions: &[Assumption]) -> Option<Sensitivity> {
+pub(super) fn read(resolver: &mut Resolver<'_>, assumptions: &[Assumption]) -> Option<Robustness> {
     const PLACE: &str = "/sensitivity";
     let path = resolver.doc.sensitivity.as_deref()?;
     let source = resolver.text(path, PLACE)?;
@@ -50,5 +51,5 @@ pub(super) fn read(resolver: &mut Resolver<'_>, assumptions: &[Assumption]) -> O
         let help = "`reenact vary` on this manifest writes it anew; a report shows what still fits";
         resolver.faults.push(fault.warning().help(help));
     }
-    Some(sensitivity)
+    Some(Robustness { as_written: normalised(path), table: sensitivity })
 }

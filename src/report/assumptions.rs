@@ -13,7 +13,7 @@ pub(super) fn assumptions(experiment: &Experiment) -> Vec<Assumption> {
         value: told(&assumption.value),
         why: assumption.why.clone(),
         range: assumption.range.iter().map(in_words).collect(),
-        tried: experiment.sensitivity.as_ref().and_then(|found| tried(found, assumption)),
+        tried: experiment.sensitivity.as_ref().and_then(|found| tried(&found.table, assumption)),
     };
     experiment.assumptions.iter().map(row).collect()
 }
@@ -37,7 +37,7 @@ fn tried(found: &Sensitivity, assumption: &crate::manifest::Assumption) -> Optio
 
 /// How the values were tried, in words.
 pub(super) fn tried_with(experiment: &Experiment) -> Option<String> {
-    let attempts = experiment.sensitivity.as_ref()?.attempts();
+    let attempts = experiment.sensitivity.as_ref()?.table.attempts();
     let trials = attempts.iter().map(|attempt| attempt.trials).min()?;
     let plural = if trials == 1 { "" } else { "s" };
     Some(format!(

@@ -11,6 +11,8 @@ pub enum RunEvent<'a> {
         trials: usize,
         /// How many of them the store holds already.
         cached: usize,
+        /// How many of those were executed again before they were believed, and gave the same bytes.
+        doubted: usize,
         /// Threads at work.
         jobs: usize,
     },

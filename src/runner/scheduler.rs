@@ -1,6 +1,8 @@
 //! Trials on all cores. The only file that names the thread pool.
 
 use super::{Executor, Nondeterminism, Observer, RunEvent, StoreError, TrialStore};
+use crate::digest::Sha256Digest;
+use crate::rng::Seeds;
 use crate::studies::{Outcome, TrialRecord, TrialSpec};
 use rayon::prelude::*;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -20,6 +22,21 @@ pub enum RunError {
     /// The store refused.
     #[error(transparent)]
     Store(#[from] StoreError),
+    /// Records of the store are not what their trials give.
+    #[error(
+        "trial {}/{} (key {}): expected the record in the store (sha256:{}) to be what the trial gives, found sha256:{} when it \
+         was executed again {}; {count} of {doubted} records that were drawn differ: the store was changed, or another program \
+         wrote it, so nothing is sealed; remove the store (`reenact cache dir` says where it is), or run with --no-cache",
+        first.condition, first.trial, first.key, first.first, first.second, first.divergence
+    )]
+    Poisoned {
+        /// The first of them: the store's record, then the one that its trial gives.
+        first: Box<Nondeterminism>,
+        /// How many there are.
+        count: usize,
+        /// Of how many that were drawn.
+        doubted: usize,
+    },
     /// Trials executed twice gave two records.
     #[error(
         "trial {}/{} (key {}): expected the same bytes twice, found sha256:{} and sha256:{} {}; {count} of {executed} \
@@ -41,7 +58,12 @@ pub enum RunError {
 #[derive(Debug)]
 pub struct Scheduler {
     pool: rayon::ThreadPool,
+    /// What draws the records of a store that are doubted.
+    doubt: Option<u64>,
 }
+
+/// Of how many records of a store one is executed again, and how many at least.
+const DOUBTED: (usize, usize) = (200, 3);
 
 impl Scheduler {
     /// A scheduler of `jobs` threads, at least one.
@@ -55,7 +77,14 @@ impl Scheduler {
             .thread_name(|i| format!("trial-{i}"))
             .build()
             .map_err(|e| RunError::Threads { jobs, problem: e.to_string() })?;
-        Ok(Self { pool })
+        Ok(Self { pool, doubt: None })
+    }
+
+    /// The same, but that a small share of what a store hands over is executed again and compared before it is believed: a
+    /// 200th, three records at least, drawn with `seed`, which nobody must know beforehand.
+    #[must_use]
+    pub fn doubting(self, seed: u64) -> Self {
+        Self { doubt: Some(seed), ..self }
     }
 
     /// Threads at work.
@@ -69,7 +98,7 @@ impl Scheduler {
     /// loses nothing but the trials it was at. A panic becomes a record ([`TrialRecord::panicked`]) and is not stored.
     ///
     /// # Errors
-    /// A refusal of the store; trials not yet begun are then left out.
+    /// A refusal of the store, or a record of it that its trial does not give; trials not yet begun are then left out.
     pub fn run(
         &self,
         plan: &[TrialSpec],
@@ -83,9 +112,25 @@ impl Scheduler {
                 .map(|spec| store.map_or(Ok(None), |store| recall(store, spec)))
                 .collect::<Result<_, _>>()?;
             let known = cached.iter().flatten().count();
+            let doubted = self.doubted(&cached);
+            let wrong: Vec<(usize, TrialRecord)> = doubted
+                .par_iter()
+                .with_max_len(1)
+                .filter_map(|&index| {
+                    let fresh = attempt(executor, &plan[index]);
+                    let stored = cached[index].as_ref()?;
+                    (fresh.to_line() != stored.to_line()).then_some((index, fresh))
+                })
+                .collect();
+            if let Some((index, fresh)) = wrong.first()
+                && let Some(stored) = &cached[*index]
+            {
+                return Err(poisoned(stored, fresh, wrong.len(), doubted.len()));
+            }
             observer.notice(&RunEvent::Started {
                 trials: plan.len(),
                 cached: known,
+                doubted: doubted.len(),
                 jobs: self.jobs(),
             });
             let finished =
@@ -107,6 +152,29 @@ impl Scheduler {
             finished.collect()
         })
     }
+
+    /// Places of the records of the store that are executed again.
+    fn doubted(&self, cached: &[Option<TrialRecord>]) -> Vec<usize> {
+        let Some(seed) = self.doubt else { return Vec::new() };
+        let known: Vec<usize> =
+            cached.iter().enumerate().filter(|(_, c)| c.is_some()).map(|(i, _)| i).collect();
+        let (one_of, least) = DOUBTED;
+        let count = (known.len() / one_of).max(least);
+        let mut stream = Seeds::new(seed, Vec::new()).stream("doubted-records");
+        stream.places(count, known.len()).into_iter().map(|place| known[place]).collect()
+    }
+}
+
+fn poisoned(stored: &TrialRecord, fresh: &TrialRecord, count: usize, doubted: usize) -> RunError {
+    let first = Nondeterminism {
+        condition: stored.condition().slug(),
+        trial: stored.trial,
+        key: stored.key,
+        first: Sha256Digest::of(stored.to_line()),
+        second: Sha256Digest::of(fresh.to_line()),
+        divergence: stored.parting(fresh),
+    };
+    RunError::Poisoned { first: Box::new(first), count, doubted }
 }
 
 /// The stored record of `spec`.

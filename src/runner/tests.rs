@@ -126,7 +126,7 @@ fn events_tell_every_trial_once() {
     let events = Mutex::new(Vec::new());
     let observer = |event: &RunEvent<'_>| {
         events.lock().unwrap().push(match *event {
-            RunEvent::Started { trials, cached, jobs } => {
+            RunEvent::Started { trials, cached, jobs, .. } => {
                 format!("{trials} trials, {cached} cached, {jobs} jobs")
             }
             RunEvent::Finished { index, record, cached } => {

@@ -57,18 +57,11 @@ pub enum StoreError {
 impl StoreError {
     /// The conflict between two records of one key.
     pub fn conflict(stored: &TrialRecord, fresh: &TrialRecord) -> Self {
-        let divergence = match stored.first_divergence(fresh) {
-            Some(seconds) => format!(
-                "whose states first differ between {seconds} s and {} s of simulated time",
-                seconds + 10.0
-            ),
-            None => "with the same states throughout".to_owned(),
-        };
         Self::Conflict {
             key: fresh.key,
             stored: Sha256Digest::of(stored.to_line()),
             fresh: Sha256Digest::of(fresh.to_line()),
-            divergence,
+            divergence: stored.parting(fresh),
         }
     }
 }

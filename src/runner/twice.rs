@@ -3,7 +3,7 @@
 use super::scheduler::attempt;
 use super::{Executor, RunError};
 use crate::digest::{Sha256Digest, TrialKey};
-use crate::studies::{CHAIN_STEP_S, TrialRecord, TrialSpec};
+use crate::studies::{TrialRecord, TrialSpec};
 use std::sync::{Mutex, PoisonError};
 
 /// An executor that executes every trial twice with another one and remembers the trials whose records differ.
@@ -67,13 +67,7 @@ impl Executor for Twice<'_> {
                 key: spec.key,
                 first: Sha256Digest::of(first_line),
                 second: Sha256Digest::of(second_line),
-                divergence: match first.first_divergence(&second) {
-                    Some(after) => format!(
-                        "whose states first differ between {after} s and {} s of simulated time",
-                        after + CHAIN_STEP_S
-                    ),
-                    None => "with the same states throughout".to_owned(),
-                },
+                divergence: first.parting(&second),
             };
             self.differing.lock().unwrap_or_else(PoisonError::into_inner).push(difference);
         }

@@ -143,6 +143,11 @@ impl Dictionary<'_> {
         deadline::columns::of_calibration(name)
     }
 
+    /// A column of the passages that a calibration rests on.
+    pub fn of_passages(name: &str) -> Option<Column> {
+        deadline::columns::of_passages(name)
+    }
+
     /// A column of what `reenact vary` found.
     pub fn of_sensitivity(name: &str) -> Option<Column> {
         let verdicts = Judgement::ALL.map(|verdict| verdict.to_string());
@@ -156,6 +161,14 @@ impl Dictionary<'_> {
                 Column::of_values(name, "", "The verdict at the chosen value", &verdicts)
             }
             "at-tried" => Column::of_values(name, "", "The verdict at the value tried", &verdicts),
+            "records-at-chosen" => {
+                Column::text(name, "SHA-256 of the records of the run at the chosen values, in hex")
+                    .empty_where("the table is older than this column")
+            }
+            "records-at-tried" => {
+                Column::text(name, "SHA-256 of the records of the run at the value tried, in hex")
+                    .empty_where("the table is older than this column")
+            }
             _ => return None,
         })
     }

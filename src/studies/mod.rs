@@ -19,7 +19,9 @@ pub use dictionary::Dictionary;
 pub use factor_value::FactorValue;
 pub use findings::Findings;
 pub use published_scatter::{PublishedScatter, Scale};
-pub use record::{CHAIN_STEP_S, Outcome, SeriesPoint, TrialRecord, first_divergence};
+pub use record::{
+    CHAIN_STEP_S, Outcome, SeriesPoint, TrialRecord, first_divergence, records_digest,
+};
 pub use requests::{FigureLayout, FigureRequest, TableLayout, TableRequest, coverage_tables};
 
 use crate::digest::TrialKey;

@@ -1,7 +1,7 @@
 //! What a trial yields: one canonical JSON line.
 
 use super::Condition;
-use crate::digest::TrialKey;
+use crate::digest::{Hasher, Sha256Digest, TrialKey};
 use crate::json;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -61,6 +61,15 @@ pub struct SeriesPoint {
 
 /// Bytes of the longest line that is read as a record: a day of simulated time takes half of that.
 const LONGEST_LINE: usize = 4 << 20;
+
+/// Digest of records in plan order: of their lines, each ended by a line feed.
+pub fn records_digest(records: &[TrialRecord]) -> Sha256Digest {
+    let mut hasher = Hasher::new();
+    for record in records {
+        hasher.update(record.to_line()).update("\n");
+    }
+    hasher.digest()
+}
 
 /// What came out of one trial.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -142,6 +151,17 @@ impl TrialRecord {
             + self.condition.iter().map(|(name, value)| text(name) + text(value)).sum::<usize>()
             + self.measures.keys().map(|name| text(name) + ALLOCATION).sum::<usize>()
             + self.series.len() * size_of::<SeriesPoint>()
+    }
+
+    /// When the states of this record's trial and those of `other` first differ, in words.
+    pub fn parting(&self, other: &Self) -> String {
+        match self.first_divergence(other) {
+            Some(after) => format!(
+                "whose states first differ between {after} s and {} s of simulated time",
+                after + CHAIN_STEP_S
+            ),
+            None => "with the same states throughout".to_owned(),
+        }
     }
 
     /// The first instant (s of simulated time) after which this record and `other` differ, by their hash

@@ -1,40 +1,50 @@
 //! Level 2: the crate's metadata, the bag's facts, the resolved study, the inputs and the records agree.
 
-use crate::bundle::{Bundle, Fault, Tree, bag, format, results_digest};
+use crate::bundle::{
+    Bundle, Fault, Tree, bag, class_of, format, in_bag_info as in_bag, is_version, results_digest,
+};
 use crate::digest::{FileDigest, Sha256Digest, TrialKey};
 use crate::json;
 use crate::studies::TrialRecord;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What the bag says of its payload against the payload.
-pub(super) fn bag_facts(tree: &Tree) -> Vec<Fault> {
-    let Some(info) = tree.get(format::BAG_INFO).map(|bytes| bag::BagInfo::parse(bytes)) else {
+/// What the bag says of its payload and of the run, against the payload: every label follows from it, so that nothing rides
+/// along in what people take for our words.
+pub(super) fn bag_facts(bundle: &Bundle) -> Vec<Fault> {
+    let Some(info) = bundle.tree().get(format::BAG_INFO).map(|bytes| bag::BagInfo::parse(bytes))
+    else {
         return Vec::new();
     };
-    let payload = tree.iter().filter(|(path, _)| path.starts_with(format::PAYLOAD));
-    let (files, octets) = payload.fold((0, 0), |(n, sum), (_, bytes)| (n + 1, sum + bytes.len()));
-    let mut stated = vec![
-        ("Bundle-Format", format::FORMAT.to_string()),
-        ("Payload-Oxum", format!("{octets}.{files}")),
-        ("Results-Digest", format!("sha256:{}", results_digest(tree))),
-    ];
-    if let Some(resolved) = tree.get(&payload_path(format::RESOLVED)) {
-        stated.push(("Study-Digest", format!("sha256:{}", Sha256Digest::of(resolved))));
+    // A crate that lost its bag was bagged again, maybe by another version, and tells nothing of the run there.
+    let told = bundle.circumstance().filter(|_| info.tells_circumstances());
+    let mut right = in_bag(bundle, told.as_ref());
+    if told.is_none() {
+        // Metadata that tell nothing are told themselves.
+        right.keep_circumstances(&info);
     }
-    let mut faults = Vec::new();
-    for (label, value) in stated {
-        let found: Vec<&str> =
-            info.0.iter().filter(|(l, _)| l == label).map(|(_, value)| value.as_str()).collect();
-        // Said twice, readers differ in which they believe.
-        if found != [value.as_str()] {
-            let found = if found.is_empty() { "nothing".to_owned() } else { found.join(", then ") };
-            let fault = Fault::new(format::BAG_INFO, format!("{label}: {value}"), found);
-            let is_format = label == "Bundle-Format";
-            faults.push(if is_format { fault.hint(format::NO_FORMAT_HINT) } else { fault });
-        }
+    if let Some(agent) = info.get(bag::AGENT).filter(|agent| told.is_none() && is_agent(agent)) {
+        right.set(bag::AGENT, agent);
     }
-    faults
+    right.set("Bundle-Format", &bundle.format().to_string());
+    // Made of all digests, so level 3 has something to say of it.
+    if let Some(uuid) = info.get(bag::IDENTIFIER).filter(|uuid| is_uuid(uuid)) {
+        right.set(bag::IDENTIFIER, uuid);
+    }
+    info.faults(&right)
+}
+
+fn is_uuid(text: &str) -> bool {
+    text.strip_prefix("urn:uuid:").is_some_and(|uuid| {
+        uuid.len() == 36 && uuid.bytes().all(|b| b.is_ascii_hexdigit() || b == b'-')
+    })
+}
+
+/// Whether `text` names a version of this program and nothing else.
+fn is_agent(text: &str) -> bool {
+    let version = text.strip_prefix("reenact ").and_then(|rest| rest.split_once(' '));
+    version
+        .is_some_and(|(version, home)| is_version(version) && home == format!("<{}>", format::HOME))
 }
 
 /// Digests and sizes in the crate's metadata against the files, in both directions.
@@ -109,12 +119,6 @@ pub(super) fn crate_metadata(tree: &Tree) -> Vec<Fault> {
 /// The resolved study against inputs and records.
 pub(super) fn contents(bundle: &Bundle) -> Vec<Fault> {
     let mut faults = Vec::new();
-    let info = bundle.tree().get(format::BAG_INFO).map(|bytes| bag::BagInfo::parse(bytes));
-    let said = info.as_ref().map(|info| info.get("Partial").unwrap_or("nothing"));
-    let partial = bundle.is_partial().to_string();
-    if let Some(said) = said.filter(|said| *said != partial) {
-        faults.push(Fault::new(format::BAG_INFO, format!("Partial: {partial}"), said));
-    }
     let mut known = BTreeSet::new();
     for input in bundle.inputs() {
         known.insert(payload_path(&input.path));
@@ -163,6 +167,11 @@ pub(super) fn contents(bundle: &Bundle) -> Vec<Fault> {
                 "a file that the resolved study names",
                 "one that it does not",
             ));
+        } else if path.starts_with(format::PAYLOAD) && class_of(bundle, path).is_none() {
+            let hint =
+                "docs/bundle-format.md lists what a bundle holds; it is data, so run nothing of it";
+            let fault = Fault::new(path, "a file of a bundle", "one of no class");
+            faults.push(fault.hint(hint));
         }
     }
     faults

@@ -2,81 +2,114 @@
 
 use super::{PlannedTrial, Replanned, difference};
 use crate::bundle::{
-    Additions, Bundle, Circumstance, Fault, Form, Moment, Tree, capsule, format, in_result_half,
-    seal_with,
+    Additions, Bundle, Circumstance, Fault, Moment, Tree, bag, capsule, format, in_bag_info,
+    in_result_half, seal_with,
 };
 use crate::digest::{Sha256Digest, TrialKey};
 use crate::studies::TrialRecord;
 
-/// Everything that does not follow from the manifest, the inputs and the records; and what could not be judged.
-pub(super) fn check(bundle: &Bundle, replanned: &dyn Replanned) -> (Vec<Fault>, Vec<Fault>) {
-    let mut faults = trials(bundle, &replanned.trials());
+/// What level 3 finds.
+#[derive(Debug, Default)]
+pub(super) struct Derived {
+    /// What does not follow from the manifest, the inputs and the records.
+    pub(super) faults: Vec<Fault>,
+    /// What this program could not derive, so that the level is not passed.
+    pub(super) obstacles: Vec<Fault>,
+    /// What is worth knowing.
+    pub(super) notes: Vec<Fault>,
+    /// What nothing was held against though another program might, in a few words each.
+    pub(super) unchecked: Vec<String>,
+    /// What nothing can be held against, in a few words each.
+    pub(super) circumstances: Vec<&'static str>,
+}
+
+/// Holds the bundle against what its manifest, inputs, records and stated circumstances give when sealed again.
+pub(super) fn check(bundle: &Bundle, replanned: &dyn Replanned) -> Derived {
+    let mut found = Derived { faults: trials(bundle, &replanned.trials()), ..Derived::default() };
     let content = match replanned.content() {
         Ok(content) => content,
         // Records of other trials need not make results.
-        Err(_) if !faults.is_empty() => return (faults, Vec::new()),
+        Err(_) if !found.faults.is_empty() => return found,
         Err(problem) => {
             let path = format!("{}{}", format::PAYLOAD, format::TRIALS);
-            faults.push(Fault::new(path, "records that make results", problem));
-            return (faults, Vec::new());
+            found.faults.push(Fault::new(path, "records that make results", problem));
+            return found;
         }
     };
-    // The circumstance half is derived as well where the bag tells the circumstances and this version wrote it.
-    let told = bundle.circumstance().filter(|c| c.version == format::VERSION);
+    // What describes the bundle follows from the same and from the circumstances, which the metadata tells in every form of a
+    // bundle: engine and format say how, whatever version of the program was at work.
+    let told = bundle.circumstance();
+    if told.is_none() {
+        let metadata = format!("{}{}", format::PAYLOAD, format::METADATA);
+        let expected =
+            "the run's version, begin, end and environment, as a crate of this format tells them";
+        found.faults.push(Fault::new(metadata, expected, "none that can be read"));
+    }
     let circumstance = told.clone().unwrap_or(Circumstance::reproducible(Moment(0)));
     let own = bundle.capsule().map(|_| capsule::own());
-    let described = format!("{}{}", format::PAYLOAD, format::DATA_PACKAGE);
-    let additions =
-        Additions { source: own.as_ref(), description: bundle.tree().contains_key(&described) };
-    let derived = match seal_with(&content, &circumstance, additions) {
+    let derived = match seal_with(&content, &circumstance, Additions { source: own.as_ref() }) {
         Ok(sealed) => sealed.tree,
         Err(problem) => {
-            faults.push(Fault::new(
-                format::PAYLOAD,
-                "content that can be sealed",
-                problem.to_string(),
-            ));
-            return (faults, Vec::new());
+            let expected = "content that can be sealed";
+            found.faults.push(Fault::new(format::PAYLOAD, expected, problem.to_string()));
+            return found;
         }
     };
     let mut differing = files(bundle.tree(), &derived, in_result_half);
-    if told.is_some() {
+    let same_version = circumstance.version == format::VERSION;
+    if let (Some(path), false) = (bundle.capsule(), same_version) {
+        let (expected, version) =
+            (format!("the source of reenact {}", format::VERSION), &circumstance.version);
+        let fault =
+            Fault::new(path, expected, format!("one that claims to be of reenact {version}"));
+        let hint = "this program can compare its own source only: build nothing from this one before you have read it";
+        found.obstacles.push(fault.hint(hint));
+        found.unchecked.push("the engine's source is not checked".to_owned());
+    } else {
         differing.extend(source(bundle.tree(), &derived));
     }
-    // Each holds digests or sizes of those before it, and says something new only where those are as they should be.
+    // Each holds digests or sizes of those before it, and says something new only where those are as they should be. A foreign
+    // source changes the metadata that lists it.
+    let judged = told.is_some() && (bundle.capsule().is_none() || same_version);
     for part in [&DESCRIPTIONS[..], &[format::METADATA, format::PREVIEW]] {
-        if differing.is_empty() && told.is_some() {
+        if differing.is_empty() && judged {
             differing = files(bundle.tree(), &derived, |path| part.contains(&path));
         }
     }
-    faults.extend(differing);
-    let untold = told.is_none().then(|| {
-        let found = match bundle.form() {
-            Form::Crate => "a crate without its bag".to_owned(),
-            _ => bundle
-                .circumstance()
-                .map_or("none".to_owned(), |c| format!("those of reenact {}", c.version)),
-        };
-        Fault::new(
-            format::BAG_INFO,
-            format!("circumstances as reenact {} writes them", format::VERSION),
-            found,
-        )
-        .hint(if bundle.capsule().is_some() {
-            "metadata, preview and README were not derived again, and the sealed source was not compared; the results were"
-        } else {
-            "metadata, preview and README were not derived again; the results were"
-        })
-    });
-    let measured = bundle.circumstance_files().next().map(|_| {
-        Fault::new(
-            format!("{}{}", format::PAYLOAD, format::CIRCUMSTANCES),
+    if !judged {
+        found.unchecked.push("the description is not checked".to_owned());
+    }
+    if differing.is_empty() {
+        differing.extend(identifier(bundle));
+    }
+    found.faults.extend(differing);
+    if bundle.circumstance_files().next().is_some() {
+        let path = format!("{}{}", format::PAYLOAD, format::CIRCUMSTANCES);
+        let fault = Fault::new(
+            path,
             "what follows from the records",
             "what the machine of the run measured, and verdicts on it",
-        )
-        .hint("no part of the results; checksums hold it, nothing can derive it again")
-    });
-    (faults, untold.into_iter().chain(measured).collect())
+        );
+        let hint = "no part of the results; checksums hold it, nothing can derive it again";
+        found.notes.push(fault.hint(hint));
+        found.circumstances.push("wall times and verdicts on them");
+    }
+    // Without a host the time is SOURCE_DATE_EPOCH's, which says nothing of the run.
+    if !circumstance.environment.is_empty() {
+        found.circumstances.push("time and host of the run");
+    }
+    found
+}
+
+/// The identifier in the bag's facts, which follows from the digests of the payload.
+fn identifier(bundle: &Bundle) -> Option<Fault> {
+    let info = bundle.tree().get(format::BAG_INFO).map(|bytes| bag::BagInfo::parse(bytes))?;
+    let right = in_bag_info(bundle, None);
+    let (expected, found) = (right.get(bag::IDENTIFIER)?, info.get(bag::IDENTIFIER)?);
+    (expected != found).then(|| {
+        let expected = format!("{}: {expected}, as the payload gives", bag::IDENTIFIER);
+        Fault::new(format::BAG_INFO, expected, found)
+    })
 }
 
 /// What says how to read, cite and check the rest.

@@ -1,6 +1,7 @@
 //! Level 1: every listed file is there unchanged, and nothing else is.
 
-use crate::bundle::{Archive, Fault, Form, bag, format};
+use super::signature;
+use crate::bundle::{Archive, Fault, Form, bag, format, is_tag_file};
 use crate::digest::Sha256Digest;
 use std::collections::BTreeMap;
 
@@ -75,5 +76,14 @@ pub(super) fn check(archive: &Archive) -> Vec<Fault> {
             "a list of files to fetch",
         ));
     }
+    // Those that no list names have been told.
+    for path in listed.keys().filter(|path| !path.starts_with(format::PAYLOAD)) {
+        if !is_tag_file(path) && path != "fetch.txt" {
+            let expected = "only the tag files that docs/bundle-format.md lists";
+            let hint = "a bundle is data: whatever it holds beside them, do not run it";
+            faults.push(Fault::new(path, expected, "another file").hint(hint));
+        }
+    }
+    faults.extend(signature::unreadable(tree));
     faults
 }

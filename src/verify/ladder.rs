@@ -1,5 +1,6 @@
 //! The climb: level by level, collecting everything, and never executing what lower levels found wrong.
 
+use super::earlier::{Earlier, EarlierAgain};
 use super::reexecution::{self, Sample};
 use super::replication::{self, Replication};
 use super::signature::{self, Signed, Vouching};
@@ -15,9 +16,20 @@ pub struct Options {
     pub level: Level,
     /// How many trials level 4 executes.
     pub sample: usize,
+    /// How many rows of the robustness table are run again; as many as the level takes where nothing is said.
+    pub rows: Option<Rows>,
     /// The reviewer's seed for drawing them, and for level 6 the experiment's; the bundle's author must not know it
     /// beforehand.
     pub seed: u64,
+}
+
+/// Rows of a robustness table: each is a run of the study at another value of one setting.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Rows {
+    /// So many, drawn with the reviewer's seed.
+    Drawn(usize),
+    /// All of them.
+    All,
 }
 
 /// The answer.
@@ -61,6 +73,12 @@ pub struct Report {
     pub sample: Option<Sample>,
     /// What fresh seeds said, at level 6.
     pub replication: Option<Replication>,
+    /// What was made by runs before the study's own, and executed again.
+    pub earlier: Vec<EarlierAgain>,
+    /// What nothing was held against here, each in a few words: whoever reads on must know whose word it is.
+    pub unchecked: Vec<String>,
+    /// What nothing can be held against: the circumstances of the run, as it tells them itself.
+    pub circumstances: Vec<&'static str>,
     /// How long each level took (s), where a clock was given: for CI, and no part of the answer.
     pub seconds: Vec<(Level, f64)>,
 }
@@ -158,6 +176,9 @@ pub fn climb_for(
         signed: None,
         sample: None,
         replication: None,
+        earlier: Vec::new(),
+        unchecked: Vec::new(),
+        circumstances: Vec::new(),
         seconds: Vec::new(),
     };
     let began = (reviewer.clock)();
@@ -207,8 +228,6 @@ impl Climb<'_> {
             self.report.judged.push(Level::Coherent);
             let metadata = coherent::crate_metadata(&archive.tree);
             self.report.note(Level::Coherent, Severity::Error, metadata);
-            let facts = coherent::bag_facts(&archive.tree);
-            self.report.note(Level::Coherent, Severity::Error, facts);
         }
         let bundle = match Bundle::open(archive) {
             Ok(bundle) => bundle,
@@ -220,8 +239,9 @@ impl Climb<'_> {
         self.report.results_digest = Some(bundle.results_digest());
         self.report.study_digest = Some(bundle.study_digest());
         if self.wants(Level::Coherent) {
-            let contents = coherent::contents(&bundle);
-            self.report.note(Level::Coherent, Severity::Error, contents);
+            let mut faults = coherent::bag_facts(&bundle);
+            faults.extend(coherent::contents(&bundle));
+            self.report.note(Level::Coherent, Severity::Error, faults);
             self.took(Level::Coherent);
         }
         if self.wants(Level::Derived) {
@@ -276,6 +296,11 @@ impl Climb<'_> {
             self.report.note(Level::Derived, Severity::Obstacle, [fault]);
             return;
         }
+        if bundle.format() != format::FORMAT {
+            let fault = support::other_format(bundle);
+            self.report.note(Level::Derived, Severity::Obstacle, [fault]);
+            return;
+        }
         let replanned = match pipeline.replan(bundle) {
             Ok(replanned) => replanned,
             Err(problem) => {
@@ -285,11 +310,16 @@ impl Climb<'_> {
                 return;
             }
         };
-        let (faults, notes) = derived::check(bundle, replanned.as_ref());
-        self.report.note(Level::Derived, Severity::Error, faults);
-        self.report.note(Level::Derived, Severity::Note, notes);
+        let derived = derived::check(bundle, replanned.as_ref());
+        self.report.note(Level::Derived, Severity::Error, derived.faults);
+        self.report.note(Level::Derived, Severity::Obstacle, derived.obstacles);
+        self.report.note(Level::Derived, Severity::Note, derived.notes);
+        self.report.unchecked.extend(derived.unchecked);
+        self.report.circumstances = derived.circumstances;
+        let earlier = replanned.earlier();
         self.took(Level::Derived);
         if !self.wants(Level::Sampled) || !self.report.is_clear() {
+            self.report.unchecked.extend(earlier.iter().filter_map(Earlier::on_trust));
             return;
         }
         let of = replanned.trials().len();
@@ -311,6 +341,12 @@ impl Climb<'_> {
         // A single trial that differs fails the sample as well as the whole.
         self.report.note(Level::Sampled, Severity::Error, faults);
         self.report.sample = Some(sample);
+        for earlier in &earlier {
+            let again = earlier.again(replanned.as_ref(), level, options);
+            self.report.note(Level::Sampled, Severity::Error, again.faults);
+            self.report.unchecked.extend(again.on_trust);
+            self.report.earlier.extend(again.executed);
+        }
         self.took(level);
         if self.wants(Level::Replicated) && self.report.is_clear() {
             self.report.judged.push(Level::Replicated);

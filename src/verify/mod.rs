@@ -8,6 +8,7 @@ mod closeness;
 mod coherent;
 mod derived;
 mod difference;
+mod earlier;
 mod finding;
 mod fixity;
 mod ladder;
@@ -23,8 +24,9 @@ mod support;
 mod tests;
 
 pub use closeness::{Apart, Closeness};
+pub use earlier::{Earlier, EarlierAgain, Made};
 pub use finding::{Finding, Level, Severity};
-pub use ladder::{Options, Report, Reviewer, Verdict, climb, climb_for};
+pub use ladder::{Options, Report, Reviewer, Rows, Verdict, climb, climb_for};
 pub use pipeline::{Pipeline, PlannedTrial, Replanned};
 pub use reexecution::Sample;
 pub use replan::{Reenactment, plan_of};

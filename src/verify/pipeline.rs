@@ -1,5 +1,6 @@
 //! What verification asks of the program that ran the study, kept to what levels 3 to 6 need.
 
+use super::{Earlier, Made};
 use crate::bundle::{Bundle, BundleContent, Fault};
 use crate::digest::TrialKey;
 
@@ -29,6 +30,21 @@ pub trait Replanned {
 
     /// Executes the trials at `indices` of the plan again, never from a store; their record lines in that order.
     fn execute(&self, indices: &[usize]) -> Vec<String>;
+
+    /// Inputs that runs before the study's own made, of units that [`Self::make_again`] executes.
+    fn earlier(&self) -> Vec<Earlier> {
+        Vec::new()
+    }
+
+    /// Executes the units at `indices` of what was `made` again, never from a store: for each, in their order, nothing where it
+    /// gave the same, or what it gave instead.
+    ///
+    /// # Errors
+    /// Where they could not be executed, through no fault of the bundle.
+    fn make_again(&self, made: Made, indices: &[usize]) -> Result<Vec<Option<Fault>>, String> {
+        let _ = made;
+        Err(format!("nobody here can execute {} units", indices.len()))
+    }
 
     /// Runs again the explorations whose maps the study starts from, and tells of every sealed map that came out otherwise.
     fn explore_again(&self) -> Vec<Fault> {

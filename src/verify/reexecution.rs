@@ -59,17 +59,20 @@ impl Sample {
 
 /// `count` different places out of `of`, in order, by the reviewer's seed alone.
 pub(super) fn draw(seed: u64, count: usize, of: usize) -> Vec<usize> {
-    let mut stream = Seeds::new(seed, Vec::new()).stream("verify-sample");
-    let mut places: Vec<usize> = (0..of).collect();
-    let count = count.min(of);
-    for i in 0..count {
-        #[expect(clippy::cast_possible_truncation, reason = "below a usize")]
-        let pick = i + stream.below((of - i) as u64) as usize;
-        places.swap(i, pick);
+    Seeds::new(seed, Vec::new()).stream("verify-sample").places(count, of)
+}
+
+/// Faults that are told of one kind of thing that was executed again.
+const MOST_FAULTS: usize = 100;
+
+/// The first of `faults`, and how many more there are.
+pub(super) fn capped(mut faults: Vec<Fault>) -> Vec<Fault> {
+    let more = faults.len().saturating_sub(MOST_FAULTS);
+    if more > 0 {
+        faults.truncate(MOST_FAULTS);
+        faults.push(Fault::new("(bundle)", "the same again", format!("{more} more that differ")));
     }
-    places.truncate(count);
-    places.sort_unstable();
-    places
+    faults
 }
 
 /// Executes the trials at `indices` again and holds them against the bundle's records.

@@ -1,13 +1,16 @@
 //! The pipeline that `run` goes, gone again from a bundle: manifest, plan, trials, results.
 
-use super::{Pipeline, PlannedTrial, Replanned};
+use super::{Earlier, Made, Pipeline, PlannedTrial, Replanned};
 use crate::bundle::{Bundle, BundleContent, Fault, assemble, format};
+use crate::claims::sensitivity::{Run, in_words};
 use crate::digest::Sha256Digest;
 use crate::document::Source;
-use crate::manifest::{self, Experiment, Inputs, WrittenIn};
+use crate::manifest::{self, Experiment, Inputs, Measured, WrittenIn};
 use crate::plan::{ENGINE_VERSION, Plan, Selection};
+use crate::rng::Seeds;
 use crate::runner::{Observer, RunError, Scheduler, Silent};
-use crate::studies::{self, TrialRecord, TrialSpec};
+use crate::studies::deadline::{Passages, PlannedPassages};
+use crate::studies::{self, TrialRecord, TrialSpec, records_digest};
 use std::cell::RefCell;
 
 /// This program's own pipeline.
@@ -61,17 +64,23 @@ pub fn plan_of(bundle: &Bundle) -> Result<(Plan, Selection), String> {
     plan_with(bundle, None)
 }
 
-/// The same plan, with `seed` in place of the manifest's where one is given.
-fn plan_with(bundle: &Bundle, seed: Option<u64>) -> Result<(Plan, Selection), String> {
+/// The same plan; with a fresh seed in place of the manifest's, and all that ran before done anew, where one is given.
+fn plan_with(
+    bundle: &Bundle,
+    fresh: Option<(u64, &Study<'_>)>,
+) -> Result<(Plan, Selection), String> {
     let study = bundle.resolved();
     let (source, mut overrides) = written(bundle)?;
     // As `run --set seed=S` would have it: the last override counts.
-    overrides.extend(seed.map(|seed| format!("seed={seed}")));
+    overrides.extend(fresh.map(|(seed, _)| format!("seed={seed}")));
     let selection = match study.get("selection") {
         Some(written) => Selection::from_json(written)?,
         None => Selection::default(),
     };
-    let inputs: &dyn Inputs = if seed.is_some() { &Afresh::new(bundle) } else { &Sealed(bundle) };
+    let inputs: &dyn Inputs = match fresh {
+        Some((seed, study)) => &Afresh::seeded(bundle, seed, study),
+        None => &Sealed(bundle),
+    };
     let experiment = resolve(&source, &overrides, inputs)?;
     // Counted before they are made: a manifest of a few words can ask for millions.
     let planned = Plan::size(&experiment, &selection);
@@ -119,8 +128,8 @@ impl Inputs for Sealed<'_> {
             .ok_or_else(|| "the bundle holds no such input".to_owned())
     }
 
-    fn calibrate(&self, _: &str, sealed_as: &str, _: WrittenIn) -> Result<Vec<u8>, String> {
-        self.read(sealed_as, WrittenIn::Calibration)
+    fn calibrate(&self, _: &Experiment, sealed_as: &str) -> Result<Measured, String> {
+        self.read(sealed_as, WrittenIn::Calibration).map(Measured::Passages)
     }
 
     fn explore(&self, _: &TrialSpec, sealed_as: &[String; 2]) -> Result<[Vec<u8>; 2], String> {
@@ -130,16 +139,23 @@ impl Inputs for Sealed<'_> {
     }
 }
 
-/// The inputs sealed in a bundle, but for the maps of earlier explorations, which are explored again.
+/// The inputs sealed in a bundle, but for the maps of earlier explorations, which are explored again, and with fresh seeds the
+/// calibration, which is measured anew.
 struct Afresh<'a> {
     sealed: Sealed<'a>,
+    /// The seed and who runs the calibration with it.
+    fresh: Option<(u64, &'a Study<'a>)>,
     /// The sealed maps that came out otherwise.
     other: RefCell<Vec<Fault>>,
 }
 
 impl<'a> Afresh<'a> {
     fn new(bundle: &'a Bundle) -> Self {
-        Self { sealed: Sealed(bundle), other: RefCell::default() }
+        Self { sealed: Sealed(bundle), fresh: None, other: RefCell::default() }
+    }
+
+    fn seeded(bundle: &'a Bundle, seed: u64, study: &'a Study<'a>) -> Self {
+        Self { fresh: Some((seed, study)), ..Self::new(bundle) }
     }
 }
 
@@ -148,13 +164,21 @@ impl Inputs for Afresh<'_> {
         self.sealed.read(as_written, written_in)
     }
 
-    fn calibrate(
-        &self,
-        path: &str,
-        sealed_as: &str,
-        written_in: WrittenIn,
-    ) -> Result<Vec<u8>, String> {
-        self.sealed.calibrate(path, sealed_as, written_in)
+    fn calibrate(&self, calibration: &Experiment, sealed_as: &str) -> Result<Measured, String> {
+        let Some((seed, study)) = self.fresh else {
+            return self.sealed.calibrate(calibration, sealed_as);
+        };
+        // Not the study's own: no passage may share a random number with a trial.
+        let seed = Seeds::new(seed, Vec::new()).stream("calibration-seed").bits();
+        let mut seeded = calibration.clone();
+        seeded.seed = seed;
+        let plan = Plan::of(seeded);
+        let records = study.run(&plan.trials)?;
+        let planned = PlannedPassages::of(&plan.experiment.conditions, plan.experiment.trials);
+        planned
+            .and_then(|planned| planned.showed(&records))
+            .map(|passages| Measured::Passages(passages.to_csv().into_bytes()))
+            .map_err(|e| e.to_string())
     }
 
     fn explore(&self, spec: &TrialSpec, sealed_as: &[String; 2]) -> Result<[Vec<u8>; 2], String> {
@@ -184,6 +208,82 @@ struct Study<'a> {
     selection: Selection,
     scheduler: &'a Scheduler,
     observer: &'a dyn Observer,
+}
+
+impl Study<'_> {
+    /// The records of `trials`, never from a store.
+    fn run(&self, trials: &[TrialSpec]) -> Result<Vec<TrialRecord>, String> {
+        let records = self.scheduler.run(trials, &studies::execute, None, self.observer);
+        records.map_err(|e| e.to_string())
+    }
+
+    /// Drives the passages at `indices` again.
+    fn drive_again(&self, indices: &[usize]) -> Result<Vec<Option<Fault>>, String> {
+        let run = self.plan.experiment.calibration.as_deref().ok_or("there is no calibration")?;
+        let sealed = run.passages.as_ref().ok_or("the calibration holds no passages")?;
+        let path = format!("{}{}{}", format::PAYLOAD, format::INPUTS, file_name(&run.sealed_as));
+        let plan = Plan::of(run.experiment.clone());
+        let spec = |&i: &usize| plan.trials.get(i).cloned().ok_or(format!("no passage {i}"));
+        let trials = indices.iter().map(spec).collect::<Result<Vec<TrialSpec>, _>>()?;
+        let records = self.run(&trials)?;
+        let compared = indices.iter().zip(&records).map(|(&index, record)| {
+            let expected = Passages::told_of(record);
+            let found = sealed.told(index).ok_or(format!("no passage {index}"))?;
+            let fault = Fault::new(
+                // Below the header.
+                format!("{path}:{}", index + 2),
+                format!("`{expected}`, as the passage gives when it is driven again"),
+                format!("`{found}`"),
+            );
+            let hint = "the planner's expectations rest on passages that were not driven so";
+            Ok((expected != found).then(|| fault.hint(hint)))
+        });
+        compared.collect()
+    }
+
+    /// Runs the rows at `indices` of the robustness table again.
+    fn vary_again(&self, indices: &[usize]) -> Result<Vec<Option<Fault>>, String> {
+        let known = self.plan.experiment.sensitivity.as_ref().ok_or("there is no such table")?;
+        let path = format!("{}{}{}", format::PAYLOAD, format::INPUTS, file_name(&known.as_written));
+        let runs = known.table.runs();
+        let compared = indices.iter().map(|&index| {
+            let run = runs.get(index).ok_or(format!("no row {index}"))?;
+            let (expected, found) = match self.varied_plan(run) {
+                Err(problem) => ("a run that can be planned again".to_owned(), problem),
+                Ok(plan) => {
+                    let records = self.run(&plan.trials)?;
+                    let verdicts = assemble::verdicts(&plan, &records)?;
+                    match run.difference(&run.with(&verdicts, records_digest(&records))) {
+                        Some(difference) => difference,
+                        None => return Ok(None),
+                    }
+                }
+            };
+            let fault = Fault::new(&path, format!("{expected}, {run}"), found);
+            let hint = "the robustness table was not made by these runs: `reenact vary` makes it";
+            Ok(Some(fault.hint(hint)))
+        });
+        compared.collect()
+    }
+
+    /// The plan of a run of the robustness table.
+    fn varied_plan(&self, run: &Run) -> Result<Plan, String> {
+        let (source, mut overrides) = written(self.bundle)?;
+        let value_of = |path: &str, tried: &str| {
+            let assumptions = &self.plan.experiment.assumptions;
+            let of_it = assumptions.iter().filter(|assumption| assumption.path == path);
+            let stated = of_it.flat_map(|a| &a.range).find(|value| in_words(value) == tried);
+            // JSON is YAML too.
+            stated.map_or_else(|| tried.to_owned(), ToString::to_string)
+        };
+        overrides.extend(run.overrides(&value_of));
+        Ok(Plan::of(resolve(&source, &overrides, &Sealed(self.bundle))?))
+    }
+}
+
+/// The last part of a path.
+fn file_name(path: &str) -> &str {
+    path.rsplit('/').next().unwrap_or(path)
 }
 
 impl Replanned for Study<'_> {
@@ -223,12 +323,36 @@ impl Replanned for Study<'_> {
         faults
     }
 
+    fn earlier(&self) -> Vec<Earlier> {
+        let in_bag = |name: &str| format!("{}{}{name}", format::PAYLOAD, format::INPUTS);
+        let inputs = &self.plan.experiment.inputs;
+        let path = |as_written: &str| {
+            let input = inputs.iter().find(|input| input.as_written == as_written);
+            in_bag(input.map_or(as_written, |input| &input.name))
+        };
+        let passages = self.plan.experiment.calibration.iter().filter_map(|run| {
+            let units = vec![1; run.passages.as_ref()?.len()];
+            Some(Earlier { made: Made::Passages, path: path(&run.sealed_as), units })
+        });
+        let robustness = self.plan.experiment.sensitivity.iter().map(|known| {
+            let conditions = self.plan.experiment.conditions.len() as u64;
+            let runs = known.table.runs();
+            let units = runs.iter().map(|run| conditions * u64::from(run.trials)).collect();
+            Earlier { made: Made::Robustness, path: path(&known.as_written), units }
+        });
+        passages.chain(robustness).collect()
+    }
+
+    fn make_again(&self, made: Made, indices: &[usize]) -> Result<Vec<Option<Fault>>, String> {
+        match made {
+            Made::Passages => self.drive_again(indices),
+            Made::Robustness => self.vary_again(indices),
+        }
+    }
+
     fn replicate(&self, seed: u64) -> Result<BundleContent, String> {
-        let (plan, selection) = plan_with(self.bundle, Some(seed))?;
-        let records = self
-            .scheduler
-            .run(&plan.trials, &studies::execute, None, self.observer)
-            .map_err(|e| e.to_string())?;
+        let (plan, selection) = plan_with(self.bundle, Some((seed, self)))?;
+        let records = self.run(&plan.trials)?;
         assemble::assemble(&plan, self.bundle.study_yaml(), &selection, &records)
     }
 }

@@ -40,9 +40,19 @@ impl Report {
         for line in self.in_words() {
             text.push_str(&format!("{line}\n"));
         }
+        if !self.circumstances.is_empty() {
+            text.push_str(&format!("not checked: {}\n", self.circumstances.join("; ")));
+        }
         let reached = self.reached.map_or("no level".to_owned(), |level| format!("level {level}"));
-        text.push_str(&format!("reached {reached} of level {}: {}\n", self.asked, self.answer()));
+        let answer = self.answer_with_limits();
+        text.push_str(&format!("reached {reached} of level {}: {answer}\n", self.asked));
         text
+    }
+
+    /// The answer, and what it does not speak of.
+    fn answer_with_limits(&self) -> String {
+        let limits = self.unchecked.iter().map(|what| format!("; {}", plain(what)));
+        std::iter::once(self.answer().to_owned()).chain(limits).collect()
     }
 
     /// For programs: one line of canonical JSON.
@@ -64,6 +74,9 @@ impl Report {
                 .collect::<Vec<_>>(),
             "findings": self.findings,
             "sample": self.sample,
+            "earlier": self.earlier,
+            "unchecked": self.unchecked,
+            "circumstances": self.circumstances,
             "replication": self.replication,
         });
         if let Some(sample) = &self.sample {
@@ -123,7 +136,7 @@ impl Report {
             ("results-digest", self.results_digest.map(|digest| format!("sha256:{digest}"))),
             ("engine", self.engine.clone()),
             ("signed", self.signed.as_ref().map(ToString::to_string)),
-            ("answer", Some(self.answer().to_owned())),
+            ("answer", Some(self.answer_with_limits())),
         ];
         let mut properties = String::new();
         for (fact, value) in facts.into_iter().filter_map(|(fact, value)| Some((fact, value?))) {
@@ -148,7 +161,8 @@ impl Report {
     fn in_words(&self) -> Vec<String> {
         let sample = self.sample.as_ref().map(super::Sample::in_words);
         let replication = self.replication.as_ref().map(super::Replication::in_words);
-        let lines = sample.into_iter().chain(replication);
+        let earlier = self.earlier.iter().map(super::EarlierAgain::in_words);
+        let lines = sample.into_iter().chain(earlier).chain(replication);
         lines.flat_map(|text| text.lines().map(plain).collect::<Vec<_>>()).collect()
     }
 

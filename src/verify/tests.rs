@@ -81,7 +81,7 @@ impl Replanned for Study<'_> {
 }
 
 fn climb_to(level: Level, tree: Tree) -> Report {
-    let options = Options { level, sample: 6, seed: 1 };
+    let options = Options { level, sample: 6, rows: None, seed: 1 };
     climb(Ok(Archive { form: Form::Bag, tree }), &options, &ENGINE)
 }
 
@@ -135,17 +135,14 @@ fn an_honest_bundle_reaches_every_level_it_is_asked_for() {
     }
     for form in [Form::Bag, Form::Flat] {
         let opened = archive::read(&sample::sealed().zip(form), &Limits::default());
-        let options = Options { level: Level::Full, sample: 0, seed: 0 };
+        let options = Options { level: Level::Full, sample: 0, rows: None, seed: 0 };
         assert_eq!(climb(opened, &options, &ENGINE).verdict(), Verdict::Holds);
     }
     let opened = archive::read(&sample::sealed().zip(Form::Crate), &Limits::default());
-    let report = climb(opened, &Options { level: Level::Derived, sample: 0, seed: 0 }, &ENGINE);
-    assert_eq!(report.verdict(), Verdict::Holds);
-    assert!(
-        report.findings[0]
-            .to_string()
-            .starts_with("note at level 3: bag-info.txt: expected circumstances")
-    );
+    let report =
+        climb(opened, &Options { level: Level::Derived, sample: 0, rows: None, seed: 0 }, &ENGINE);
+    assert_eq!((report.verdict(), report.findings), (Verdict::Holds, Vec::new()));
+    assert_eq!(report.unchecked, Vec::<String>::new(), "a bare crate is described like any other");
 }
 
 #[test]
@@ -201,8 +198,32 @@ fn missing_and_extra_files_are_found() {
         |tree| assert!(tree.remove("tagmanifest-sha256.txt").is_some()),
     );
     let mut signed = sample::sealed().tree;
-    signed.insert("tagmanifest-sha256.txt.minisig".into(), b"signature".to_vec());
+    let signature = include_bytes!("../../tests/signatures/minisign.minisig");
+    signed.insert("tagmanifest-sha256.txt.minisig".into(), signature.to_vec());
     assert_eq!(climb_to(Level::Derived, signed).verdict(), Verdict::Holds, "signatures come later");
+}
+
+/// No list holds the digest of a signature: what lies in its place is one, or is refused.
+#[test]
+fn nothing_rides_along_as_a_signature() {
+    let hint = "(no list holds the digest of a signature, so it must be one and nothing more)";
+    let ssh = include_str!("../../tests/signatures/ed25519.sig");
+    for (path, content, found) in [
+        ("tagmanifest-sha256.txt.minisig", "sh install.sh".to_owned(), "something else"),
+        ("tagmanifest-sha256.txt.minisig", ssh.to_owned(), "an OpenSSH signature"),
+        ("tagmanifest-sha256.txt.sig", format!("{ssh}run me"), "one that cannot be read ("),
+    ] {
+        let mut tree = sample::sealed().tree;
+        tree.insert(path.to_owned(), content.into_bytes());
+        let report = climb_to(Level::Fixity, tree);
+        let told: Vec<String> = report.findings.iter().map(ToString::to_string).collect();
+        let kind = if path.contains("minisig") { "a minisign" } else { "an OpenSSH" };
+        let says = format!("error at level 1: {path}: expected {kind} signature, found {found}");
+        assert!(
+            told.len() == 1 && told[0].starts_with(&says) && told[0].ends_with(hint),
+            "{told:?}"
+        );
+    }
 }
 
 #[test]
@@ -419,24 +440,77 @@ fn an_invented_record_passes_level_3_and_fails_when_executed() {
 #[test]
 fn what_cannot_be_judged_is_no_damage() {
     let mut tree = sample::sealed().tree;
-    edit(&mut tree, "bag-info.txt", |text| text.replace("Bundle-Format: 1", "Bundle-Format: 2"));
+    edit(&mut tree, "bag-info.txt", |text| text.replace("Bundle-Format: 2", "Bundle-Format: 3"));
     let report = climb_to(Level::Derived, tree);
     assert_eq!(report.verdict(), Verdict::Unanswered);
     assert_eq!(report.reached, Some(Level::Safe));
     assert!(report.findings[0].to_string().starts_with(
-        "obstacle at level 1: bag-info.txt: expected bundle format 1 or older, found bundle format 2 (this is reenact "
+        "obstacle at level 1: bag-info.txt: expected bundle format 2 or older, found bundle format 3 (this is reenact "
     ));
 
     let opened = archive::read(sample::zip(), &Limits::default());
-    let options = Options { level: Level::Full, sample: 1, seed: 1 };
+    let options = Options { level: Level::Full, sample: 1, rows: None, seed: 1 };
     let report = climb(opened, &options, &Engine { version: "test-2", ..ENGINE });
     assert_eq!((report.verdict(), report.reached), (Verdict::Unanswered, Some(Level::Coherent)));
+}
+
+/// What follows from engine and format is not derived in a way that another format had.
+#[test]
+fn an_older_format_is_judged_to_level_2() {
+    let mut tree = sample::sealed().tree;
+    for path in ["data/study.resolved.json", "bag-info.txt"] {
+        let (from, to) = match path {
+            "bag-info.txt" => ("Bundle-Format: 2", "Bundle-Format: 1"),
+            _ => ("\"bundle-format\": 2", "\"bundle-format\": 1"),
+        };
+        edit(&mut tree, path, |text| text.replace(from, to));
+    }
+    sample::recompute(&mut tree);
+    let report = climb_to(Level::Derived, tree);
+    let told: Vec<String> = report.findings.iter().map(ToString::to_string).collect();
+    assert_eq!(
+        told,
+        [
+            "obstacle at level 3: data/study.resolved.json: expected bundle format 2, found bundle format 1 (levels 0 to 2 can be \
+          judged here; tables and descriptions followed from the records in another way then, so the rest is for the program \
+          that sealed the bundle, or run its study.yaml again)"
+        ]
+    );
+    assert_eq!((report.verdict(), report.reached), (Verdict::Unanswered, Some(Level::Coherent)));
+}
+
+/// Neither another version nor missing times turn the description into something that nobody derives.
+#[test]
+fn a_description_is_derived_again_whatever_the_bag_says_of_the_run() {
+    let forged_readme = |info: &dyn Fn(String) -> String, level| {
+        let mut tree = sample::sealed().tree;
+        edit(&mut tree, "data/README.md", |text| format!("{text}\n99 % better.\n"));
+        edit(&mut tree, "bag-info.txt", info);
+        sample::recompute(&mut tree);
+        let report = climb_to(Level::Full, tree);
+        let is_at = |f: &Finding| f.level == level && f.severity == Severity::Error;
+        assert!(report.findings.iter().any(is_at), "{:?}", report.findings);
+        assert_eq!(
+            (report.verdict(), report.judged.contains(&Level::Full)),
+            (Verdict::Broken, false)
+        );
+    };
+    let version = crate::bundle::format::VERSION;
+    let another = |text: String| text.replace(&format!("reenact {version}"), "reenact 0.1.1");
+    forged_readme(&another, Level::Coherent);
+    let started = |text: String| text.replace("Run-Started: 2026-01-15T12:00:00+00:00\n", "");
+    forged_readme(&started, Level::Coherent);
+    let none = |text: String| {
+        let told = |line: &&str| !line.starts_with("Run-") && !line.starts_with("Bagging-Date");
+        text.lines().filter(told).map(|line| format!("{line}\n")).collect()
+    };
+    forged_readme(&none, Level::Derived);
 }
 
 #[test]
 fn hostile_archives_fail_at_level_0() {
     let zip = sample::zip_of(&[("b/bagit.txt", b""), ("../evil", b"x")]);
-    let options = Options { level: Level::Derived, sample: 0, seed: 0 };
+    let options = Options { level: Level::Derived, sample: 0, rows: None, seed: 0 };
     let report = climb(archive::read(&zip, &Limits::default()), &options, &ENGINE);
     assert_eq!((report.reached, report.verdict()), (None, Verdict::Broken));
     assert_eq!(
@@ -453,7 +527,7 @@ fn reports_say_the_same_in_three_forms() {
     let human = report.to_human();
     assert!(human.contains("  3 derived   passed\n  4 sampled   failed\n"), "{human}");
     assert!(human.ends_with(
-        "1 of 6 trials gave other bytes than the bundle holds\nreached level 3 (derived) of level 5 (full): the bundle is \
+        "1 of 6 trials gave other bytes than the bundle holds\nnot checked: time and host of the run\nreached level 3 (derived) of level 5 (full): the bundle is \
          not what it says\n"
     ));
     let json: serde_json::Value = serde_json::from_str(&report.to_json()).unwrap();
@@ -468,7 +542,7 @@ fn reports_say_the_same_in_three_forms() {
     assert_eq!((count("testcase"), count("failure"), count("skipped")), (6, 1, 0), "{junit}");
     let honest = climb_to(Level::Sampled, sample::sealed().tree).to_human();
     assert!(honest.ends_with(
-        "all 6 trials gave the same bytes again\nreached level 4 (sampled) of level 4 (sampled): the bundle is what it \
+        "all 6 trials gave the same bytes again\nnot checked: time and host of the run\nreached level 4 (sampled) of level 4 (sampled): the bundle is what it \
          says\n"
     ));
 }

@@ -240,22 +240,22 @@ pub(crate) fn formats() -> Vec<Case> {
     };
     vec![
         format("a newer format, says the bag", 1, 2, |tree| {
-            replace(tree, INFO, "Bundle-Format: 1", "Bundle-Format: 2");
+            replace(tree, INFO, "Bundle-Format: 2", "Bundle-Format: 3");
         }),
         format("a newer format, says the resolved study", 1, 2, |tree| {
             set_json(tree, RESOLVED, |resolved| {
-                resolved["bundle-format"] = 2.into();
+                resolved["bundle-format"] = 3.into();
                 resolved["unheard-of"] = true.into();
             });
         }),
         format("format 0, says the bag", 2, 1, |tree| {
-            replace(tree, INFO, "Bundle-Format: 1", "Bundle-Format: 0");
+            replace(tree, INFO, "Bundle-Format: 2", "Bundle-Format: 0");
         }),
         format("format 0, says the resolved study", 2, 1, |tree| {
             set_json(tree, RESOLVED, |resolved| resolved["bundle-format"] = 0.into());
         }),
         format("no format in the bag", 2, 1, |tree| {
-            replace(tree, INFO, "Bundle-Format: 1\n", "");
+            replace(tree, INFO, "Bundle-Format: 2\n", "");
         }),
         format("no format in the resolved study", 2, 1, |tree| {
             set_json(tree, RESOLVED, |resolved| {

@@ -6,7 +6,7 @@ use crate::cli::exit::Failure;
 use crate::cli::progress::Progress;
 use crate::cli::terminal::Terminal;
 use crate::plan::Plan;
-use crate::provenance::{Environment, TrialWatch, processors};
+use crate::provenance::{Environment, TrialWatch, processors, unforeseen_seed};
 use crate::runner::{Executor, Observer, RunEvent, Scheduler, TrialStore, Twice};
 use crate::store::DirectoryStore;
 use crate::studies::{self, TrialRecord, TrialSpec};
@@ -25,6 +25,8 @@ pub(super) struct Executed {
     pub(super) records: Vec<TrialRecord>,
     /// How many of them the store held.
     pub(super) cached: usize,
+    /// How many of those were executed again, and gave the same bytes.
+    pub(super) doubted: usize,
     /// Of the others that did not fail.
     pub(super) times: WallTimes,
 }
@@ -48,6 +50,7 @@ impl Execution {
         environment: &Environment,
     ) -> Result<Self, Failure> {
         let scheduler = Scheduler::new(jobs.unwrap_or_else(processors)).map_err(Failure::failed)?;
+        let scheduler = scheduler.doubting(unforeseen_seed());
         let store = if no_cache {
             None
         } else {
@@ -74,10 +77,11 @@ impl Execution {
         terminal: Terminal,
     ) -> Result<Executed, Failure> {
         let progress = Progress::of(&plan.trials, terminal).labelled(&plan.experiment.name);
-        let cached = AtomicUsize::new(0);
+        let (cached, doubted) = (AtomicUsize::new(0), AtomicUsize::new(0));
         let observer = |event: &RunEvent<'_>| {
-            if let RunEvent::Started { cached: known, .. } = event {
+            if let RunEvent::Started { cached: known, doubted: again, .. } = event {
                 cached.store(*known, Ordering::Relaxed);
+                doubted.store(*again, Ordering::Relaxed);
             }
             progress.notice(event);
         };
@@ -105,6 +109,7 @@ impl Execution {
         Ok(Executed {
             records,
             cached: cached.into_inner(),
+            doubted: doubted.into_inner(),
             times: walls.into_inner().unwrap_or_else(PoisonError::into_inner),
         })
     }

@@ -56,7 +56,7 @@ fn run_one(
     let loaded = load::manifest(manifest, &args.select.set, execution.calibrator(), terminal)?;
     let (plan, selection) = load::plan(loaded.experiment, &args.select)?;
     let how = if args.twice { Times::Twice } else { Times::Once };
-    let Executed { records, cached, times } = execution.execute(&plan, how, terminal)?;
+    let Executed { records, cached, doubted, times } = execution.execute(&plan, how, terminal)?;
     let content = assemble::assemble(&plan, loaded.source.text.as_bytes(), &selection, &records)
         .map_err(Failure::failed)?;
     let times = match environment.source_date_epoch {
@@ -72,7 +72,7 @@ fn run_one(
         circumstance.environment.push((format::SIMULATED_TRIALS.to_owned(), simulated));
     }
     let capsule = args.capsule.then(capsule::own);
-    let additions = Additions { source: capsule.as_ref(), ..Additions::default() };
+    let additions = Additions { source: capsule.as_ref() };
     let sealed = seal_with(&content, &circumstance, additions).map_err(Failure::failed)?;
     let path = args.out.join(sealed.file_name());
     load::write(&path, &sealed.zip(Form::Bag))?;
@@ -85,6 +85,7 @@ fn run_one(
         plan,
         records,
         cached,
+        doubted,
         twice: args.twice,
         sealed,
         held,
@@ -113,6 +114,8 @@ struct Done {
     /// On claims about this machine.
     machine_verdicts: Vec<Verdict>,
     cached: usize,
+    /// Of those from the store, executed again.
+    doubted: usize,
     twice: bool,
     sealed: Sealed,
     held: Option<Held>,
@@ -183,7 +186,10 @@ impl Done {
             self.wall_seconds
         );
         if self.cached > 0 {
-            text.push_str(&format!(" ({} from the store)", self.cached));
+            text.push_str(&format!(
+                " ({} from the store, {} of them executed again: the same bytes)",
+                self.cached, self.doubted
+            ));
         }
         text.push_str(&format!(", {:.0} s of simulated time\n", self.sim_seconds()));
         text
@@ -202,6 +208,7 @@ impl Done {
             "study_digest": format!("sha256:{}", self.sealed.study_digest),
             "trials": self.records.len(),
             "cached": self.cached,
+            "doubted": self.doubted,
             "failed": self.failed(),
             "sim_seconds": self.sim_seconds(),
             "wall_seconds": self.wall_seconds,

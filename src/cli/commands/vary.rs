@@ -9,9 +9,11 @@ use crate::cli::args::VaryArgs;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::load;
 use crate::cli::terminal::{Terminal, counted};
+use crate::digest::Sha256Digest;
 use crate::manifest::{Assumption, Experiment};
 use crate::plan::Plan;
 use crate::provenance::Environment;
+use crate::studies::records_digest;
 use std::path::Path;
 
 /// Tries every assumption of a manifest that has a range, and writes the verdicts beside the manifest.
@@ -43,7 +45,7 @@ pub(in crate::cli) fn run(
     let trials = chosen.trials;
     let values: usize = assumptions.iter().map(|a| a.range.len()).sum();
     let named = study.names_its_sensitivity()?;
-    let at_chosen = study.verdicts(chosen)?;
+    let (at_chosen, chosen_records) = study.verdicts(chosen)?;
     let mut found = Sensitivity::default();
     for assumption in &assumptions {
         for value in &assumption.range {
@@ -60,7 +62,8 @@ pub(in crate::cli) fn run(
             }
             // JSON is YAML too.
             let moved = study.experiment(&[format!("{}={value}", assumption.path)])?;
-            found.push(&attempt, &at_chosen, &study.verdicts(moved)?);
+            let (at_tried, records) = study.verdicts(moved)?;
+            found.push(&attempt, (&at_chosen, chosen_records), (&at_tried, records));
             terminal.result(&line(&attempt, &found.flips(&attempt)));
         }
     }
@@ -102,10 +105,12 @@ impl Study<'_> {
         load::manifest(&self.args.manifest, &set, calibrator, self.terminal).map(|l| l.experiment)
     }
 
-    fn verdicts(&self, experiment: Experiment) -> Result<Vec<Verdict>, Failure> {
+    /// What the claims of `experiment` come to, and digest of the records by which they do.
+    fn verdicts(&self, experiment: Experiment) -> Result<(Vec<Verdict>, Sha256Digest), Failure> {
         let plan = Plan::of(experiment);
         let records = self.execution.execute(&plan, Times::Once, self.terminal)?.records;
-        assemble::verdicts(&plan, &records).map_err(Failure::failed)
+        let verdicts = assemble::verdicts(&plan, &records).map_err(Failure::failed)?;
+        Ok((verdicts, records_digest(&records)))
     }
 
     fn names_its_sensitivity(&self) -> Result<bool, Failure> {

@@ -41,7 +41,7 @@ pub(in crate::cli) fn run(
     let progress = Progress::unplanned(terminal);
     let pipeline = Reenactment::new(jobs).map_err(Failure::failed)?.observed_by(&progress);
     let seed = args.sample_seed.unwrap_or_else(unforeseen_seed);
-    let options = Options { level, sample: args.sample, seed };
+    let options = Options { level, sample: args.sample, rows: args.robustness, seed };
     let reviewer = Reviewer { vouching, clock: &|| clock.elapsed_seconds() };
     let report = climb_for(&reviewer, load::archive(&args.bundle)?, &options, &pipeline);
     progress.finish();

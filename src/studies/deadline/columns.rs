@@ -137,6 +137,23 @@ pub fn of_calibration(name: &str) -> Option<Column> {
     })
 }
 
+/// A column of the passages that the calibration rests on.
+pub fn of_passages(name: &str) -> Option<Column> {
+    Some(match name {
+        "motion" => Column::text(name, "Motion of the maneuver"),
+        "speed" => Column::text(name, "Its speed"),
+        "trial" => Column::count(name, "Number of the passage among those of its maneuver, from 0"),
+        "outcome" => {
+            Column::text(name, "How it ended: reached, collided, late, stalled or panicked")
+        }
+        "time-s" => Column::number(name, "s", "How long it took")
+            .at_least(0.0)
+            .empty_where("it did not arrive"),
+        "record" => Column::text(name, "SHA-256 of the passage's record, in hex"),
+        _ => return None,
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

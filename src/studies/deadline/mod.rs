@@ -15,6 +15,7 @@ pub mod intersection_detection;
 mod mission;
 pub mod navigation;
 mod parameters;
+mod passages;
 pub mod planner;
 mod requests;
 mod rules;
@@ -27,6 +28,7 @@ pub use in_situ::ManeuverRow;
 pub use intersection_detection::{IntersectionDetectionSystem, Perception};
 pub use mission::{policy_chart, run, tag_scheme};
 pub use parameters::{ErrorShape, Hiding, Mission, Parameters, Passage, Sensing, Task};
+pub use passages::{Passages, PlannedPassages};
 pub use requests::{ManeuverTable, PolicyGraph};
 pub use rules::{Rules, UnplannedSpeed};
 

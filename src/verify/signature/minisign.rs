@@ -21,6 +21,14 @@ pub(super) fn is_public_key(text: &str) -> bool {
     text.starts_with("untrusted comment:") || (line.starts_with("RW") && !line.contains(' '))
 }
 
+/// Why the text is no signature; `None` where it is one.
+pub(super) fn problem(text: &str) -> Option<String> {
+    if text.lines().count() > 4 {
+        return Some("more than the four lines of one".to_owned());
+    }
+    Signature::decode(text).err().map(|e| format!("one that cannot be read ({e})"))
+}
+
 impl Key {
     /// Reads a public key file, or the key alone.
     pub(super) fn read(source: &Source) -> Result<Self, Vec<Diagnostic>> {

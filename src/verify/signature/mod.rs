@@ -11,7 +11,7 @@ mod ssh;
 #[cfg(test)]
 mod tests;
 
-use crate::bundle::{Archive, Fault, Form, Moment, format};
+use crate::bundle::{Archive, Fault, Form, Moment, Tree, format};
 use crate::document::{Diagnostic, Source};
 use serde::Serialize;
 use std::sync::Arc;
@@ -122,6 +122,29 @@ impl Kind {
 /// The name under which a bag holds the signature `bytes`; `None` where they are of neither kind.
 pub fn path_in_bag(bytes: &[u8]) -> Option<&'static str> {
     Kind::of(bytes).map(Kind::path)
+}
+
+/// Faults of files that lie where signatures do and are none: something else would ride along unlisted.
+pub(super) fn unreadable(tree: &Tree) -> Vec<Fault> {
+    let mut faults = Vec::new();
+    for kind in [Kind::Ssh, Kind::Minisign] {
+        let Some(bytes) = tree.get(kind.path()) else { continue };
+        let problem = match (Kind::of(bytes), std::str::from_utf8(bytes)) {
+            (Some(found), Ok(text)) if found == kind => match kind {
+                Kind::Ssh => ssh::problem(text),
+                Kind::Minisign => minisign::problem(text),
+            },
+            (Some(found), Ok(_)) => Some(found.name().to_owned()),
+            _ => Some("something else".to_owned()),
+        };
+        if let Some(problem) = problem {
+            let fault = Fault::new(kind.path(), kind.name(), problem);
+            faults.push(fault.hint(
+                "no list holds the digest of a signature, so it must be one and nothing more",
+            ));
+        }
+    }
+    faults
 }
 
 /// Looks for a signature and checks it where the reviewer says whom to trust.

@@ -71,6 +71,11 @@ pub(super) fn check(
     }
 }
 
+/// Why the armoured text is no signature; `None` where it is one.
+pub(super) fn problem(text: &str) -> Option<String> {
+    SshSig::from_pem(text.trim_end()).err().map(|e| format!("one that cannot be read ({e})"))
+}
+
 fn period(limits: &Limits) -> String {
     let from = limits.valid_after.map(|moment| format!("from {}", moment.date()));
     let until = limits.valid_before.map(|moment| format!("before {}", moment.date()));

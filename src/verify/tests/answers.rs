@@ -9,7 +9,7 @@ const SIGNATURE: &str = include_str!("../../../tests/signatures/ed25519.sig");
 
 fn with_capsule() -> Tree {
     let capsule = capsule::own();
-    let additions = Additions { source: Some(&capsule), ..Additions::default() };
+    let additions = Additions { source: Some(&capsule) };
     seal_with(&sample::content(), &sample::circumstance(), additions).unwrap().tree
 }
 
@@ -23,7 +23,7 @@ fn nothing_is_read_of_a_bundle_for_which_nobody_vouches() {
     let signature = Some(("it.sig", SIGNATURE.as_bytes()));
     let vouching = Vouching { trust: Some(&trust), signature, now: Moment(0) };
     let reviewer = Reviewer { vouching, clock: &|| 0.0 };
-    let options = Options { level: Level::Derived, sample: 0, seed: 0 };
+    let options = Options { level: Level::Derived, sample: 0, rows: None, seed: 0 };
     let mut tree = sample::sealed().tree;
     let archive = Archive { form: Form::Bag, tree: tree.clone() };
     let report = climb_for(&reviewer, Ok(archive), &options, &ENGINE);
@@ -85,7 +85,7 @@ fn an_attestation_says_what_was_checked_and_nothing_more() {
         "the bundle holds to level 3 (derived) and not to level 5 (full), as was asked"
     );
     let opened = archive::read(&sealed.zip(Form::Crate), &Limits::default());
-    let options = Options { level: Level::Derived, sample: 0, seed: 0 };
+    let options = Options { level: Level::Derived, sample: 0, rows: None, seed: 0 };
     assert_eq!(
         climb(opened, &options, &ENGINE).attestation(date).unwrap_err(),
         "a crate without its bag has no bundle id to attest; check the bundle itself"
@@ -95,7 +95,7 @@ fn an_attestation_says_what_was_checked_and_nothing_more() {
 #[test]
 fn a_newer_engine_says_what_it_can_judge_and_how_to_go_on() {
     let told = |tree: Tree| {
-        let options = Options { level: Level::Full, sample: 1, seed: 1 };
+        let options = Options { level: Level::Full, sample: 1, rows: None, seed: 1 };
         let newer = Engine { version: "test-2", ..ENGINE };
         let report = climb(Ok(Archive { form: Form::Bag, tree }), &options, &newer);
         assert_eq!(
@@ -122,12 +122,19 @@ fn a_newer_engine_says_what_it_can_judge_and_how_to_go_on() {
 
     // What a bundle says is put into a command only where it is a version.
     let mut hostile = sample::sealed().tree;
-    edit(&mut hostile, "bag-info.txt", |text| {
-        text.replace(&format!("reenact {version}"), "reenact 1;id")
+    edit(&mut hostile, "data/ro-crate-metadata.json", |text| {
+        text.replace(&format!("Run of reenact {version}"), "Run of reenact 1;id")
     });
     sample::recompute(&mut hostile);
+    let options = Options { level: Level::Full, sample: 1, rows: None, seed: 1 };
+    let newer = Engine { version: "test-2", ..ENGINE };
+    let report = climb(Ok(Archive { form: Form::Bag, tree: hostile }), &options, &newer);
     let readme = "install the version of reenact that the bundle's README.md names";
-    assert_eq!(told(hostile), format!("{levels}{obstacle}{readme})\n{end}"));
+    let human = report.to_human();
+    assert!(
+        human.contains(&format!("{obstacle}{readme})\n")) && !human.contains("1;id"),
+        "{human}"
+    );
 }
 
 #[test]
@@ -163,21 +170,23 @@ fn a_capsule_is_data_beside_the_results_and_is_compared() {
         )]
     );
 
-    let mut older = tree;
-    edit(&mut older, "bag-info.txt", |text| {
-        text.replace(&format!("reenact {version}"), "reenact 0.0.9")
-    });
-    sample::recompute(&mut older);
+    let capsule = capsule::own();
+    let circumstance =
+        crate::bundle::Circumstance { version: "0.0.9".to_owned(), ..sample::circumstance() };
+    let additions = Additions { source: Some(&capsule) };
+    let older = seal_with(&sample::content(), &circumstance, additions).unwrap().tree;
     let report = climb_to(Level::Derived, older);
-    assert_eq!(report.verdict(), Verdict::Holds);
+    assert_eq!((report.verdict(), report.reached), (Verdict::Unanswered, Some(Level::Coherent)));
     assert_eq!(
         told(&report),
         [format!(
-            "note at level 3: bag-info.txt: expected circumstances as reenact {version} writes them, found those of reenact \
-             0.0.9 (metadata, preview and README were not derived again, and the sealed source was not compared; the results \
-             were)"
+            "obstacle at level 3: data/{path}: expected the source of reenact {version}, found one that claims to be of reenact \
+             0.0.9 (this program can compare its own source only: build nothing from this one before you have read it)"
         )]
     );
+    let human = report.to_human();
+    let end = "this program cannot judge further; the engine's source is not checked; the description is not checked\n";
+    assert!(human.ends_with(end), "{human}");
 }
 
 /// The elements and attributes of Jenkins' `junit-10.xsd`, which GitLab and most viewers follow, in the order it wants.
@@ -190,7 +199,7 @@ fn junit_has_the_shape_that_viewers_expect() {
     };
     let vouching = Vouching { trust: None, signature: None, now: Moment(0) };
     let reviewer = Reviewer { vouching, clock: &clock };
-    let options = Options { level: Level::Full, sample: 0, seed: 1 };
+    let options = Options { level: Level::Full, sample: 0, rows: None, seed: 1 };
     let mut tree = forged();
     tree.insert("tagmanifest-sha256.txt.sig".into(), SIGNATURE.into());
     let report = climb_for(&reviewer, Ok(Archive { form: Form::Bag, tree }), &options, &ENGINE);

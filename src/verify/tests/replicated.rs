@@ -3,7 +3,7 @@
 use super::*;
 
 fn replicate(tree: Tree, claims: &'static str, seed: u64) -> Report {
-    let options = Options { level: Level::Replicated, sample: 0, seed };
+    let options = Options { level: Level::Replicated, sample: 0, rows: None, seed };
     climb(Ok(Archive { form: Form::Bag, tree }), &options, &Engine { claims, ..ENGINE })
 }
 

@@ -1,0 +1,186 @@
+//! What each file of a bundle is: given by the author, derived from other files, or a circumstance of the run. The one table
+//! that `docs/bundle-format.md` prints; a file in none of its rows is no bundle's.
+
+use super::{Bundle, format};
+
+/// Whose word a file is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Class {
+    /// The author's: another one makes another study, told apart by its digests. What else follows from it is derived.
+    Given,
+    /// Follows from other files; derived again at that level of `verify`, and refused there where it differs.
+    Derived(u8),
+    /// What the run says of its time and machine: held by checksums, and by nothing else.
+    Circumstance,
+}
+
+impl Class {
+    /// The word for it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Given => "given",
+            Self::Derived(_) => "derived",
+            Self::Circumstance => "circumstance",
+        }
+    }
+}
+
+/// Which files a row of the table is about.
+enum Which {
+    /// The one of this path.
+    File(&'static str),
+    /// All below this folder whose name ends like that.
+    Under(&'static str, &'static str),
+    /// Inputs that were made by this: `written-in` of the resolved study.
+    Made(&'static str),
+    /// The other inputs.
+    Inputs,
+    /// The table of verdicts at other values of the assumptions.
+    Robustness,
+}
+
+/// A row: which files, what they are, and by what they are derived.
+struct Row(Which, Class, &'static str);
+
+/// The table. The first row that fits counts; paths are relative to the bag's root.
+const TABLE: &[Row] = &[
+    Row(Which::File(format::BAGIT), Class::Derived(1), "the standard's own words"),
+    Row(
+        Which::File(format::BAG_INFO),
+        Class::Circumstance,
+        "times and host as the run tells them; every other label follows from the payload (level 2), and the labels are a closed list",
+    ),
+    Row(Which::File(format::MANIFEST), Class::Derived(1), "the payload"),
+    Row(Which::File(format::TAG_MANIFEST), Class::Derived(1), "the other tag files"),
+    Row(
+        Which::File(format::SIGNATURES[0]),
+        Class::Given,
+        "who vouches for the bundle; `verify --trust` checks it",
+    ),
+    Row(Which::File(format::SIGNATURES[1]), Class::Given, "the same, by minisign"),
+    Row(Which::File("data/study.yaml"), Class::Given, "the manifest"),
+    Row(Which::File("data/study.resolved.json"), Class::Derived(3), "manifest and inputs"),
+    Row(
+        Which::Robustness,
+        Class::Derived(5),
+        "runs at other values of the assumptions: rows that are drawn",
+    ),
+    Row(
+        Which::Made("calibration"),
+        Class::Derived(5),
+        "passages of the calibration; the pairs already at level 3, from the passages",
+    ),
+    Row(Which::Made("previous-map"), Class::Derived(5), "earlier explorations"),
+    Row(Which::Inputs, Class::Given, "robots, worlds, images, settings, published tables"),
+    Row(
+        Which::Under("data/trials/", ".jsonl"),
+        Class::Derived(5),
+        "the trials; a sample of them at level 4",
+    ),
+    Row(Which::Under("data/results/", ""), Class::Derived(3), "manifest, inputs and records"),
+    Row(
+        Which::Under("data/circumstances/", ""),
+        Class::Circumstance,
+        "wall times on the machine of the run, and verdicts on them",
+    ),
+    Row(
+        Which::Under("data/engine/", ".zip"),
+        Class::Derived(3),
+        "this program's own source, where it is of the same version",
+    ),
+    Row(
+        Which::File("data/README.md"),
+        Class::Derived(3),
+        "manifest, inputs, records and circumstances",
+    ),
+    Row(Which::File("data/LICENSE.txt"), Class::Derived(3), "the manifest"),
+    Row(Which::File("data/datapackage.json"), Class::Derived(3), "manifest and records"),
+    Row(Which::File("data/data-dictionary.md"), Class::Derived(3), "manifest and records"),
+    Row(Which::File("data/CITATION.cff"), Class::Derived(3), "manifest, results and circumstances"),
+    Row(Which::File("data/.zenodo.json"), Class::Derived(3), "manifest and results"),
+    Row(
+        Which::File("data/ro-crate-metadata.json"),
+        Class::Derived(3),
+        "everything else in the payload, and circumstances",
+    ),
+    Row(Which::File("data/ro-crate-preview.html"), Class::Derived(3), "the same"),
+];
+
+/// The class of the file `path` of `bundle`; `None` where it has none and so does not belong there.
+pub fn class_of(bundle: &Bundle, path: &str) -> Option<Class> {
+    TABLE.iter().find(|Row(which, ..)| fits(which, bundle, path)).map(|Row(_, class, _)| *class)
+}
+
+/// The class of a tag file, which needs no bundle to be told.
+pub fn is_tag_file(path: &str) -> bool {
+    let is_it = |Row(which, ..): &Row| matches!(which, Which::File(name) if *name == path);
+    !path.starts_with(format::PAYLOAD) && TABLE.iter().any(is_it)
+}
+
+fn fits(which: &Which, bundle: &Bundle, path: &str) -> bool {
+    let in_payload = path.strip_prefix(format::PAYLOAD).unwrap_or_default();
+    let input = bundle.resolved_input(in_payload);
+    match which {
+        Which::File(name) => path == *name,
+        Which::Under(folder, ending) => path.starts_with(folder) && path.ends_with(ending),
+        Which::Made(by) => input.is_some_and(|input| input["written-in"] == *by),
+        Which::Robustness => {
+            let named = bundle.resolved()["sensitivity"].as_str();
+            input.is_some_and(|input| named.is_some() && input["as-written"].as_str() == named)
+        }
+        Which::Inputs => bundle.inputs().iter().any(|input| input.path == in_payload),
+    }
+}
+
+/// The table as `docs/bundle-format.md` prints it.
+pub fn table_in_markdown() -> String {
+    let mut text =
+        "| file | class | level | from, or what it is |\n| --- | --- | --- | --- |\n".to_owned();
+    for Row(which, class, from) in TABLE {
+        let files = match which {
+            Which::File(name) => format!("`{name}`"),
+            Which::Under(folder, ending) => format!("`{folder}*{ending}`"),
+            Which::Made("calibration") => {
+                "`data/inputs/*.passages.csv`, `*.maneuvers.csv`".to_owned()
+            }
+            Which::Made(_) => "`data/inputs/previous-map-*`".to_owned(),
+            Which::Inputs => "other `data/inputs/*`".to_owned(),
+            Which::Robustness => "the input that `sensitivity:` names".to_owned(),
+        };
+        let level = match class {
+            Class::Derived(level) => level.to_string(),
+            Class::Given => "-".to_owned(),
+            Class::Circumstance => "not checked".to_owned(),
+        };
+        text.push_str(&format!("| {files} | {} | {level} | {from} |\n", class.name()));
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Form, Limits, sample};
+    use super::*;
+
+    #[test]
+    fn every_file_of_a_bundle_has_a_class_and_no_other_file_has() {
+        let zip = sample::sealed().zip(Form::Bag);
+        let bundle = Bundle::read(&zip, &Limits::default()).unwrap();
+        for path in bundle.tree().keys() {
+            assert!(class_of(&bundle, path).is_some(), "{path}");
+        }
+        for stray in ["install.sh", "data/install.sh", "data/inputs/more.yaml", "data/trials/x.sh"]
+        {
+            assert_eq!(class_of(&bundle, stray), None, "{stray}");
+        }
+        assert!(is_tag_file("bagit.txt") && !is_tag_file("manifest-md5.txt"));
+        assert!(!is_tag_file("data/README.md"));
+    }
+
+    #[test]
+    fn the_documentation_prints_the_table() {
+        let docs = include_str!("../../docs/bundle-format.md");
+        let table = table_in_markdown();
+        assert!(docs.contains(&table), "docs/bundle-format.md must hold:\n{table}");
+    }
+}

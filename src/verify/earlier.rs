@@ -1,0 +1,141 @@
+//! What a study rests on and runs before it made: the passages of its calibration, the runs behind its robustness table. They
+//! are executed again like trials: a sample at level 4, all passages at level 5, rows of the robustness table as many as asked.
+
+use super::ladder::{Options, Rows};
+use super::{Level, Replanned, reexecution};
+use crate::bundle::Fault;
+use crate::rng::Seeds;
+use serde::Serialize;
+
+/// What was made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Made {
+    /// Isolated passages, from which the planner's expectations follow.
+    Passages,
+    /// Verdicts at other values of the assumptions.
+    Robustness,
+}
+
+/// An input that runs before the study's own made, of units that can be executed again one by one.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Earlier {
+    /// What it is.
+    pub made: Made,
+    /// Where it is in the bag.
+    pub path: String,
+    /// How many trials each unit is.
+    pub units: Vec<u64>,
+}
+
+/// What was executed again of one such input.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct EarlierAgain {
+    /// What it is.
+    pub made: Made,
+    /// Where it is in the bag.
+    pub path: String,
+    /// Units executed.
+    pub executed: usize,
+    /// Units that gave the same.
+    pub equal: usize,
+    /// Units there are.
+    pub of: usize,
+}
+
+impl EarlierAgain {
+    /// What it means, in words.
+    pub fn in_words(&self) -> String {
+        let (executed, of, equal) = (self.executed, self.of, self.equal);
+        let what = match self.made {
+            Made::Passages => "passages of the calibration",
+            Made::Robustness => "rows of the robustness table",
+        };
+        if equal == executed && executed == of {
+            format!("all {of} {what} gave the same again")
+        } else if equal == executed {
+            format!("{executed} of {of} {what} gave the same again")
+        } else {
+            format!(
+                "{} of {executed} {what} gave something else than the bundle holds",
+                executed - equal
+            )
+        }
+    }
+}
+
+/// Rows of the robustness table that a level runs again where nothing is said.
+const ROWS: [(Level, usize); 2] = [(Level::Sampled, 1), (Level::Full, 3)];
+
+/// What executing some of an input again brought.
+pub(super) struct Again {
+    pub(super) executed: Option<EarlierAgain>,
+    pub(super) faults: Vec<Fault>,
+    /// What stays the author's word, in words.
+    pub(super) on_trust: Option<String>,
+}
+
+impl Earlier {
+    /// What is the author's word before anything is executed, in words; passages are judged like records.
+    pub(super) fn on_trust(&self) -> Option<String> {
+        (self.made == Made::Robustness)
+            .then(|| "the robustness table is the author's word".to_owned())
+    }
+
+    /// Executes at `level` what it takes of this, from `replanned`.
+    pub(super) fn again(
+        &self,
+        replanned: &dyn Replanned,
+        level: Level,
+        options: &Options,
+    ) -> Again {
+        let of = self.units.len();
+        let count = match (self.made, level, options.rows) {
+            (Made::Passages, Level::Full, _) | (Made::Robustness, _, Some(Rows::All)) => of,
+            (Made::Passages, ..) => options.sample.min(of),
+            (Made::Robustness, _, Some(Rows::Drawn(rows))) => rows.min(of),
+            (Made::Robustness, ..) => {
+                let rows = ROWS.iter().find(|(of, _)| *of == level).map_or(0, |(_, rows)| *rows);
+                rows.min(of)
+            }
+        };
+        let label = match self.made {
+            Made::Passages => "verify-passages",
+            Made::Robustness => "verify-robustness",
+        };
+        let drawn = Seeds::new(options.seed, Vec::new()).stream(label).places(count, of);
+        if drawn.is_empty() {
+            return Again { executed: None, faults: Vec::new(), on_trust: self.on_trust() };
+        }
+        let compared = match replanned.make_again(self.made, &drawn) {
+            Ok(compared) if compared.len() == drawn.len() => compared,
+            other => {
+                let found = match other {
+                    Err(problem) => problem,
+                    Ok(fewer) => format!("{} of them", fewer.len()),
+                };
+                let expected = format!("{} executed again", drawn.len());
+                let faults = vec![Fault::new(&self.path, expected, found)];
+                return Again { executed: None, faults, on_trust: self.on_trust() };
+            }
+        };
+        let faults: Vec<Fault> = compared.into_iter().flatten().collect();
+        let equal = drawn.len() - faults.len();
+        let on_trust = match self.on_trust() {
+            Some(_) if drawn.len() < of => Some(format!(
+                "the robustness table is the author's word but for {} of its {of} rows",
+                drawn.len()
+            )),
+            _ => None,
+        };
+        let executed = EarlierAgain {
+            made: self.made,
+            path: self.path.clone(),
+            executed: drawn.len(),
+            equal,
+            of,
+        };
+        Again { executed: Some(executed), faults: reexecution::capped(faults), on_trust }
+    }
+}
