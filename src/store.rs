@@ -212,6 +212,8 @@ pub fn open_bundle(
             let name = format!("{prefix}{}", entry.file_name().to_string_lossy());
             let kind = entry.file_type()?;
             if kind.is_dir() {
+                // Its entry says that it is there, should nothing be in it.
+                files.push((format!("{name}/"), Vec::new()));
                 folders.push((entry.path(), format!("{name}/")));
             } else if kind.is_file() {
                 total += entry.metadata()?.len();
@@ -226,10 +228,10 @@ pub fn open_bundle(
         }
     }
     if faults.is_empty() {
-        Ok(archive::from_files(files))
+        Ok(archive::from_files(files, limits))
     } else {
         faults.sort();
-        Ok(Err(faults))
+        Ok(Err(archive::told(faults)))
     }
 }
 

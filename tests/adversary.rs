@@ -17,6 +17,8 @@ mod forged;
 mod forger;
 #[path = "adversary/raw_zip.rs"]
 mod raw_zip;
+#[path = "adversary/readers.rs"]
+mod readers;
 #[path = "adversary/sandbox.rs"]
 mod sandbox;
 #[path = "adversary/study.rs"]
@@ -36,6 +38,11 @@ fn names_that_lead_astray() {
 #[test]
 fn archives_that_readers_understand_differently() {
     insta::assert_snapshot!(run_all(&archives::structure()));
+}
+
+#[test]
+fn archives_with_bytes_of_nobody() {
+    insta::assert_snapshot!(run_all(&archives::bytes_of_nobody()));
 }
 
 #[test]
@@ -114,6 +121,17 @@ fn honest_bundles_are_not_refused() {
         },
     );
     holds("as other programs zip it, with folders and without modes", "3", &raw_zip::zip(&others));
+    let long = raw_zip::Tail { long: Some(0), reversed: true, ..raw_zip::Tail::default() };
+    holds("with a zip64 end, listed from the last", "3", &raw_zip::zip_with(&entries("x"), &long));
+    let streamed = entries("x").into_iter().map(raw_zip::Entry::streamed);
+    holds("written to a stream", "3", &raw_zip::zip(&streamed.collect::<Vec<_>>()));
+    let deflated = entries("x")
+        .into_iter()
+        .map(|entry| raw_zip::Entry::deflated(entry.central.name, entry.data).streamed());
+    holds("compressed into a stream", "3", &raw_zip::zip(&deflated.collect::<Vec<_>>()));
+    for (tool, zip) in readers::as_tools_write(&HONEST.tree, &HONEST.root) {
+        holds(&tool, "3", &zip);
+    }
     let mut windows = HONEST.tree.clone();
     forger::edit(&mut windows, forger::MANIFEST, |text| {
         let line = |line: &str| match line.split_once("  ") {
@@ -191,6 +209,7 @@ fn the_table_is_long_and_names_each_attack_once() {
     let mut tables: Vec<Vec<Case>> = vec![
         archives::names(),
         archives::structure(),
+        archives::bytes_of_nobody(),
         archives::bombs(),
         files::fixity(),
         files::coherence(),

@@ -42,6 +42,7 @@ const DOORS: &[(&str, &[&str])] = &[
     ("clap_complete", &["cli/"]),
     ("clarabel", &["cmdp/solve.rs"]),
     ("console", &["cli/"]),
+    ("flate2", &["bundle/archive/unpack.rs"]),
     ("fs_err", &["store.rs"]),
     ("indicatif", &["cli/"]),
     ("libm", &["math.rs"]),

@@ -1,12 +1,23 @@
 //! Zips, written byte-identically and read in place without trust: nothing is ever unpacked to disk.
 //!
-//! Level 0 of verification is this file: whatever it hands out is safe to look at, however the archive was made.
+//! Level 0 of verification is this module: whatever it hands out is safe to look at, however the archive was made, and
+//! is what every other reader sees.
 
+mod extra;
+mod header;
+mod layout;
+mod told;
+mod unpack;
+
+use self::layout::Directory;
+use self::told::Faults;
+pub use self::told::told;
+use self::unpack::unpack;
 use super::{Fault, Tree, format, names};
 use std::collections::BTreeSet;
-use std::io::{Cursor, Read as _, Write as _};
+use std::io::{Cursor, Write as _};
 use zip::write::SimpleFileOptions;
-use zip::{CompressionMethod, DateTime, ZipArchive, ZipWriter};
+use zip::{CompressionMethod, DateTime, ZipWriter};
 
 /// How the files of a bundle are laid out in a zip.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -96,85 +107,25 @@ fn pack<'a>(
 /// # Errors
 /// Everything that makes it unsafe or no bundle, as far as it could be read.
 pub fn read(bytes: &[u8], limits: &Limits) -> Result<Archive, Vec<Fault>> {
-    let broken = |e: &dyn std::fmt::Display| {
-        vec![Fault::new("(archive)", "a whole zip archive", format!("another: {e}"))]
-    };
-    let mut faults = Vec::new();
-    let too_many = |found: usize| {
-        Fault::new(
-            "(archive)",
-            format!("at most {} entries", limits.entries),
-            format!("{found} entries"),
-        )
-    };
-    // Counted before they are read, for reading an entry takes ten times its bytes. The mark may stand in a file's bytes,
-    // too, but not as often.
-    let marks = bytes.windows(4).filter(|w| *w == b"PK\x01\x02").count();
-    if marks > limits.entries.saturating_mul(2) {
-        return Err(vec![too_many(marks)]);
-    }
-    let mut zip = ZipArchive::new(Cursor::new(bytes)).map_err(|e| broken(&e))?;
-    if zip.offset() > 0 {
-        faults.push(Fault::new(
-            "(archive)",
-            "a zip that begins at the first byte",
-            format!("{} bytes before it", zip.offset()),
-        ));
-    }
-    if let Some(behind) = bytes_behind(bytes) {
-        faults.push(Fault::new(
-            "(archive)",
-            "a zip that ends at the last byte",
-            format!("{behind} bytes behind it"),
-        ));
-    }
-    let start = usize::try_from(zip.central_directory_start()).unwrap_or(usize::MAX);
-    let listed = central_names(bytes.get(start..).unwrap_or_default());
-    if listed.len() > limits.entries || zip.len() > limits.entries {
-        faults.push(too_many(listed.len().max(zip.len())));
-        return Err(faults);
-    }
-    faults.extend(duplicates(&listed));
-    if faults.is_empty()
-        && let Err(e) = zip.validate_header_consistency()
-    {
-        faults.push(Fault::new(
-            "(archive)",
-            "local and central headers that agree",
-            format!("others: {e}"),
-        ));
-    }
+    let files = contents(bytes, limits).map_err(Vec::from)?;
+    locate(files).map_err(|fault| vec![fault])
+}
 
-    let mut declared = 0_u64;
-    let mut files = Vec::new();
-    for index in 0..zip.len() {
-        let entry = zip.by_index_data(index).map_err(|e| broken(&e))?;
-        let Ok(name) = std::str::from_utf8(entry.name_raw()) else {
-            let shown = String::from_utf8_lossy(entry.name_raw()).into_owned();
+/// The files of a zip, by the names they have there.
+fn contents(bytes: &[u8], limits: &Limits) -> Result<Vec<(String, Vec<u8>)>, Faults> {
+    let directory = Directory::find(bytes)?;
+    let entries = directory.headers(bytes, limits)?;
+    let mut faults = Faults::default();
+    let (mut paths, mut declared) = (Vec::with_capacity(entries.len()), 0_u64);
+    for entry in &entries {
+        if let Ok(path) = std::str::from_utf8(entry.name) {
+            paths.push(path);
+        } else {
+            let shown = String::from_utf8_lossy(entry.name);
             faults.push(Fault::new(shown, "a name in UTF-8", "other bytes"));
-            continue;
-        };
-        let mut found = Vec::new();
-        if entry.encrypted() {
-            found.push("encryption");
         }
-        if !matches!(entry.compression(), CompressionMethod::Stored | CompressionMethod::Deflated) {
-            found.push("another compression");
-        }
-        // Python's `writestr` leaves the type bits empty.
-        let kind = entry.external_attributes() >> 16 & 0o170_000;
-        if !matches!(kind, 0 | 0o100_000 | 0o040_000) {
-            found.push(if kind == 0o120_000 { "a symbolic link" } else { "a special file" });
-        }
-        let folder = name.ends_with('/');
-        if folder && entry.size() > 0 {
-            found.push("a folder with content");
-        }
-        for found in found {
-            faults.push(Fault::new(name.escape_debug().to_string(), "a plain file", found));
-        }
-        declared = declared.saturating_add(entry.size());
-        files.push((index, name.to_owned(), folder));
+        faults.extend(entry.faults());
+        declared = declared.saturating_add(entry.size);
     }
     let allowed = limits
         .bytes
@@ -190,63 +141,66 @@ pub fn read(bytes: &[u8], limits: &Limits) -> Result<Archive, Vec<Fault>> {
         );
     }
     // Names before bytes: a clash or a bomb is reason enough not to unpack anything.
-    let paths: Vec<&str> = files.iter().map(|(_, name, _)| name.as_str()).collect();
-    faults.extend(unsafe_names(&paths));
-    if !faults.is_empty() {
-        return Err(faults);
-    }
-
-    let mut contents = Vec::with_capacity(files.len());
-    for (index, name, folder) in files {
-        if folder {
-            continue;
-        }
-        match unpack(&mut zip, index) {
-            Ok(content) => contents.push((name, content)),
+    unsafe_names(&paths, limits, &mut faults);
+    faults.or(())?;
+    let packed = directory.account(bytes, &entries)?;
+    let (mut contents, mut faults) = (Vec::with_capacity(entries.len()), Faults::default());
+    for ((entry, path), packed) in entries.iter().zip(paths).zip(packed) {
+        match unpack(entry, packed) {
+            Ok(_) if entry.is_folder() => {}
+            Ok(content) => contents.push((path.to_owned(), content)),
             Err(found) => {
-                faults.push(Fault::new(
-                    name,
-                    "an entry that unpacks to its declared size and checksum",
-                    found,
-                ));
+                let expected = "an entry that unpacks to its declared size and checksum";
+                faults.push(Fault::new(path, expected, found));
             }
         }
     }
-    if faults.is_empty() { locate(contents) } else { Err(faults) }
+    faults.or(contents)
 }
 
-/// The same for a folder's files, given by their paths relative to it (with `/`), as `store` lists them.
+/// The same for a folder's files, given by their paths relative to it (with `/`), as `store` lists them. A folder in it
+/// is a path that ends in `/`, without bytes.
 ///
 /// # Errors
-/// Where a name is unsafe, or the folder is neither a bag nor a crate.
-pub fn from_files(files: Vec<(String, Vec<u8>)>) -> Result<Archive, Vec<Fault>> {
+/// Where a name is unsafe, a folder is empty, or the whole is neither a bag nor a crate.
+pub fn from_files(
+    mut files: Vec<(String, Vec<u8>)>,
+    limits: &Limits,
+) -> Result<Archive, Vec<Fault>> {
     let paths: Vec<&str> = files.iter().map(|(path, _)| path.as_str()).collect();
-    let faults = unsafe_names(&paths);
-    if faults.is_empty() { locate(files) } else { Err(faults) }
+    let mut faults = Faults::default();
+    unsafe_names(&paths, limits, &mut faults);
+    faults.or(()).map_err(Vec::from)?;
+    files.retain(|(path, _)| !path.ends_with('/'));
+    locate(files).map_err(|fault| vec![fault])
 }
 
-/// Unpacks one entry, never more than it declares.
-fn unpack(zip: &mut ZipArchive<Cursor<&[u8]>>, index: usize) -> Result<Vec<u8>, String> {
-    let entry = zip.by_index(index).map_err(|e| e.to_string())?;
-    let declared = entry.size();
-    // Memory is taken as bytes come, not as the header asks.
-    let mut content = Vec::new();
-    entry.take(declared.saturating_add(1)).read_to_end(&mut content).map_err(|e| e.to_string())?;
-    if content.len() as u64 == declared {
-        Ok(content)
-    } else {
-        Err(format!("{} bytes where {declared} are declared", content.len()))
-    }
-}
+/// Most bytes of a path and of a part of it, which every system can write.
+const LONGEST_PATH: usize = 1000;
+const LONGEST_PART: usize = 255;
 
-fn unsafe_names(paths: &[&str]) -> Vec<Fault> {
+fn unsafe_names(paths: &[&str], limits: &Limits, faults: &mut Faults) {
     let mut seen = names::Names::default();
-    let mut faults = Vec::new();
+    let (mut once, mut twice) = (BTreeSet::new(), BTreeSet::new());
     for path in paths {
+        if !once.insert(*path) {
+            if twice.insert(*path) {
+                let shown = path.escape_debug().to_string();
+                faults.push(Fault::new(shown, "one entry of this name", "several"));
+            }
+            continue;
+        }
         let shown = || path.escape_debug().to_string();
-        // A folder's own entry says nothing that the files in it do not say.
         let name = path.strip_suffix('/').unwrap_or(path);
-        if let Some(hazard) = names::hazard(name) {
+        let longest = name.split('/').map(str::len).max().unwrap_or_default();
+        if name.len() > LONGEST_PATH || longest > LONGEST_PART {
+            let begin: String = name.chars().take(60).collect();
+            faults.push(Fault::new(
+                format!("{}...", begin.escape_debug()),
+                format!("at most {LONGEST_PATH} bytes of path and {LONGEST_PART} of a name in it"),
+                format!("{} and {longest}", name.len()),
+            ));
+        } else if let Some(hazard) = names::hazard(name) {
             faults.push(Fault::new(shown(), "a safe relative path", hazard));
         } else if !names::is_portable(name) {
             faults.push(Fault::new(
@@ -254,51 +208,81 @@ fn unsafe_names(paths: &[&str]) -> Vec<Fault> {
                 "a name of A-Z a-z 0-9 . _ - only",
                 "other characters, which systems spell in more than one way",
             ));
-        } else if !path.ends_with('/')
-            && let Some(other) = seen.enter(name)
-        {
+        } else if let Some(other) = seen.enter(path) {
             faults.push(Fault::new(
                 shown(),
                 "names that differ on every system",
                 format!("`{other}` beside it"),
             ));
         }
+        // Every folder on the way counts as well: a path of a thousand letters may name five hundred.
+        if seen.len() > limits.entries {
+            let expected = format!("at most {} files and folders", limits.entries);
+            faults.push(Fault::new("(archive)", expected, "more"));
+            return;
+        }
     }
-    faults
+    // A folder whose name is refused needs no second reason.
+    if faults.is_empty() {
+        faults.extend(empty_folders(paths));
+    }
+}
+
+/// The folders that hold no file, told together.
+fn empty_folders(paths: &[&str]) -> Option<Fault> {
+    let files: BTreeSet<&str> = paths.iter().copied().filter(|path| !path.ends_with('/')).collect();
+    let holds =
+        |folder: &str| files.range(folder..).next().is_some_and(|file| file.starts_with(folder));
+    let empty: BTreeSet<&str> =
+        paths.iter().copied().filter(|path| path.ends_with('/') && !holds(path)).collect();
+    let first = empty.first()?.escape_debug().to_string();
+    let found = match empty.len() - 1 {
+        0 => "none in it".to_owned(),
+        more => format!("none in it, nor in {more} more"),
+    };
+    Some(Fault::new(first, "a folder that holds files", found).hint("no checksum covers it"))
 }
 
 /// Finds the bag or the crate among the files.
-fn locate(files: Vec<(String, Vec<u8>)>) -> Result<Archive, Vec<Fault>> {
+fn locate(files: Vec<(String, Vec<u8>)>) -> Result<Archive, Fault> {
     let has = |name: &str| files.iter().any(|(path, _)| path == name);
     let tops: BTreeSet<&str> =
         files.iter().filter_map(|(path, _)| path.split('/').next()).collect();
     let bags: Vec<&str> =
         tops.iter().copied().filter(|top| has(&format!("{top}/{}", format::BAGIT))).collect();
-    let (form, prefix, onto) = if has(format::BAGIT) {
-        (Form::Flat, String::new(), "")
-    } else if has(format::METADATA) {
-        (Form::Crate, String::new(), format::PAYLOAD)
-    } else if let [bag] = bags[..] {
+    let (form, prefix, onto) = match (has(format::BAGIT), has(format::METADATA), &bags[..]) {
+        (true, false, []) => (Form::Flat, String::new(), ""),
+        (false, true, []) => (Form::Crate, String::new(), format::PAYLOAD),
+        (false, false, [bag]) => (Form::Bag, format!("{bag}/"), ""),
+        (flat, bare, _) => return Err(no_one_root(flat, bare, &bags)),
+    };
+    if form == Form::Bag {
+        let bag = bags[0];
         if tops.len() > 1 {
             let others: Vec<_> =
                 tops.iter().filter(|top| **top != bag).map(|t| format!("`{t}`")).collect();
-            return Err(vec![Fault::new(
+            return Err(Fault::new(
                 "(archive)",
                 format!("the one folder `{bag}`"),
                 format!("{} beside it", others.join(", ")),
-            )]);
+            ));
         }
-        (Form::Bag, format!("{bag}/"), "")
-    } else {
-        let found = if bags.is_empty() {
-            "neither".to_owned()
-        } else {
-            format!("{} bags: {}", bags.len(), bags.join(", "))
-        };
-        let expected = format!("one bag ({}) or crate ({})", format::BAGIT, format::METADATA);
-        let hint = "is it a bundle, and is it whole?";
-        return Err(vec![Fault::new("(archive)", expected, found).hint(hint)]);
-    };
+        if RESERVED.iter().any(|name| bag.eq_ignore_ascii_case(name)) {
+            let expected = "a bag in a folder that no part of a bag is named after";
+            let hint = "rename the folder";
+            return Err(Fault::new("(archive)", expected, format!("`{bag}`")).hint(hint));
+        }
+    }
+    // A second root inside the first: which of them is read depends on who reads.
+    let inner = format!("{}{}", format::PAYLOAD, format::BAGIT);
+    for inner in [inner.as_str(), format::METADATA] {
+        let path = format!("{prefix}{inner}");
+        if form != Form::Crate && has(&path) {
+            let expected =
+                format!("no second root in a bag ({}, {})", format::BAGIT, format::METADATA);
+            return Err(Fault::new(path, expected, "one"));
+        }
+    }
     let tree = files
         .into_iter()
         .map(|(path, bytes)| (format!("{onto}{}", &path[prefix.len()..]), bytes))
@@ -306,40 +290,21 @@ fn locate(files: Vec<(String, Vec<u8>)>) -> Result<Archive, Vec<Fault>> {
     Ok(Archive { form, tree })
 }
 
-/// How many bytes stand behind the archive's end record and its comment; `None` where none do.
-fn bytes_behind(bytes: &[u8]) -> Option<usize> {
-    let at = bytes.windows(4).rposition(|w| w == b"PK\x05\x06")?;
-    let comment = bytes.get(at + 20..at + 22)?;
-    let end = at + 22 + usize::from(u16::from_le_bytes([comment[0], comment[1]]));
-    bytes.len().checked_sub(end).filter(|behind| *behind > 0)
-}
+/// Names at the root of a bag or of a crate that tell one from the other.
+const RESERVED: [&str; 3] = ["data", format::BAGIT, format::METADATA];
 
-/// The names in a central directory as they stand there: the zip crate keeps only the last of equal ones.
-fn central_names(mut directory: &[u8]) -> Vec<&[u8]> {
-    let mut names = Vec::new();
-    while let Some(header) = directory.get(..46).filter(|h| h.starts_with(b"PK\x01\x02")) {
-        let length = |at: usize| usize::from(u16::from_le_bytes([header[at], header[at + 1]]));
-        let (name, rest) = (length(28), length(30) + length(32));
-        let Some(bytes) = directory.get(46..46 + name) else { break };
-        names.push(bytes);
-        directory = directory.get(46 + name + rest..).unwrap_or_default();
+fn no_one_root(flat: bool, bare: bool, bags: &[&str]) -> Fault {
+    let mut roots = Vec::new();
+    if flat {
+        roots.push("a bag at the root".to_owned());
     }
-    names
-}
-
-fn duplicates(listed: &[&[u8]]) -> Vec<Fault> {
-    let mut sorted = listed.to_vec();
-    sorted.sort_unstable();
-    let mut faults: Vec<Fault> = sorted
-        .windows(2)
-        .filter(|pair| pair[0] == pair[1])
-        .map(|pair| {
-            let name = String::from_utf8_lossy(pair[0]).escape_debug().to_string();
-            Fault::new(name, "one entry of this name", "several")
-        })
-        .collect();
-    faults.dedup();
-    faults
+    if bare {
+        roots.push("a crate at the root".to_owned());
+    }
+    roots.extend(bags.iter().map(|bag| format!("a bag in `{bag}`")));
+    let found = if roots.is_empty() { "neither".to_owned() } else { roots.join(", ") };
+    let expected = format!("one bag ({}) or crate ({})", format::BAGIT, format::METADATA);
+    Fault::new("(archive)", expected, found).hint("is it a bundle, and is it whole?")
 }
 
 #[cfg(test)]

@@ -50,10 +50,12 @@ pub struct Names {
 }
 
 impl Names {
-    /// Enters the file `path` and the folders above it; the name it clashes with, if it does.
+    /// Enters the file `path` (or the folder, where it ends in `/`) and the folders above it; the name it clashes with,
+    /// if it does.
     pub fn enter(&mut self, path: &str) -> Option<String> {
         let folders = path.match_indices('/').map(|(i, _)| (&path[..i], true));
-        for (name, is_folder) in folders.chain([(path, false)]) {
+        let file = (!path.ends_with('/')).then_some((path, false));
+        for (name, is_folder) in folders.chain(file) {
             let entry = (name.to_owned(), is_folder);
             // Full case folding only matters outside ASCII, where `is_portable` refuses the name anyway.
             match self.seen.get(&name.to_lowercase()) {
@@ -65,6 +67,16 @@ impl Names {
             }
         }
         None
+    }
+
+    /// How many files and folders were entered.
+    pub fn len(&self) -> usize {
+        self.seen.len()
+    }
+
+    /// Whether none was.
+    pub fn is_empty(&self) -> bool {
+        self.seen.is_empty()
     }
 }
 
@@ -115,6 +127,11 @@ mod tests {
         assert_eq!(names.enter("Data/c").as_deref(), Some("data"));
         assert_eq!(names.enter("data/a/x").as_deref(), Some("data/a"));
         assert_eq!(names.enter("data/b").as_deref(), Some("data/b"));
+        assert_eq!(names.len(), 3, "data, data/a and data/b");
+        assert_eq!(names.enter("data/"), None);
+        assert_eq!(names.enter("data/b/").as_deref(), Some("data/b"));
+        assert_eq!(names.enter("data/c/"), None);
+        assert_eq!(names.enter("data/c").as_deref(), Some("data/c"));
     }
 
     proptest! {

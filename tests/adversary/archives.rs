@@ -1,7 +1,7 @@
 //! Level 0: archives and folders that must not even be opened.
 
 use super::case::{Case, Made};
-use super::raw_zip::{self, Entry, zip};
+use super::raw_zip::{self, Entry, Header, Tail, zip, zip_with};
 use super::study::HONEST;
 
 /// The honest bag's entries.
@@ -25,6 +25,15 @@ fn with(name: &'static str, more: Vec<Entry>) -> Case {
     let mut all = vec![Entry::stored(inside("bagit.txt"), "")];
     all.extend(more);
     Case::new(name, 0, Made::File(zip(&all)))
+}
+
+/// Files, and folders where the path ends in `/`.
+fn over(paths: &[&str]) -> Vec<Entry> {
+    let entry = |path: &&str| match path.strip_suffix('/') {
+        Some(_) => Entry::folder(inside(path)),
+        None => Entry::stored(inside(path), "x"),
+    };
+    paths.iter().map(entry).collect()
 }
 
 fn file(name: &'static str, bytes: impl Into<Vec<u8>>) -> Case {
@@ -69,18 +78,27 @@ pub(crate) fn names() -> Vec<Case> {
         ),
         with(
             "a Unicode path extra field that renames a file",
-            vec![Entry {
-                // Info-ZIP's 0x7075: version, CRC-32 of the header's name, the other name.
-                extra: {
-                    let other = b"bag/../../evil";
-                    let mut extra = vec![0x75, 0x70, u8::try_from(5 + other.len()).unwrap(), 0, 1];
-                    extra.extend(raw_zip::crc32(b"bag/data/x").to_le_bytes());
-                    extra.extend(other);
-                    extra
-                },
-                ..Entry::stored("bag/data/x", "1")
-            }],
+            vec![Entry::stored("bag/data/x", "1").says(|header| {
+                header.extra = raw_zip::unicode(0x7075, b"bag/data/x", b"bag/../../evil");
+            })],
         ),
+        with(
+            "a Unicode path extra field in the local header only",
+            vec![Entry::stored("bag/data/x", "1").says_locally(|header| {
+                header.extra = raw_zip::unicode(0x7075, b"bag/data/x", b"bag/data/y");
+            })],
+        ),
+        with_name("a name of 256 letters", format!("bag/data/{}", "x".repeat(256))),
+        with_name(
+            "a path of 1001 letters",
+            format!("bag/{}x", "data/".repeat(200))[..1001].to_owned(),
+        ),
+        with("a folder entry over a file", over(&["data/x", "data/x/"])),
+        with("a folder entry under a file", over(&["data/x/", "data/x"])),
+        with("a folder entry over a file in another case", over(&["data/x", "data/X/"])),
+        with("a folder entry twice", over(&["data/", "data/x", "data/"])),
+        with("a folder that holds nothing", over(&["data/x", "data/empty/"])),
+        with("a folder that leads out", over(&["data/x", "../evil/"])),
     ]
 }
 
@@ -91,16 +109,16 @@ pub(crate) fn structure() -> Vec<Case> {
     };
     let whole = zip(&entries());
     let mut flipped = entries();
-    flipped[8].crc ^= 1;
+    flipped[8].central.crc ^= 1;
     let mut shorter = entries();
-    shorter[8].size -= 1;
+    shorter[8].central.size -= 1;
     let mut longer = entries();
-    longer[8].size += 1;
+    longer[8].central.size += 1;
     let mut renamed = entries();
-    renamed[8].local_name = Some(b"elsewhere".to_vec());
+    renamed[8] = renamed[8].clone().says_locally(|header| header.name = b"elsewhere".to_vec());
     let mut twins = entries();
-    let twin = Entry { shared: true, name: inside("twin").into(), ..twins[8].clone() };
-    twins.insert(9, twin);
+    let twin = twins[8].clone().says(|header| header.name = inside("twin").into());
+    twins.insert(9, Entry { shared: true, ..twin });
     let mut before = b"#!/bin/sh\nexit\n".to_vec();
     before.extend(&whole);
     let mut after = whole.clone();
@@ -117,11 +135,9 @@ pub(crate) fn structure() -> Vec<Case> {
         kind("symbolic link", 0o120_777),
         kind("named pipe", 0o010_644),
         kind("character device", 0o020_644),
-        with("encryption", vec![Entry { flags: 1, ..Entry::stored(inside("data/x"), "secret") }]),
-        with(
-            "compression by bzip2",
-            vec![Entry { method: 12, ..Entry::stored(inside("data/x"), "BZh9") }],
-        ),
+        with("encryption", vec![x("secret").says(|header| header.flags = 1)]),
+        with("encryption in the local header only", vec![x("1").says_locally(|h| h.flags = 1)]),
+        with("compression by bzip2", vec![x("BZh9").says(|header| header.method = 12)]),
         with("folder with content", vec![Entry::stored(inside("data/"), "evil")]),
         with(
             "two bags",
@@ -145,6 +161,174 @@ pub(crate) fn structure() -> Vec<Case> {
     ]
 }
 
+fn x(content: &str) -> Entry {
+    Entry::stored(inside("data/x"), content)
+}
+
+/// Files that the honest bag does not list.
+const SCRIPT: &str = "#!/bin/sh\necho code ran\nexit\n";
+
+/// The honest bag, with something done to the entry of `data/inputs/basic.yaml`.
+fn changed(name: &'static str, change: impl FnOnce(Entry) -> Entry) -> Case {
+    let mut all = entries();
+    all[8] = change(all[8].clone());
+    file(name, zip(&all))
+}
+
+/// The same, compressed.
+fn deflated(name: &'static str, change: impl FnOnce(Entry) -> Entry) -> Case {
+    changed(name, |entry| change(Entry::deflated(entry.central.name, entry.data)))
+}
+
+/// The honest bag, with something else behind its entries.
+fn ended(name: &'static str, tail: Tail) -> Case {
+    file(name, zip_with(&entries(), &tail))
+}
+
+/// The honest bag's files under another root.
+fn rooted(name: &'static str, root: &str, more: &[(&str, &str)]) -> Case {
+    let tree = HONEST.tree.iter().map(|(path, bytes)| (path.as_str(), bytes.as_slice()));
+    let more = more.iter().map(|(path, text)| (*path, text.as_bytes()));
+    let named = |(path, bytes): (&str, &[u8])| Entry::stored(format!("{root}{path}"), bytes);
+    file(name, zip(&tree.chain(more).map(named).collect::<Vec<_>>()))
+}
+
+/// The honest bag, whole, and bytes that belong to no file of it, or that readers take for different ones.
+pub(crate) fn bytes_of_nobody() -> Vec<Case> {
+    let hidden = zip(&[x("hidden")]);
+    let entry = hidden[..hidden.windows(4).position(|w| w == b"PK\x01\x02").unwrap()].to_vec();
+    let mut nested = entries();
+    // The bytes of one entry are the header and the bytes of another.
+    let name = inside("data/y");
+    nested = nested.into_iter().take(3).collect();
+    nested.push(Entry::stored(name, entry.clone()));
+    let into = i32::try_from(30 + inside("data/y").len()).unwrap();
+    nested.push(Entry { shared: true, shift: into, ..x("hidden") });
+    let mut pieces = zip(&entries());
+    let at = pieces.len() - 18;
+    pieces[at..at + 2].copy_from_slice(&[1, 0]);
+    let mut zeros = zip(&entries());
+    zeros.extend([0; 512]);
+    let sized = |header: &mut Header| {
+        let size = u64::from(header.size) - 1;
+        header.extra = raw_zip::extra(1, &size.to_le_bytes());
+    };
+    vec![
+        {
+            let mut all = entries();
+            all[0].before = SCRIPT.into();
+            file("a shell script before the archive, with offsets that are right", zip(&all))
+        },
+        changed("five thousand bytes between two entries", |entry| Entry {
+            before: SCRIPT.repeat(160).into(),
+            ..entry
+        }),
+        changed("a file between two entries that nothing lists", |e| Entry {
+            before: entry.clone(),
+            ..e
+        }),
+        ended(
+            "bytes between the last entry and the directory",
+            Tail { gap: SCRIPT.into(), ..Tail::default() },
+        ),
+        ended(
+            "a file before the directory that nothing lists",
+            Tail { gap: entry, ..Tail::default() },
+        ),
+        ended(
+            "bytes between the directory and the end",
+            Tail { behind: SCRIPT.into(), ..Tail::default() },
+        ),
+        ended("64 KiB of comment", Tail { comment: vec![b'x'; 0xffff], ..Tail::default() }),
+        file("zeros behind the end", zeros),
+        file("an entry within another entry's bytes", zip(&nested)),
+        changed("an entry with a comment", |e| Entry { comment: SCRIPT.into(), ..e }),
+        changed("a Unicode comment", |e| {
+            let field = raw_zip::unicode(0x6375, b"", b"verified by the ACM");
+            e.says(|header| header.extra = field)
+        }),
+        ended("an end that counts one entry less", Tail { miscount: -1, ..Tail::default() }),
+        ended("an end that counts one entry more", Tail { miscount: 1, ..Tail::default() }),
+        ended("a zip64 end that counts one entry less", Tail { long: Some(-1), ..Tail::default() }),
+        file("the second piece of an archive", pieces),
+        deflated("junk behind a deflate stream", |mut entry| {
+            entry.data.extend(SCRIPT.bytes());
+            let data = entry.data.clone();
+            entry.replaced(data)
+        }),
+        deflated("a deflate stream without its end", |mut entry| {
+            entry.data.pop();
+            let data = entry.data.clone();
+            entry.replaced(data)
+        }),
+        deflated("a data descriptor with another checksum", |entry| {
+            let mut streamed = entry.streamed();
+            streamed.descriptor[4] ^= 1;
+            streamed
+        }),
+        deflated("a data descriptor with another size", |entry| {
+            let mut streamed = entry.streamed();
+            streamed.descriptor[12] ^= 1;
+            streamed
+        }),
+        deflated("a data descriptor with another packed size", |entry| {
+            let mut streamed = entry.streamed();
+            streamed.descriptor[8] ^= 1;
+            streamed
+        }),
+        deflated("no data descriptor where the headers promise one", |entry| Entry {
+            descriptor: Vec::new(),
+            ..entry.streamed()
+        }),
+        deflated("a data descriptor that no header promises", |entry| {
+            let Header { crc, packed, size, .. } = entry.central;
+            Entry { descriptor: raw_zip::descriptor(crc, packed, size), ..entry }
+        }),
+        deflated("sizes of zero in the local header without a data descriptor", |entry| {
+            entry.says_locally(|h| (h.crc, h.packed, h.size) = (0, 0, 0))
+        }),
+        changed("another method in the local header", |e| e.says_locally(|h| h.method = 8)),
+        changed("another size in the local header", |e| e.says_locally(|h| h.size -= 1)),
+        deflated("another packed size in the local header", |e| e.says_locally(|h| h.packed -= 1)),
+        changed("another checksum in the local header", |e| e.says_locally(|h| h.crc ^= 1)),
+        changed("a stored file with two sizes", |e| e.says(|h| h.packed -= 1)),
+        changed("a zip64 field that gives another size", |e| e.says(sized)),
+        changed("a zip64 field with another size in the local header", |e| e.says_locally(sized)),
+        changed("a zip64 field twice", |e| {
+            e.says(|header| {
+                let size = header.size;
+                header.size = u32::MAX;
+                header.extra = [size, size - 1]
+                    .iter()
+                    .flat_map(|size| raw_zip::extra(1, &u64::from(*size).to_le_bytes()))
+                    .collect();
+            })
+        }),
+        changed("an extra field that nobody knows", |e| {
+            e.says(|header| header.extra = raw_zip::extra(0xbeef, SCRIPT.as_bytes()))
+        }),
+        changed("an extra field that is cut", |e| {
+            e.says(|header| header.extra = b"UT\x09\x00\x03".to_vec())
+        }),
+        changed("an entry of another system", |e| Entry { system: 2, ..e }),
+        changed("a newer version of zip", |e| e.says(|header| header.version = 63)),
+        changed("a patch instead of a file", |e| e.says(|header| header.flags |= 1 << 5)),
+        changed("a folder by its mode and a file by its name", |e| Entry { mode: 0o040_755, ..e }),
+        changed("a folder by its attributes and a file by its name", |e| Entry {
+            attributes: 0x10,
+            mode: 0,
+            ..e
+        }),
+        changed("the name of a disk", |e| Entry { attributes: 0x08, ..e }),
+        rooted("a bag in a folder named data", "data/", &[]),
+        rooted("a bag in a folder named bagit.txt", "bagit.txt/", &[]),
+        rooted("a bag and a crate at one root", "", &[("ro-crate-metadata.json", "{}")]),
+        rooted("a bag and another in a folder beside it", "", &[("bag/bagit.txt", "")]),
+        rooted("a crate beside the bag's payload", "bag/", &[("ro-crate-metadata.json", "{}")]),
+        rooted("a bag within the payload", "bag/", &[("data/bagit.txt", "")]),
+    ]
+}
+
 /// Archives that would fill the memory or never end.
 pub(crate) fn bombs() -> Vec<Case> {
     let many = |count: u32| -> Vec<Entry> {
@@ -152,12 +336,14 @@ pub(crate) fn bombs() -> Vec<Case> {
     };
     let mut overlapping =
         vec![Entry::stored(inside("bagit.txt"), ""), Entry::zeros("bag/data/0", 1 << 20, 1 << 20)];
-    let packed = overlapping[1].packed.clone();
-    overlapping.extend((1..900).map(|i| Entry {
-        shared: true,
-        packed: packed.clone(),
-        ..Entry::zeros(&format!("bag/data/{i}"), 0, 1 << 20)
+    let packed = overlapping[1].data.clone();
+    overlapping.extend((1..900).map(|i| {
+        let entry = Entry::zeros(&format!("bag/data/{i}"), 0, 1 << 20).replaced(packed.clone());
+        Entry { shared: true, ..entry }
     }));
+    // Every path names hundreds of folders that no other names.
+    let deep = |i| Entry::stored(format!("bag/{i:05}{}", "/x".repeat(490)), "");
+    let empty = |i| Entry::folder(format!("bag/data/{i}/"));
     // The central directory of almost a million files, of which the end admits 65535.
     let mut directory = many(1);
     let header = Entry { shared: true, ..Entry::stored("a", "") };
@@ -173,6 +359,8 @@ pub(crate) fn bombs() -> Vec<Case> {
         file("nine hundred names for one MiB", zip(&overlapping)),
         with("20000 files too many", many(40_000)),
         file("800000 headers", zip(&directory)),
+        with("15000 empty folders", (0..15_000).map(empty).collect()),
+        with("15000 paths of 490 folders each", (0..15_000).map(deep).collect()),
         file("a file of 49 MiB", vec![b'P'; 49 << 20]),
     ]
 }
@@ -222,6 +410,13 @@ pub(crate) fn folders() -> Vec<Case> {
             let deep = bag.join("data").join("d/".repeat(1000));
             fs::create_dir_all(&deep).unwrap();
             symlink("/", deep.join("end")).unwrap();
+        }),
+        folder("an empty folder", |bag| fs::create_dir(bag.join("data/empty")).unwrap()),
+        folder("folders in folders, and no file", |bag| {
+            fs::create_dir_all(bag.join("data/a/b/c")).unwrap();
+        }),
+        folder("a bag within the payload of a folder", |bag| {
+            fs::write(bag.join("data/bagit.txt"), "").unwrap();
         }),
         folder("no declaration", |bag| fs::remove_file(bag.join("bagit.txt")).unwrap()),
     ]

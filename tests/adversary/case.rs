@@ -6,6 +6,9 @@ use reenact::bundle::{Form, Tree, archive};
 use std::fs;
 use std::path::Path;
 
+/// The most seconds that an attack may take, on a busy machine and with a program that is not optimised.
+const SECONDS: f64 = 20.0;
+
 /// How the attacker hands over a bundle.
 pub(crate) enum Made {
     /// A file of these bytes.
@@ -63,6 +66,9 @@ pub(crate) fn run_all(cases: &[Case]) -> String {
             assert_eq!(other, answer, "{}: a folder is told otherwise than a zip", case.name);
         }
         println!("{:<72} {}  {seconds:>6.2} s", case.name, case.rung);
+        for (_, seconds) in &answers {
+            assert!(*seconds < SECONDS, "{}: {seconds} s of at most {SECONDS} s", case.name);
+        }
         said += &format!(
             "## {}\nrefused at level {}, exit code {}\n{answer}\n",
             case.name, case.rung, case.exit

@@ -95,7 +95,7 @@ static BOUNDS_MEMORY: LazyLock<bool> = LazyLock::new(|| {
 });
 
 #[expect(clippy::print_stderr, reason = "whoever runs the tests must know what they did not test")]
-fn skipped(why: &str) {
+pub(crate) fn skipped(why: &str) {
     eprintln!("SKIPPED: {why}");
 }
 

@@ -1,6 +1,7 @@
 use super::super::sample;
 use super::*;
 use proptest::prelude::*;
+use zip::ZipArchive;
 
 fn faults(zip: &[u8]) -> Vec<String> {
     read(zip, &Limits::default()).unwrap_err().iter().map(ToString::to_string).collect()
@@ -23,7 +24,7 @@ fn all_forms_are_read_back_and_written_alike_every_time() {
         assert_eq!(archive.tree, expected);
     }
     let files = sealed.tree.clone().into_iter().collect();
-    assert_eq!(from_files(files).unwrap().tree, sealed.tree);
+    assert_eq!(from_files(files, &Limits::default()).unwrap().tree, sealed.tree);
 }
 
 #[test]
@@ -99,12 +100,9 @@ fn hostile_structure_is_refused() {
     let mut central_only = zip.clone();
     let last = central_only.windows(5).rposition(|w| w == b"b/two").unwrap();
     central_only[last..last + 5].copy_from_slice(b"b/twO");
-    let found = faults(&central_only);
-    assert!(
-        found[0].starts_with(
-            "(archive): expected local and central headers that agree, found others: "
-        ),
-        "{found:?}"
+    assert_eq!(
+        faults(&central_only),
+        ["b/twO: expected the same name in its local header, found `b/two`"]
     );
 
     let mut link = ZipWriter::new(Cursor::new(Vec::new()));
@@ -122,13 +120,12 @@ fn hostile_structure_is_refused() {
     let mut prefixed = b"#!/bin/sh\n".to_vec();
     prefixed.extend(&zip);
     assert_eq!(
-        faults(&prefixed)[0],
-        "(archive): expected a zip that begins at the first byte, found 10 bytes before it"
+        faults(&prefixed),
+        ["(archive): expected a zip that begins at the first byte, found 10 bytes before it"]
     );
-    assert!(
-        faults(&zip[..zip.len() / 2])[0].starts_with("(archive): expected a whole zip archive")
-    );
-    assert!(faults(b"")[0].starts_with("(archive): expected a whole zip archive"));
+    let cut = "(archive): expected a whole zip archive, found no end record (is it a zip, and did all of it arrive?)";
+    assert_eq!(faults(&zip[..zip.len() / 2]), [cut]);
+    assert_eq!(faults(b""), [cut]);
     assert_eq!(
         faults(&sample::zip_of(&[("x/readme", b"")])),
         [
@@ -139,8 +136,8 @@ fn hostile_structure_is_refused() {
     assert_eq!(
         faults(&sample::zip_of(&[("x/bagit.txt", b""), ("y/bagit.txt", b"")])),
         [
-            "(archive): expected one bag (bagit.txt) or crate (ro-crate-metadata.json), found 2 bags: x, y (is it a bundle, \
-          and is it whole?)"
+            "(archive): expected one bag (bagit.txt) or crate (ro-crate-metadata.json), found a bag in `x`, a bag in \
+          `y` (is it a bundle, and is it whole?)"
         ]
     );
 }
@@ -183,6 +180,101 @@ fn bombs_and_forged_sizes_are_refused() {
     );
 }
 
+/// Every end of an archive, and every byte that is put into it, is noticed.
+#[test]
+fn no_byte_may_be_taken_or_added_anywhere() {
+    let zip = sample::zip_of(&[("b/bagit.txt", b"x"), ("b/one", b""), ("b/two", b"yy")]);
+    assert!(read(&zip, &Limits::default()).is_ok());
+    for at in 0..=zip.len() {
+        if at < zip.len() {
+            assert!(read(&zip[..at], &Limits::default()).is_err(), "cut at {at}");
+            let mut less = zip.clone();
+            less.remove(at);
+            assert!(read(&less, &Limits::default()).is_err(), "without byte {at}");
+        }
+        for byte in [0, b'x', b'P'] {
+            let mut more = zip.clone();
+            more.insert(at, byte);
+            assert!(read(&more, &Limits::default()).is_err(), "{byte} put in at {at}");
+        }
+    }
+}
+
+#[test]
+fn extra_fields_that_change_nothing_are_read_over() {
+    let field = |id: u16, field: &[u8]| {
+        let length = u16::try_from(field.len()).unwrap();
+        [&id.to_le_bytes(), &length.to_le_bytes(), field].concat()
+    };
+    let sizes = field(0x0001, &[7; 16]);
+    assert_eq!(extra::read(&sizes).unwrap().zip64, Some(&[7; 16][..]));
+    for honest in [
+        field(0x5455, &[3, 0, 0, 0, 0]),
+        field(0x7875, &[1, 4, 0, 0, 0, 0, 4, 0, 0, 0, 0]),
+        [field(0x5455, &[7; 13]), field(0x7875, &[1, 0, 0]), field(0x7855, &[])].concat(),
+        field(0x5855, &[0; 8]),
+        field(0x000a, &[&[0; 4], &[1, 0, 24, 0], &[9; 24][..]].concat()),
+    ] {
+        assert_eq!(extra::read(&honest).unwrap().zip64, None, "{honest:?}");
+    }
+    for (hostile, found) in [
+        (field(0x7075, b"\x01CRC.other"), "field 0x7075, which gives the file another name"),
+        (field(0x6375, b"\x01CRC.other"), "field 0x6375, which holds a comment"),
+        (field(0x9901, &[0; 7]), "field 0x9901, which is for encryption"),
+        (field(0x000d, &[0; 12]), "field 0x000d, which can make it a link"),
+        ([sizes.clone(), sizes].concat(), "field 0x0001 twice"),
+        (field(0x5455, b"#!/bin/sh"), "field 0x5455 of 9 bytes that are not its own"),
+        (field(0x5455, b"#!/bin/sh1234"), "field 0x5455 of 13 bytes that are not its own"),
+        (
+            field(0x7875, &[1, 4, 0, 0, 0, 0, 4, 0, 0, 0, 0, 9]),
+            "field 0x7875 of 12 bytes that are not its own",
+        ),
+        (field(0x7875, &[1, 200, 0]), "field 0x7875 of 3 bytes that are not its own"),
+        (field(0x000a, &[1; 32]), "field 0x000a of 32 bytes that are not its own"),
+        (field(0xbeef, &[]), "field 0xbeef, whose meaning is unknown"),
+        (b"UT\x05\x00\x03".to_vec(), "5 bytes that are none"),
+        (b"UT".to_vec(), "2 bytes that are none"),
+    ] {
+        assert_eq!(extra::read(&hostile).unwrap_err(), found);
+    }
+}
+
+#[test]
+fn folders_hold_files_and_faults_have_an_end() {
+    let files =
+        |paths: &[&str]| paths.iter().map(|path| ((*path).to_owned(), Vec::new())).collect();
+    let said = |paths: &[&str]| -> Vec<String> {
+        let refused = from_files(files(paths), &Limits::default()).unwrap_err();
+        refused.iter().map(ToString::to_string).collect()
+    };
+    let whole = ["bagit.txt", "data/", "data/inputs/", "data/inputs/x"];
+    assert_eq!(from_files(files(&whole), &Limits::default()).unwrap().tree.len(), 2);
+    assert_eq!(
+        said(&["bagit.txt", "data/", "data/x-1", "data/x/"]),
+        ["data/x/: expected a folder that holds files, found none in it (no checksum covers it)"]
+    );
+    assert_eq!(
+        said(&["bagit.txt", "data/", "data/x/", "data/x/y/"]),
+        [
+            "data/: expected a folder that holds files, found none in it, nor in 2 more (no checksum covers it)"
+        ]
+    );
+    assert_eq!(
+        said(&["bagit.txt", "data/x", "data/x/"])[0],
+        "data/x/: expected names that differ on every system, found `data/x` beside it"
+    );
+    let hostile: Vec<String> = (0..150).map(|i| format!("b/{i}:x")).collect();
+    let hostile = said(&hostile.iter().map(String::as_str).collect::<Vec<_>>());
+    assert_eq!(hostile.len(), 101);
+    assert_eq!(hostile[100], "(archive): expected no fault, found 50 more like these");
+    let deep = format!("b{}", "/x".repeat(400));
+    let limits = Limits { entries: 300, ..Limits::default() };
+    assert_eq!(
+        from_files(files(&[&deep]), &limits).unwrap_err()[0].to_string(),
+        "(archive): expected at most 300 files and folders, found more"
+    );
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
@@ -211,6 +303,6 @@ proptest! {
 
     #[test]
     fn any_file_list_is_read_or_refused(files in prop::collection::vec((".{0,12}", prop::collection::vec(any::<u8>(), 0..8)), 0..5)) {
-        let _ = from_files(files);
+        let _ = from_files(files, &Limits::default());
     }
 }
