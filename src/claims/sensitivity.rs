@@ -146,11 +146,11 @@ impl Sensitivity {
     pub fn from_csv(text: &str) -> Result<Self, SensitivityError> {
         let table = Table::from_csv(text).map_err(|e| SensitivityError(e.to_string()))?;
         if table.columns != COLUMNS {
-            return Err(SensitivityError(format!(
-                "expected the columns {}, found {}",
-                COLUMNS.join(", "),
-                table.columns.join(", ")
-            )));
+            // Nothing is quoted of a file of another kind: it may have been named by a slip.
+            let is_ours = table.columns.iter().any(|column| COLUMNS.contains(&column.as_str()));
+            let found = if is_ours { table.columns.join(", ") } else { "none of them".to_owned() };
+            let columns = COLUMNS.join(", ");
+            return Err(SensitivityError(format!("expected the columns {columns}, found {found}")));
         }
         let read = |(i, fields): (usize, &Vec<Value>)| {
             let text = |column: usize| fields[column].to_string();
@@ -211,6 +211,10 @@ mod tests {
         assert_eq!(
             told("setting,value\n"),
             "expected the columns setting, chosen, tried, trials, claim, at-chosen, at-tried, found setting, value"
+        );
+        assert_eq!(
+            told("root:x:0:0\n"),
+            "expected the columns setting, chosen, tried, trials, claim, at-chosen, at-tried, found none of them"
         );
         assert_eq!(
             told(&TEXT.replace("inconclusive,contradicted", "inconclusive,wrong")),

@@ -3,7 +3,7 @@
 use super::{Pipeline, PlannedTrial, Replanned};
 use crate::bundle::{Bundle, BundleContent, Fault, assemble, format};
 use crate::digest::Sha256Digest;
-use crate::document::Source;
+use crate::document::{Source, reports};
 use crate::manifest::{self, Experiment, Inputs, WrittenIn};
 use crate::plan::{ENGINE_VERSION, Plan, Selection};
 use crate::runner::{Observer, RunError, Scheduler, Silent};
@@ -104,7 +104,7 @@ fn resolve(
 ) -> Result<Experiment, String> {
     match manifest::resolve(source, overrides, inputs) {
         Ok((experiment, _)) => Ok(experiment),
-        Err(faults) => Err(faults.iter().map(|f| f.render(false)).collect()),
+        Err(faults) => Err(reports(&faults, false).concat()),
     }
 }
 
