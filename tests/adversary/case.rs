@@ -6,6 +6,10 @@ use reenact::bundle::{Form, Tree, archive};
 use std::fs;
 use std::path::Path;
 
+/// The longest (s) that an attack may keep the program, built without optimisation and on a machine that is busy. What costs
+/// more than its length takes minutes then.
+const MOST_SECONDS: f64 = 60.0;
+
 /// How the attacker hands over a bundle.
 pub(crate) enum Made {
     /// A file of these bytes.
@@ -63,6 +67,7 @@ pub(crate) fn run_all(cases: &[Case]) -> String {
             assert_eq!(other, answer, "{}: a folder is told otherwise than a zip", case.name);
         }
         println!("{:<72} {}  {seconds:>6.2} s", case.name, case.rung);
+        assert!(*seconds < MOST_SECONDS, "{}: {seconds} s", case.name);
         said += &format!(
             "## {}\nrefused at level {}, exit code {}\n{answer}\n",
             case.name, case.rung, case.exit
