@@ -3,8 +3,9 @@
 use crate::bundle::wall_time::WallTime;
 use crate::bundle::{Circumstance, Moment, format};
 use crate::studies::Stopwatch;
+use std::ffi::OsString;
 use std::path::PathBuf;
-use std::time::{Instant, SystemTime, UNIX_EPOCH};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use thiserror::Error;
 
 /// Why the environment cannot be followed.
@@ -18,6 +19,9 @@ pub enum EnvironmentError {
         "trial store: expected REENACT_STORE, XDG_CACHE_HOME or HOME to say where it is, found none of them set"
     )]
     NoStore,
+    /// A path is no Unicode text, which no line of a log or a result could show.
+    #[error("{0}: expected a path in UTF-8, found `{1}`, which is none")]
+    NotUnicode(&'static str, String),
 }
 
 /// What the environment asks of the program.
@@ -26,7 +30,7 @@ pub struct Environment {
     /// The instant that stands for now in everything sealed, if one is given.
     pub source_date_epoch: Option<Moment>,
     /// Where the trial store is: `REENACT_STORE`, else `$XDG_CACHE_HOME/reenact`, else `$HOME/.cache/reenact`.
-    pub store: Option<PathBuf>,
+    pub store: Result<PathBuf, EnvironmentError>,
     /// Whether colours are unwanted (`NO_COLOR` set and not empty).
     pub no_color: bool,
     /// Whether the locale says that the terminal reads UTF-8 (`LC_ALL`, else `LC_CTYPE`, else `LANG`).
@@ -42,16 +46,25 @@ impl Environment {
     /// Where `SOURCE_DATE_EPOCH` is not a number.
     pub fn read() -> Result<Self, EnvironmentError> {
         #[expect(clippy::disallowed_methods, reason = "this is the door to the environment")]
-        Self::from_lookup(|name| std::env::var_os(name).and_then(|value| value.into_string().ok()))
+        Self::from_lookup(|name| std::env::var_os(name))
     }
 
     /// Reads an environment given as a function; empty values count as unset, as the XDG specification says.
     ///
     /// # Errors
     /// Where `SOURCE_DATE_EPOCH` is not a number.
-    pub fn from_lookup(lookup: impl Fn(&str) -> Option<String>) -> Result<Self, EnvironmentError> {
-        let lookup = |name: &str| lookup(name).filter(|value| !value.is_empty());
-        let path = |name: &str| lookup(name).map(PathBuf::from);
+    pub fn from_lookup(
+        lookup: impl Fn(&str) -> Option<OsString>,
+    ) -> Result<Self, EnvironmentError> {
+        let written = |name: &str| lookup(name).filter(|value| !value.is_empty());
+        let lookup = |name: &str| written(name).map(|value| value.to_string_lossy().into_owned());
+        let path = |name: &'static str| -> Option<Result<PathBuf, EnvironmentError>> {
+            written(name).map(|value| {
+                value.into_string().map(PathBuf::from).map_err(|value| {
+                    EnvironmentError::NotUnicode(name, value.to_string_lossy().into_owned())
+                })
+            })
+        };
         let source_date_epoch = lookup("SOURCE_DATE_EPOCH")
             .map(|text| {
                 let seconds = text.parse().ok().filter(|s| (0..253_402_300_800).contains(s));
@@ -59,12 +72,15 @@ impl Environment {
             })
             .transpose()?;
         // Relative XDG paths are invalid and to be ignored.
-        let cache = path("XDG_CACHE_HOME").filter(|path| path.is_absolute());
+        let cache = path("XDG_CACHE_HOME")
+            .filter(|path| path.as_ref().map_or(true, |path| path.is_absolute()));
+        let below = |path: Result<PathBuf, _>, folder: &str| path.map(|path| path.join(folder));
         Ok(Self {
             source_date_epoch,
             store: path("REENACT_STORE")
-                .or_else(|| cache.map(|cache| cache.join("reenact")))
-                .or_else(|| path("HOME").map(|home| home.join(".cache/reenact"))),
+                .or_else(|| cache.map(|cache| below(cache, "reenact")))
+                .or_else(|| path("HOME").map(|home| below(home, ".cache/reenact")))
+                .unwrap_or(Err(EnvironmentError::NoStore)),
             no_color: lookup("NO_COLOR").is_some(),
             utf8: ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().find_map(&lookup).is_some_and(
                 |locale| {
@@ -72,16 +88,16 @@ impl Environment {
                     locale.contains("utf-8") || locale.contains("utf8")
                 },
             ),
-            original_worlds: path("REENACT_ORIGINAL_WORLDS"),
+            original_worlds: path("REENACT_ORIGINAL_WORLDS").and_then(Result::ok),
         })
     }
 
     /// Where the trial store is.
     ///
     /// # Errors
-    /// Where nothing says so.
+    /// Where nothing says so, or not in UTF-8.
     pub fn store(&self) -> Result<&PathBuf, EnvironmentError> {
-        self.store.as_ref().ok_or(EnvironmentError::NoStore)
+        self.store.as_ref().map_err(Clone::clone)
     }
 }
 
@@ -104,19 +120,25 @@ impl RunClock {
         self.instant.elapsed().as_secs_f64()
     }
 
+    /// What the clock shows now, whatever `SOURCE_DATE_EPOCH` says: by this it is judged whether a key is still valid. A clock
+    /// that is set back while the program runs makes no key younger.
+    pub fn now(&self) -> Moment {
+        let elapsed = i64::try_from(self.instant.elapsed().as_secs()).unwrap_or(i64::MAX);
+        Moment(self.started.0.saturating_add(elapsed))
+    }
+
     /// The circumstances of a run that ends now with `jobs` threads; under `SOURCE_DATE_EPOCH` nothing but that instant.
     pub fn circumstance(&self, environment: &Environment, jobs: usize) -> Circumstance {
         if let Some(epoch) = environment.source_date_epoch {
             return Circumstance::reproducible(epoch);
         }
-        let elapsed = i64::try_from(self.instant.elapsed().as_secs()).unwrap_or(i64::MAX);
         let mut facts = host();
         facts.push(("jobs".to_owned(), jobs.to_string()));
         Circumstance {
             version: format::VERSION.to_owned(),
             started: self.started,
             // Not the calendar's end: a clock that was set back must not end a run before it began.
-            ended: Moment(self.started.0.saturating_add(elapsed)),
+            ended: self.now(),
             environment: facts,
             files: Vec::new(),
         }
@@ -163,6 +185,18 @@ fn now() -> Moment {
     Moment(i64::try_from(seconds).unwrap_or(0))
 }
 
+/// How long ago `moment` was by this machine's clock; none where it is yet to come.
+pub fn age(moment: SystemTime) -> Duration {
+    moment.elapsed().unwrap_or_default()
+}
+
+/// A name for the kernel that runs, from its start until its end; none where it gives itself none. It says nothing of who
+/// owns the machine.
+pub fn kernel() -> Option<String> {
+    let id = std::fs::read_to_string("/proc/sys/kernel/random/boot_id").ok()?;
+    id.get(..8).filter(|id| id.bytes().all(|b| b.is_ascii_hexdigit())).map(str::to_owned)
+}
+
 /// Facts about the host that matter and say nothing of who owns it: no names of users, hosts or folders.
 pub fn host() -> Vec<(String, String)> {
     let mut facts = vec![
@@ -172,6 +206,11 @@ pub fn host() -> Vec<(String, String)> {
     ];
     facts.push(("processors".to_owned(), processors().to_string()));
     facts
+}
+
+/// Most threads that are started at once, whatever `--jobs` asks for: more of them only wait for one another.
+pub fn most_jobs() -> usize {
+    (4 * processors()).max(64)
 }
 
 /// Processors at our disposal: the default of `--jobs`.
@@ -192,7 +231,7 @@ mod tests {
 
     fn environment(pairs: &[(&str, &str)]) -> Result<Environment, EnvironmentError> {
         Environment::from_lookup(|name| {
-            pairs.iter().find(|(key, _)| *key == name).map(|(_, value)| (*value).to_owned())
+            pairs.iter().find(|(key, _)| *key == name).map(|(_, value)| (*value).into())
         })
     }
 
@@ -200,16 +239,31 @@ mod tests {
     fn the_store_is_where_the_nearest_variable_says() {
         let store = |pairs: &[(&str, &str)]| environment(pairs).unwrap().store;
         let all = [("REENACT_STORE", "/r"), ("XDG_CACHE_HOME", "/x"), ("HOME", "/h")];
-        assert_eq!(store(&all), Some("/r".into()));
-        assert_eq!(store(&all[1..]), Some("/x/reenact".into()));
-        assert_eq!(store(&all[2..]), Some("/h/.cache/reenact".into()));
+        assert_eq!(store(&all), Ok("/r".into()));
+        assert_eq!(store(&all[1..]), Ok("/x/reenact".into()));
+        assert_eq!(store(&all[2..]), Ok("/h/.cache/reenact".into()));
         assert_eq!(
             store(&[("XDG_CACHE_HOME", "relative"), ("HOME", "/h")]),
-            Some("/h/.cache/reenact".into())
+            Ok("/h/.cache/reenact".into())
         );
         assert_eq!(
             environment(&[("HOME", "")]).unwrap().store().unwrap_err().to_string(),
             "trial store: expected REENACT_STORE, XDG_CACHE_HOME or HOME to say where it is, found none of them set"
+        );
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_store_that_no_text_can_name_is_told_and_not_passed_over() {
+        use std::os::unix::ffi::OsStringExt as _;
+        let environment = Environment::from_lookup(|name| match name {
+            "REENACT_STORE" => Some(OsString::from_vec(b"/tmp/st\xffre".to_vec())),
+            "HOME" => Some("/h".into()),
+            _ => None,
+        });
+        assert_eq!(
+            environment.unwrap().store().unwrap_err().to_string(),
+            "REENACT_STORE: expected a path in UTF-8, found `/tmp/st\u{fffd}re`, which is none"
         );
     }
 
@@ -220,6 +274,7 @@ mod tests {
         assert!(pinned.no_color);
         let circumstance = RunClock::start().circumstance(&pinned, 8);
         assert_eq!(circumstance, Circumstance::reproducible(Moment(1_768_478_400)));
+        assert!(RunClock::start().now() > Moment(1_768_478_400), "the clock goes on");
         for bad in ["tomorrow", "-1", "1e9"] {
             let error = environment(&[("SOURCE_DATE_EPOCH", bad)]).unwrap_err();
             assert_eq!(

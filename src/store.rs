@@ -1,31 +1,75 @@
 //! Files: the only user of the file system besides the command line. Everything is written whole or not at all.
 
+mod partial;
+
+pub use partial::abandon;
+
 use crate::bundle::{Archive, Fault, archive};
 use crate::digest::{Sha256Digest, TrialKey};
 use crate::runner::{StoreError, TrialStore};
 use crate::studies::{Outcome, TrialRecord};
 use fs_err as fs;
-use std::io::{self, Write as _};
+use partial::Partial;
+use std::collections::BTreeSet;
+use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Most bytes of one record: an hour's trial has a hundredth of it.
+const MOST_RECORD: u64 = 16 << 20;
 
 /// Finished trials in a directory: `ab/<key>.json`, one file each, safe to share between processes.
 ///
 /// A file is `{"sha256":"<of the record's line>","record":<the line>}`. One that a crash or a failing disk left
-/// damaged does not match its digest, counts as absent and is replaced.
+/// damaged does not match its digest, counts as absent and is replaced. Whatever is no file at all there is nobody's record:
+/// it is left alone and its trial is not kept.
 #[derive(Debug, Clone)]
 pub struct DirectoryStore {
     root: PathBuf,
+    /// What is no file in a record's place, and what it is.
+    odd: Arc<Mutex<BTreeSet<(PathBuf, String)>>>,
 }
 
 impl DirectoryStore {
     /// The store at `root`, created when first written to.
     pub fn new(root: impl Into<PathBuf>) -> Self {
-        Self { root: root.into() }
+        Self { root: root.into(), odd: Arc::default() }
+    }
+
+    /// A warning for everything met in a record's place that is no file; each is told once.
+    pub fn warnings(&self) -> Vec<String> {
+        let odd = std::mem::take(&mut *self.odd.lock().unwrap_or_else(PoisonError::into_inner));
+        odd.iter()
+            .map(|(path, found)| {
+                format!(
+                    "trial store: expected the record of a trial in `{}`, found {found}: it is left alone, and its trial is \
+                     run each time and not kept; remove it",
+                    path.display()
+                )
+            })
+            .collect()
+    }
+
+    /// Whether something that is no file stands in the place of the record at `path`; it is remembered.
+    fn is_odd(&self, path: &Path) -> bool {
+        let Some(found) = kind_of(path) else { return false };
+        let mut odd = self.odd.lock().unwrap_or_else(PoisonError::into_inner);
+        odd.insert((path.to_owned(), found.to_owned()));
+        true
     }
 
     /// Where it is.
     pub fn root(&self) -> &Path {
         &self.root
+    }
+
+    /// Removes what runs that were killed had begun to write and never will end.
+    pub fn sweep(&self) {
+        for folder in fs::read_dir(&self.root).into_iter().flatten().flatten() {
+            if folder.file_type().is_ok_and(|kind| kind.is_dir()) {
+                partial::sweep(&folder.path());
+            }
+        }
     }
 
     fn refusal(&self, doing: &str, error: &io::Error) -> StoreError {
@@ -53,9 +97,10 @@ impl DirectoryStore {
             }
             for file in fs::read_dir(&folder)? {
                 let file = file?;
-                if file.path().extension().is_some_and(|e| e == "json") {
+                let metadata = file.metadata()?;
+                if metadata.is_file() && file.path().extension().is_some_and(|e| e == "json") {
                     records += 1;
-                    bytes += file.metadata()?.len();
+                    bytes += metadata.len();
                 }
             }
         }
@@ -65,9 +110,16 @@ impl DirectoryStore {
 
 impl TrialStore for DirectoryStore {
     fn get(&self, key: &TrialKey) -> Result<Option<TrialRecord>, StoreError> {
-        match fs::read(self.path(key)) {
+        let path = self.path(key);
+        if self.is_odd(&path) {
+            return Ok(None);
+        }
+        match read(&path, MOST_RECORD) {
             Ok(bytes) => Ok(decode(&bytes).filter(|record| record.key == *key)),
-            Err(e) if e.kind() == io::ErrorKind::NotFound => Ok(None),
+            // Too large to be one: damaged.
+            Err(e) if matches!(e.kind(), io::ErrorKind::NotFound | io::ErrorKind::FileTooLarge) => {
+                Ok(None)
+            }
             Err(e) => Err(self.refusal("read", &e)),
         }
     }
@@ -79,25 +131,26 @@ impl TrialStore for DirectoryStore {
         }
         let refused = |e: io::Error| self.refusal("write to", &e);
         let path = self.path(&key);
+        if self.is_odd(&path) {
+            return Ok(());
+        }
         let folder = path.parent().unwrap_or(&self.root);
         fs::create_dir_all(folder).map_err(refused)?;
-        let mut file = temporary(folder).map_err(refused)?;
-        file.write_all(&encode(record))
-            .and_then(|()| file.as_file().sync_all())
-            .map_err(refused)?;
+        let mut file = Partial::new(folder).map_err(refused)?;
+        file.write(&encode(record)).map_err(refused)?;
         // Whoever comes second compares: two processes may finish the same trial at once.
-        match file.persist_noclobber(&path) {
-            Ok(_) => sync_folder(folder).map_err(refused),
-            Err(e) if e.error.kind() == io::ErrorKind::AlreadyExists => match self.get(&key)? {
+        match file.persist_new(&path).map_err(refused)? {
+            None => sync_folder(folder).map_err(refused),
+            Some(file) => match self.get(&key)? {
                 Some(stored) if stored.to_line() == record.to_line() => Ok(()),
                 Some(stored) => Err(StoreError::conflict(&stored, record)),
+                None if self.is_odd(&path) => Ok(()),
                 None => {
                     // Damaged: the fresh record takes its place.
-                    e.file.persist(&path).map_err(|e| refused(e.error))?;
+                    file.persist(&path).map_err(refused)?;
                     sync_folder(folder).map_err(refused)
                 }
             },
-            Err(e) => Err(refused(e.error)),
         }
     }
 }
@@ -138,25 +191,12 @@ fn decode(bytes: &[u8]) -> Option<TrialRecord> {
 pub fn publish(directory: &Path, name: &str, bytes: &[u8]) -> io::Result<PathBuf> {
     fs::create_dir_all(directory)?;
     let path = directory.join(name);
-    let mut file = temporary(directory)?;
-    file.write_all(bytes)?;
-    file.as_file().sync_all()?;
-    file.persist(&path).map_err(|e| e.error)?;
+    partial::sweep(directory);
+    let mut file = Partial::new(directory)?;
+    file.write(bytes)?;
+    file.persist(&path)?;
     sync_folder(directory)?;
     Ok(path)
-}
-
-/// A file that is renamed into place, or vanishes.
-fn temporary(directory: &Path) -> io::Result<tempfile::NamedTempFile> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".partial-");
-    // Others may read bundles and share stores: the temporary file's own mode would be for its owner only.
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt as _;
-        builder.permissions(std::fs::Permissions::from_mode(0o644));
-    }
-    builder.tempfile_in(directory)
 }
 
 /// Makes a rename last through a power cut. Windows has no such call and needs none.
@@ -164,12 +204,66 @@ fn sync_folder(directory: &Path) -> io::Result<()> {
     if cfg!(unix) { fs::File::open(directory)?.sync_all() } else { Ok(()) }
 }
 
-/// Reads an input file.
+/// Reads an input file of at most `most` bytes: a file on a disk, for a device has no end and a pipe may never begin.
 ///
 /// # Errors
-/// Where it cannot be read, naming it.
-pub fn read(path: &Path) -> io::Result<Vec<u8>> {
-    fs::read(path)
+/// Where it cannot be read, is no such file or too large, naming it.
+pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    let too_large = |found: &str| {
+        let problem = format!("it is too large: expected at most {most} bytes, found {found}");
+        io::Error::new(io::ErrorKind::FileTooLarge, problem)
+    };
+    // Asked before it is opened: to open a pipe waits for whoever writes to it.
+    if let Some(found) = kind_of(path) {
+        let problem = format!("expected a file, found {found}");
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, problem));
+    }
+    let length = fs::metadata(path)?.len();
+    if length > most {
+        return Err(too_large(&length.to_string()));
+    }
+    let mut bytes = Vec::new();
+    // It may have grown meanwhile, and some files say nothing of their length.
+    fs::File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > most {
+        return Err(too_large("more"));
+    }
+    Ok(bytes)
+}
+
+/// What stands at `path`, where it is something that is no file.
+fn kind_of(path: &Path) -> Option<&'static str> {
+    let leads_nowhere = || {
+        let link = fs::symlink_metadata(path).ok()?;
+        link.is_symlink().then_some("a symbolic link that leads nowhere")
+    };
+    match fs::metadata(path) {
+        Ok(metadata) => odd(&metadata),
+        Err(e) if e.kind() == io::ErrorKind::PermissionDenied => None,
+        Err(_) => leads_nowhere(),
+    }
+}
+
+/// What is no file, in words.
+fn odd(metadata: &std::fs::Metadata) -> Option<&'static str> {
+    let kind = metadata.file_type();
+    if kind.is_file() {
+        return None;
+    }
+    if kind.is_dir() {
+        return Some("a folder");
+    }
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::FileTypeExt as _;
+        if kind.is_fifo() {
+            return Some("a pipe");
+        }
+        if kind.is_socket() {
+            return Some("a socket");
+        }
+    }
+    Some("a device")
 }
 
 /// Opens a bundle: a zip, or a folder that holds a bag or a crate. What is wrong with it is data, not an error.

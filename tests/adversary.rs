@@ -23,6 +23,8 @@ mod readers;
 mod sandbox;
 #[path = "adversary/study.rs"]
 mod study;
+#[path = "adversary/texts.rs"]
+mod texts;
 
 use case::{Case, run_all};
 use reenact::bundle::{Form, archive};
@@ -84,6 +86,11 @@ fn studies_that_were_not_run() {
 #[test]
 fn fabrications() {
     insta::assert_snapshot!(run_all(&forged::fabrications()));
+}
+
+#[test]
+fn texts_that_cost_more_than_they_are_long() {
+    insta::assert_snapshot!(run_all(&texts::bombs()));
 }
 
 /// The honest bundle, and everything harmless that befalls bundles in the world.
@@ -217,6 +224,7 @@ fn the_table_is_long_and_names_each_attack_once() {
         forged::results(),
         forged::studies(),
         forged::fabrications(),
+        texts::bombs(),
     ];
     #[cfg(unix)]
     tables.push(archives::folders());

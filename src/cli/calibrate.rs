@@ -42,6 +42,7 @@ impl Calibrator<'_> {
             Self::Stored(store) => stored(&plan, store)?,
             Self::Run { scheduler, store } => {
                 let progress = Progress::of(&plan.trials, terminal).labelled(&plan.experiment.name);
+                let progress = progress.interruptible(store.is_some());
                 let store = store.map(|store| store as &dyn TrialStore);
                 let records = scheduler.run(&plan.trials, &studies::execute, store, &progress);
                 progress.finish();

@@ -11,8 +11,15 @@ use crate::manifest::{self, Experiment, Inputs, Measured, WrittenIn};
 use crate::plan::{Plan, Selection};
 use crate::store::{self, reason};
 use crate::studies::TrialSpec;
+use crate::world::mesh;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
+
+/// Most bytes of a text that a command is given: a manifest, a lock, keys, a signature. No person writes as much.
+const MOST_TEXT: u64 = 16 << 20;
+
+/// Most bytes of any other input: those of the largest mesh or map.
+pub(super) const MOST_INPUT: u64 = mesh::MAX_BYTES as u64;
 
 /// A manifest that was understood.
 #[derive(Debug)]
@@ -88,7 +95,7 @@ pub(super) fn bundle(path: &Path) -> Result<Bundle, Failure> {
 
 /// Reads a text file.
 pub(super) fn text(path: &Path) -> Result<Source, Failure> {
-    let bytes = bytes(path)?;
+    let bytes = text_bytes(path)?;
     let text = String::from_utf8(bytes).map_err(|e| {
         let at = e.utf8_error().valid_up_to();
         Failure::not_understood(format!(
@@ -99,9 +106,14 @@ pub(super) fn text(path: &Path) -> Result<Source, Failure> {
     Ok(Source::new(path.display().to_string(), text))
 }
 
+/// Reads what should be a short text.
+pub(super) fn text_bytes(path: &Path) -> Result<Vec<u8>, Failure> {
+    store::read(path, MOST_TEXT).map_err(|e| unreadable(path, &e))
+}
+
 /// Reads a file.
 pub(super) fn bytes(path: &Path) -> Result<Vec<u8>, Failure> {
-    store::read(path).map_err(|e| unreadable(path, &e))
+    store::read(path, MOST_INPUT).map_err(|e| unreadable(path, &e))
 }
 
 /// Writes a file that the user named.
@@ -122,9 +134,11 @@ pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
 fn unreadable(path: &Path, error: &std::io::Error) -> Failure {
     let message = format!("cannot read `{}`: {}", path.display(), reason(error));
     match error.kind() {
-        ErrorKind::NotFound | ErrorKind::IsADirectory | ErrorKind::PermissionDenied => {
-            Failure::not_understood(message)
-        }
+        ErrorKind::NotFound
+        | ErrorKind::IsADirectory
+        | ErrorKind::PermissionDenied
+        | ErrorKind::InvalidInput
+        | ErrorKind::FileTooLarge => Failure::not_understood(message),
         _ => Failure::failed(message),
     }
 }
@@ -139,7 +153,7 @@ struct Folder<'a> {
 impl Inputs for Folder<'_> {
     fn read(&self, as_written: &str, written_in: WrittenIn) -> Result<Vec<u8>, String> {
         let beside = self.path.join(as_written);
-        let read = |path: &Path| store::read(path);
+        let read = |path: &Path| store::read(path, MOST_INPUT);
         match written_in {
             WrittenIn::Manifest | WrittenIn::Calibration | WrittenIn::PreviousMap => {
                 read(&beside).map_err(|e| reason(&e))

@@ -8,6 +8,7 @@ mod commands;
 mod estimate;
 mod exit;
 mod fold;
+mod interrupt;
 mod load;
 mod progress;
 mod terminal;

@@ -4,6 +4,7 @@
 
 use super::estimate::{Estimate, in_words};
 use super::fold::wrapped;
+use super::interrupt::{self, Underway};
 use super::terminal::{Terminal, counted};
 use crate::provenance::RunClock;
 use crate::runner::{Observer, RunEvent};
@@ -23,6 +24,8 @@ pub(super) struct Progress {
     terminal: Terminal,
     /// What runs, where there is more than one thing.
     label: Option<String>,
+    /// Whether finished trials are kept, where this is a run that one would go on with.
+    keeps: Option<bool>,
     bar: ProgressBar,
     /// Condition of every trial, by number.
     conditions: Vec<usize>,
@@ -65,6 +68,12 @@ impl Progress {
         Self { label: Some(label.to_owned()), ..self }
     }
 
+    /// The same, of a run that says how to go on where it is interrupted: with the trials that are done where it `keeps` them.
+    #[must_use]
+    pub(super) fn interruptible(self, keeps: bool) -> Self {
+        Self { keeps: Some(keeps), ..self }
+    }
+
     fn new(conditions: Vec<usize>, terminal: Terminal) -> Self {
         let bar = if terminal.is_watched() {
             ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr())
@@ -84,11 +93,12 @@ impl Progress {
             failed: 0,
             told: (0.0, 0),
         };
-        Self { terminal, label: None, bar, conditions, state: Mutex::new(state) }
+        Self { terminal, label: None, keeps: None, bar, conditions, state: Mutex::new(state) }
     }
 
     /// Takes the bar away.
     pub(super) fn finish(&self) {
+        interrupt::set(None);
         self.bar.finish_and_clear();
     }
 
@@ -153,6 +163,16 @@ impl Observer for Progress {
                     failed: 0,
                     told: (0.0, 0),
                 };
+                if self.keeps.is_some() {
+                    interrupt::watch(self.terminal);
+                }
+                interrupt::set(self.keeps.map(|keeps| Underway {
+                    name: self.label.clone().unwrap_or_default(),
+                    trials: *trials,
+                    done: 0,
+                    keeps,
+                    bar: self.bar.clone(),
+                }));
                 self.bar.reset();
                 self.bar.set_length(*trials as u64);
                 let heading = format!(
@@ -175,6 +195,8 @@ impl Observer for Progress {
                 state.estimate.finished(*index, record.sim_seconds, *cached);
                 if record.outcome == Outcome::Panicked {
                     state.failed += 1;
+                } else {
+                    interrupt::one_more();
                 }
                 self.tell(&mut state);
                 self.bar.set_position((state.trials - state.estimate.left()) as u64);

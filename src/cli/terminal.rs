@@ -1,8 +1,9 @@
 //! Where words go: results to stdout, everything else to stderr; colour only where a person looks.
 
-use crate::document::{Diagnostic, Severity};
+use crate::document::{Diagnostic, Severity, reports, steers};
 use crate::provenance::Environment;
 use crate::store::reason;
+use std::borrow::Cow;
 use std::io::{ErrorKind, IsTerminal as _, Write as _};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -51,6 +52,7 @@ impl Terminal {
 
     /// Writes a result. A reader who has gone away (a closed pipe) is no fault of ours.
     pub(super) fn result(self, text: &str) {
+        let text = plain(text);
         let mut out = std::io::stdout().lock();
         let end = if text.ends_with('\n') { "" } else { "\n" };
         let written = out
@@ -72,16 +74,30 @@ impl Terminal {
     }
 
     /// Writes a note to stderr.
-    #[expect(clippy::unused_self, reason = "all output goes through the terminal")]
     pub(super) fn note(self, text: &str) {
+        self.styled(&plain(text));
+    }
+
+    /// Writes what may have colours of ours to stderr.
+    #[expect(clippy::unused_self, reason = "all output goes through the terminal")]
+    fn styled(self, text: &str) {
         let _ = writeln!(std::io::stderr().lock(), "{}", text.trim_end_matches('\n'));
     }
 
     pub(super) fn error(self, message: &str) {
+        self.told("error", "31", message);
+    }
+
+    pub(super) fn warning(self, message: &str) {
+        self.told("warning", "33", message);
+    }
+
+    fn told(self, kind: &str, color: &str, message: &str) {
+        let message = plain(message);
         if self.color {
-            self.note(&format!("\u{1b}[1;31merror\u{1b}[0m: {message}"));
+            self.styled(&format!("\u{1b}[1;{color}m{kind}\u{1b}[0m: {message}"));
         } else {
-            self.note(&format!("error: {message}"));
+            self.styled(&format!("{kind}: {message}"));
         }
     }
 
@@ -92,15 +108,17 @@ impl Terminal {
 
     /// Writes reports, separated by empty lines.
     pub(super) fn diagnostics(self, diagnostics: &[Diagnostic]) {
-        for diagnostic in diagnostics {
-            self.note(&format!("{}\n", diagnostic.render(self.color)));
+        for report in reports(diagnostics, self.color) {
+            // A report has nothing in it that steers a terminal but its colours.
+            self.styled(&report);
             let _ = writeln!(std::io::stderr().lock());
         }
     }
 
     /// `2 errors, 1 warning`.
     pub(super) fn count(diagnostics: &[Diagnostic]) -> String {
-        let count = |severity| diagnostics.iter().filter(|d| d.severity == severity).count();
+        let of = |severity| diagnostics.iter().filter(move |d| d.severity == severity);
+        let count = |severity| of(severity).map(|d| d.count).sum();
         let (errors, warnings) = (count(Severity::Error), count(Severity::Warning));
         let mut parts = Vec::new();
         if errors > 0 {
@@ -113,7 +131,40 @@ impl Terminal {
     }
 }
 
+/// `text` with nothing in it by which a stranger's words could steer a terminal; in JSON it means the same as before.
+fn plain(text: &str) -> Cow<'_, str> {
+    let is_told = |c: char| c == '\t' || !steers(c);
+    if text.chars().all(is_told) {
+        return Cow::Borrowed(text);
+    }
+    let is_json = text.starts_with(['{', '[']);
+    let mut shown = String::new();
+    for c in text.chars() {
+        match c {
+            c if is_told(c) => shown.push(c),
+            c if is_json => shown.push_str(&format!("\\u{:04x}", u32::from(c))),
+            c => shown.extend(c.escape_unicode()),
+        }
+    }
+    Cow::Owned(shown)
+}
+
 /// `1 trial`, `2 trials`.
 pub(super) fn counted(n: usize, thing: &str) -> String {
     format!("{n} {thing}{}", if n == 1 { "" } else { "s" })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::plain;
+
+    #[test]
+    fn nothing_that_a_stranger_wrote_steers_the_terminal() {
+        let title = "A\u{1b}[2J study\u{202e}yduts\u{9b}31m\tof\nlines";
+        assert_eq!(plain(title), "A\\u{1b}[2J study\\u{202e}yduts\\u{9b}31m\tof\nlines");
+        let json = "{\"title\":\"a\u{202e}b\"}";
+        assert_eq!(plain(json), r#"{"title":"a\u202eb"}"#);
+        let value: serde_json::Value = serde_json::from_str(&plain(json)).unwrap();
+        assert_eq!(value["title"], "a\u{202e}b");
+    }
 }

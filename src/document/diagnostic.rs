@@ -1,8 +1,20 @@
 //! One fault in a document: what, where, expected and found, and what to do next.
 
-use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
+use annotate_snippets::{AnnotationKind, Level, Origin, Renderer, Snippet};
+use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
+
+/// How many faults of one document are told, errors first; of the others there is a count. Whoever mends these sees the next
+/// ones then, and no document can make us write a thousand times its own length.
+pub const MOST_FAULTS: usize = 100;
+
+/// Longest excerpt (bytes) that is shown: nobody reads a line of a megabyte.
+const MOST_EXCERPT: usize = 2000;
+/// Longest text (characters) of a message, a label or a help.
+const MOST_TEXT: usize = 4000;
+/// Longest name (characters) that a message quotes.
+const MOST_QUOTED: usize = 80;
 
 /// A text with the name people know it by.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -53,6 +65,8 @@ pub struct Diagnostic {
     pub label: String,
     /// What to do next.
     pub help: Option<String>,
+    /// How many faults this stands for: one, or as many as there are beyond those that are told.
+    pub count: usize,
 }
 
 impl Diagnostic {
@@ -64,6 +78,7 @@ impl Diagnostic {
             place: Some((source.clone(), span)),
             label: String::new(),
             help: None,
+            count: 1,
         }
     }
 
@@ -75,7 +90,22 @@ impl Diagnostic {
             place: None,
             label: String::new(),
             help: None,
+            count: 1,
         }
+    }
+
+    /// What stands for `count` faults beyond those that are told.
+    pub fn others(severity: Severity, count: usize) -> Self {
+        let name = match severity {
+            Severity::Error => "error",
+            Severity::Warning => "warning",
+        };
+        let plural = if count == 1 { "" } else { "s" };
+        let mut others = Self::placeless(format!("{count} more {name}{plural} like these"))
+            .help("mend those above first: many may have one cause");
+        others.severity = severity;
+        others.count = count;
+        others
     }
 
     /// The same fault as a warning.
@@ -119,26 +149,38 @@ impl Diagnostic {
     ///   = help: did you mean `trials`?
     /// ```
     pub fn render(&self, color: bool) -> String {
+        self.render_with(color, &mut LineIndex::default())
+    }
+
+    fn render_with(&self, color: bool, index: &mut LineIndex) -> String {
         let level = match self.severity {
             Severity::Error => Level::ERROR,
             Severity::Warning => Level::WARNING,
         };
-        let title = level.primary_title(self.message.as_str());
-        let mut report = if let Some((source, span)) = &self.place {
+        let [message, label] = [&self.message, &self.label].map(|text| plain(text));
+        let mut report = annotate_snippets::Group::with_title(level.primary_title(message));
+        if let Some((source, span)) = &self.place {
             let end = span.end.clamp(span.start, source.text.len().max(span.start));
             // Only the lines that are shown: the renderer takes many times the memory of its text.
-            let (first, number, lines) = lines_of(&source.text, span.start, end);
-            let mut annotation = AnnotationKind::Primary.span(span.start - first..end - first);
-            if !self.label.is_empty() {
-                annotation = annotation.label(self.label.as_str());
+            let (first, number, lines) = index.lines_of(&source.text, span.start, end);
+            if lines.len() <= MOST_EXCERPT {
+                let mut annotation = AnnotationKind::Primary.span(span.start - first..end - first);
+                if !label.is_empty() {
+                    annotation = annotation.label(label);
+                }
+                let snippet = Snippet::source(lines).line_start(number).path(plain(&source.name));
+                report = report.element(snippet.annotation(annotation));
+            } else {
+                let before = source.text.get(first..span.start).unwrap_or_default();
+                let origin = Origin::path(plain(&source.name)).line(number);
+                report = report.element(origin.char_column(before.chars().count() + 1));
+                if !label.is_empty() {
+                    report = report.element(Level::NOTE.message(label));
+                }
             }
-            let snippet = Snippet::source(lines).line_start(number).path(&*source.name);
-            title.element(snippet.annotation(annotation))
-        } else {
-            annotate_snippets::Group::with_title(title)
-        };
+        }
         if let Some(help) = &self.help {
-            report = report.element(Level::HELP.message(help.as_str()));
+            report = report.element(Level::HELP.message(plain(help)));
         }
         let renderer = if color { Renderer::styled() } else { Renderer::plain() };
         let mut text = renderer.render(&[report]);
@@ -147,25 +189,190 @@ impl Diagnostic {
     }
 }
 
-/// The lines of `text` that hold `start..end`, where they begin (byte), and the number of the first, from 1.
-fn lines_of(text: &str, start: usize, end: usize) -> (usize, usize, &str) {
-    match (text.get(..start), text.get(end..)) {
-        (Some(before), Some(after)) => {
-            let first = before.rfind('\n').map_or(0, |at| at + 1);
-            let last = after.find('\n').map_or(text.len(), |at| end + at);
-            (first, before.matches('\n').count() + 1, &text[first..last])
+/// The reports of `faults`, each ending in a line feed: errors before warnings, and of more than [`MOST_FAULTS`] the first
+/// ones and how many more there are.
+pub fn reports(faults: &[Diagnostic], color: bool) -> Vec<String> {
+    let mut index = LineIndex::default();
+    let of = |severity| faults.iter().filter(move |fault| fault.severity == severity);
+    let ordered = of(Severity::Error).chain(of(Severity::Warning));
+    let told = ordered.filter(|fault| fault.count == 1).take(MOST_FAULTS);
+    let told: Vec<&Diagnostic> = told.collect();
+    let mut reports: Vec<String> =
+        told.iter().map(|fault| fault.render_with(color, &mut index)).collect();
+    for severity in [Severity::Error, Severity::Warning] {
+        let all: usize = of(severity).map(|fault| fault.count).sum();
+        let left = all - told.iter().filter(|fault| fault.severity == severity).count();
+        if left > 0 {
+            reports.push(Diagnostic::others(severity, left).render(color));
         }
-        _ => (0, 1, text),
+    }
+    reports
+}
+
+/// Faults as they are found: the first [`MOST_FAULTS`] of either severity are kept, the others counted.
+#[derive(Debug, Clone, Default)]
+pub struct FaultList {
+    kept: Vec<Diagnostic>,
+    errors: usize,
+    warnings: usize,
+}
+
+impl FaultList {
+    /// Takes `fault`, or counts it.
+    pub fn push(&mut self, fault: Diagnostic) {
+        let found = self.found_mut(fault.severity);
+        let before = *found;
+        *found += fault.count;
+        if before < MOST_FAULTS && fault.count == 1 {
+            self.kept.push(fault);
+        }
+    }
+
+    /// Whether a further fault of this severity would only be counted: then it need not be put into words.
+    pub fn is_full(&self, severity: Severity) -> bool {
+        self.found(severity) >= MOST_FAULTS
+    }
+
+    /// Counts an error that need not be told.
+    pub fn count_error(&mut self) {
+        self.errors += 1;
+    }
+
+    /// Whether there is an error.
+    pub fn any_error(&self) -> bool {
+        self.errors > 0
+    }
+
+    /// Whether there is nothing.
+    pub fn is_empty(&self) -> bool {
+        self.errors + self.warnings == 0
+    }
+
+    /// Those that are kept.
+    pub fn kept(&self) -> &[Diagnostic] {
+        &self.kept
+    }
+
+    /// Those that are kept, and what stands for the others.
+    pub fn finish(mut self) -> Vec<Diagnostic> {
+        for severity in [Severity::Error, Severity::Warning] {
+            let kept = self.kept.iter().filter(|fault| fault.severity == severity).count();
+            let left = self.found(severity) - kept;
+            if left > 0 {
+                self.kept.push(Diagnostic::others(severity, left));
+            }
+        }
+        self.kept
+    }
+
+    fn found(&self, severity: Severity) -> usize {
+        match severity {
+            Severity::Error => self.errors,
+            Severity::Warning => self.warnings,
+        }
+    }
+
+    fn found_mut(&mut self, severity: Severity) -> &mut usize {
+        match severity {
+            Severity::Error => &mut self.errors,
+            Severity::Warning => &mut self.warnings,
+        }
+    }
+}
+
+impl Extend<Diagnostic> for FaultList {
+    fn extend<I: IntoIterator<Item = Diagnostic>>(&mut self, faults: I) {
+        for fault in faults {
+            self.push(fault);
+        }
+    }
+}
+
+/// Where the lines of texts begin, each text searched once.
+#[derive(Default)]
+struct LineIndex(Vec<(Arc<str>, Vec<usize>)>);
+
+impl LineIndex {
+    fn starts(&mut self, text: &Arc<str>) -> &[usize] {
+        let known = self.0.iter().position(|(known, _)| Arc::ptr_eq(known, text));
+        let at = known.unwrap_or_else(|| {
+            let begins = text.match_indices('\n').map(|(at, _)| at + 1);
+            self.0.push((Arc::clone(text), std::iter::once(0).chain(begins).collect()));
+            self.0.len() - 1
+        });
+        &self.0[at].1
+    }
+
+    /// The lines of `text` that hold `start..end`, where they begin (byte), and the number of the first, from 1.
+    fn lines_of<'t>(
+        &mut self,
+        text: &'t Arc<str>,
+        start: usize,
+        end: usize,
+    ) -> (usize, usize, &'t str) {
+        let (Some(_), Some(after)) = (text.get(..start), text.get(end..)) else {
+            return (0, 1, text);
+        };
+        let starts = self.starts(text);
+        let number = starts.partition_point(|&begin| begin <= start);
+        let first = starts[number - 1];
+        let last = after.find('\n').map_or(text.len(), |at| end + at);
+        (first, number, &text[first..last])
+    }
+}
+
+/// Whether a terminal could take `c` for an order, or turn the direction of writing at it.
+pub fn steers(c: char) -> bool {
+    let turns = matches!(c, '\u{61c}' | '\u{200e}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    turns || (c.is_control() && c != '\n')
+}
+
+/// `text` cut where it is endless, with nothing in it that steers a terminal.
+fn plain(text: &str) -> Cow<'_, str> {
+    if text.len() <= MOST_TEXT && !text.chars().any(steers) {
+        return Cow::Borrowed(text);
+    }
+    let mut shown = String::new();
+    for (i, c) in text.chars().enumerate() {
+        if i == MOST_TEXT {
+            shown.push_str("...");
+            break;
+        }
+        if steers(c) { shown.extend(c.escape_unicode()) } else { shown.push(c) }
+    }
+    Cow::Owned(shown)
+}
+
+/// `name` as a message quotes it: cut where it is endless.
+pub fn quoted(name: &str) -> Cow<'_, str> {
+    match name.char_indices().nth(MOST_QUOTED) {
+        None => Cow::Borrowed(name),
+        Some((end, _)) => Cow::Owned(format!("{}...", &name[..end])),
+    }
+}
+
+/// `names` in a row, so many of them that a person still reads them.
+pub fn listed(names: &[&str]) -> String {
+    const MOST: usize = 40;
+    let told: Vec<_> = names.iter().take(MOST).map(|name| quoted(name)).collect();
+    match names.len() - told.len() {
+        0 => told.join(", "),
+        more => format!("{} and {more} more", told.join(", ")),
     }
 }
 
 /// The known word nearest to `word`, where one is near enough to be meant.
 pub fn suggestion<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let length = word.chars().count();
+    // A word of a page is a slip for nothing, and to compare takes time that grows with both.
+    if length > MOST_QUOTED {
+        return None;
+    }
     known
         .into_iter()
+        .filter(|candidate| candidate.len() <= 4 * MOST_QUOTED)
         .map(|candidate| (strsim::damerau_levenshtein(word, candidate), candidate))
         .filter(|(distance, candidate)| {
-            let length = word.chars().count();
             // Begun and not ended; or near, with something of the word left: `D` is no slip for `A`.
             let is_begun = length >= 3 && candidate.starts_with(word);
             is_begun || (*distance <= 1 + candidate.chars().count() / 4 && *distance < length)

@@ -11,12 +11,17 @@ pub(crate) mod mutation;
 mod node;
 mod reader;
 mod schema_check;
+mod secret;
 pub mod xml;
 
-pub use diagnostic::{Diagnostic, Severity, Source, suggestion};
+pub use diagnostic::{
+    Diagnostic, FaultList, MOST_FAULTS, Severity, Source, listed, quoted, reports, steers,
+    suggestion,
+};
 pub use node::{Content, Entry, Node, Place, Tree};
 pub use reader::read;
 pub use schema_check::check;
+pub use secret::secret;
 
 use schemars::{JsonSchema, SchemaGenerator, generate::SchemaSettings};
 use serde::de::DeserializeOwned;

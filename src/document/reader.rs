@@ -2,12 +2,14 @@
 //! keys, merge keys, tags, directives, `yes`/`no`, octal-looking and non-finite numbers, alias bombs.
 
 use super::node::{Content, Entry, Node, Place, Tree};
-use super::{Diagnostic, Source};
+use super::{Diagnostic, FaultList, Severity, Source, quoted, secret};
 use serde_yaml::granit_parser::{Event, Parser, ScalarStyle, Span, StrInput, options};
 use std::collections::BTreeMap;
 
 /// More nodes than any manifest or world has; stops alias bombs.
 const MOST_NODES: usize = 250_000;
+/// Most text (bytes) that anchors and aliases may repeat.
+const MOST_REPEATED: usize = 1 << 22;
 /// Deeper than any document we define; keeps every recursion over a tree shallow.
 const MOST_NESTING: usize = 48;
 
@@ -16,8 +18,28 @@ const MOST_NESTING: usize = 48;
 /// # Errors
 /// All scalars and keys that are refused, or the first fault of the syntax.
 pub fn read(source: &Source) -> Result<Tree, Vec<Diagnostic>> {
-    let root = read_node(source, 0, 0)?;
-    Ok(Tree { sources: vec![source.clone()], root })
+    if let Some(found) = secret(&source.text) {
+        let message = format!("`{}`: expected a YAML mapping, found {found}", source.name);
+        return Err(vec![Diagnostic::placeless(message)]);
+    }
+    let mut reader = Reader::new(source, 0, 0);
+    let root = reader.document();
+    match reader.finish(root) {
+        Ok(root) => Ok(Tree { sources: vec![source.clone()], root }),
+        // Of what is no document of ours nothing is quoted: it may be a key or a list of passwords, named by a slip.
+        Err((faults, false)) => {
+            let line = faults.iter().find_map(|fault| {
+                let (source, span) = fault.place.as_ref()?;
+                Some(format!(" (line {})", source.line_and_column(span.start).0))
+            });
+            Err(vec![Diagnostic::placeless(format!(
+                "`{}`: expected a YAML mapping, found text that is none{}",
+                source.name,
+                line.unwrap_or_default()
+            ))])
+        }
+        Err((faults, true)) => Err(faults),
+    }
 }
 
 /// The node that the text of `source` from byte `offset` on holds, its places in source number `number`.
@@ -26,24 +48,9 @@ pub(super) fn read_node(
     number: u16,
     offset: usize,
 ) -> Result<Node, Vec<Diagnostic>> {
-    let options = options! { disallow_directives: true, emit_comments: false };
-    let mut reader = Reader {
-        events: Parser::new_from_str_with_options(&source.text[offset..], options),
-        source,
-        number,
-        offset,
-        anchors: BTreeMap::new(),
-        nodes: 0,
-        faults: Vec::new(),
-    };
-    match reader.document() {
-        Ok(node) if reader.faults.is_empty() => Ok(node),
-        Ok(_) => Err(reader.faults),
-        Err(fault) => {
-            reader.faults.push(*fault);
-            Err(reader.faults)
-        }
-    }
+    let mut reader = Reader::new(source, number, offset);
+    let node = reader.document();
+    reader.finish(node).map_err(|(faults, _)| faults)
 }
 
 /// A fault after which nothing more can be read.
@@ -55,13 +62,72 @@ struct Reader<'a> {
     number: u16,
     /// Where in the source the parsed text begins.
     offset: usize,
-    /// Finished anchored nodes, with how many nodes and levels each holds.
-    anchors: BTreeMap<usize, (Node, usize, usize)>,
+    /// Line of the source on which it begins, from 0.
+    line: usize,
+    /// Finished anchored nodes, with how large each is.
+    anchors: BTreeMap<usize, (Node, Extent)>,
     nodes: usize,
-    faults: Vec<Diagnostic>,
+    /// Nodes and bytes that were copied for anchors and aliases.
+    copied: (usize, usize),
+    /// Whether the document is a mapping, as far as it was read.
+    is_map: bool,
+    faults: FaultList,
+}
+
+/// How large a node is with all that it holds.
+#[derive(Debug, Clone, Copy, Default)]
+struct Extent {
+    nodes: usize,
+    height: usize,
+    bytes: usize,
+}
+
+impl Extent {
+    fn of(node: &Node) -> Self {
+        let text = match &node.content {
+            Content::Text(text) => text.len(),
+            _ => 0,
+        };
+        let keys: usize = node.entries().iter().map(|entry| entry.key.len()).sum();
+        let mut extent = Self { nodes: 1, height: 0, bytes: text + keys };
+        let values = node.entries().iter().map(|entry| &entry.value);
+        for inner in node.items().iter().chain(values).map(Self::of) {
+            extent.nodes += inner.nodes;
+            extent.bytes += inner.bytes;
+            extent.height = extent.height.max(inner.height + 1);
+        }
+        extent
+    }
 }
 
 impl<'a> Reader<'a> {
+    /// A reader of the text of `source` from byte `offset` on, whose places are in source number `number`.
+    fn new(source: &'a Source, number: u16, offset: usize) -> Self {
+        let options = options! { disallow_directives: true, emit_comments: false };
+        Self {
+            events: Parser::new_from_str_with_options(&source.text[offset..], options),
+            source,
+            number,
+            offset,
+            line: source.text[..offset].matches('\n').count(),
+            anchors: BTreeMap::new(),
+            nodes: 0,
+            copied: (0, 0),
+            is_map: false,
+            faults: FaultList::default(),
+        }
+    }
+
+    /// What was read, or every fault and whether the document is a mapping at all.
+    fn finish(mut self, node: Result<Node, Stop>) -> Result<Node, (Vec<Diagnostic>, bool)> {
+        match node {
+            Ok(node) if self.faults.is_empty() => return Ok(node),
+            Ok(_) => {}
+            Err(fault) => self.faults.push(*fault),
+        }
+        Err((self.faults.finish(), self.is_map))
+    }
+
     fn document(&mut self) -> Result<Node, Stop> {
         let mut root = None;
         while let Some((event, span)) = self.next()? {
@@ -75,7 +141,10 @@ impl<'a> Reader<'a> {
                             .help("keep one document per file and remove the `---` line"),
                     ));
                 }
-                event if event.is_node() => root = Some(self.node(event, &span, 0)?),
+                event if event.is_node() => {
+                    self.is_map = matches!(event, Event::MappingStart(..));
+                    root = Some(self.node(event, &span, 0)?);
+                }
                 _ => {}
             }
         }
@@ -120,7 +189,6 @@ impl<'a> Reader<'a> {
             self.faults.push(fault);
         }
         let anchor = event.anchor_id();
-        let before = self.nodes;
         let node = match event {
             Event::Scalar(text, style, ..) => {
                 let plain = style == ScalarStyle::Plain;
@@ -144,27 +212,45 @@ impl<'a> Reader<'a> {
             }
             Event::MappingStart(..) => self.map(place, depth)?,
             Event::Alias(id) => {
-                let Some((node, size, height)) = self.anchors.get(&id).cloned() else {
+                let Some((_, extent)) = self.anchors.get(&id) else {
                     return Err(Box::new(self.fault(place, "an alias cannot stand inside itself")));
                 };
-                self.nodes += size;
-                if depth + height > MOST_NESTING {
+                let extent = *extent;
+                self.nodes += extent.nodes;
+                if depth + extent.height > MOST_NESTING {
                     return Err(Box::new(self.too_deep(place)));
                 }
-                node
+                self.copy(extent, place)?;
+                self.anchors[&id].0.clone()
             }
             _ => Node { place, content: Content::Null },
         };
         if let Some(id) = anchor {
-            let height = height_of(&node);
-            self.anchors.insert(id, (node.clone(), self.nodes - before, height));
+            let extent = Extent::of(&node);
+            self.copy(extent, place)?;
+            self.anchors.insert(id, (node.clone(), extent));
         }
         Ok(node)
     }
 
+    /// Accounts for a copy of what is so large, made at `place`.
+    fn copy(&mut self, extent: Extent, place: Place) -> Result<(), Stop> {
+        self.copied.0 += extent.nodes;
+        self.copied.1 += extent.bytes;
+        if self.copied.0 <= MOST_NODES && self.copied.1 <= MOST_REPEATED {
+            return Ok(());
+        }
+        let message = format!(
+            "aliases repeat more than {MOST_NODES} values or {MOST_REPEATED} bytes of the document"
+        );
+        let fault = self.fault(place, message);
+        Err(Box::new(fault.help("write less under anchors (`&name`), or repeat it less often")))
+    }
+
     fn map(&mut self, place: Place, depth: usize) -> Result<Node, Stop> {
         let mut entries: Vec<Entry> = Vec::new();
-        let mut known: BTreeMap<String, Place> = BTreeMap::new();
+        // With the line of each.
+        let mut known: BTreeMap<String, usize> = BTreeMap::new();
         let mut end = place.end;
         while let Some((event, span)) = self.next()? {
             if matches!(event, Event::MappingEnd) {
@@ -175,6 +261,7 @@ impl<'a> Reader<'a> {
                 continue;
             }
             let key_place = self.place(&span);
+            let line = self.line + span.start.line();
             let plain = matches!(&event, Event::Scalar(_, ScalarStyle::Plain, ..));
             let text = event.scalar().map(|(text, _)| text.to_owned());
             let Some(text) = text else {
@@ -193,15 +280,15 @@ impl<'a> Reader<'a> {
             let Some((event, span)) = self.next()? else { break };
             let value = self.node(event, &span, depth + 1)?;
             end = end.max(value.place.end);
-            if let Some(first) = known.get(&key) {
-                let (line, _) = self.source.line_and_column(first.start);
-                let fault = self
-                    .fault(key_place, format!("duplicate key `{key}`"))
-                    .label(format!("already written on line {line}"))
-                    .help("remove one of the two");
-                self.faults.push(fault);
+            if let Some(line) = known.insert(key.clone(), line) {
+                let quoted = quoted(&key);
+                self.note(|reader| {
+                    reader
+                        .fault(key_place, format!("duplicate key `{quoted}`"))
+                        .label(format!("already written on line {line}"))
+                        .help("remove one of the two")
+                });
             }
-            known.insert(key.clone(), key_place);
             entries.push(Entry { key, key_place, value });
         }
         Ok(Node { place: Place { end, ..place }, content: Content::Map(entries) })
@@ -233,8 +320,7 @@ impl<'a> Reader<'a> {
             Ok(content) => return content,
             Err(refused) => refused,
         };
-        let fault = self.fault(place, message).help(help);
-        self.faults.push(fault);
+        self.note(|reader| reader.fault(place, message).help(help));
         Content::Text(text.to_owned())
     }
 
@@ -251,6 +337,16 @@ impl<'a> Reader<'a> {
         if place.end > place.start { place.end } else { last }
     }
 
+    /// Collects the fault that `made` puts into words, where it will be told.
+    fn note(&mut self, made: impl FnOnce(&Self) -> Diagnostic) {
+        if self.faults.is_full(Severity::Error) {
+            self.faults.count_error();
+        } else {
+            let fault = made(self);
+            self.faults.push(fault);
+        }
+    }
+
     fn fault(&self, place: Place, message: impl Into<String>) -> Diagnostic {
         Diagnostic::error(self.source, place.start..place.end, message)
     }
@@ -258,11 +354,6 @@ impl<'a> Reader<'a> {
     fn too_deep(&self, place: Place) -> Diagnostic {
         self.fault(place, format!("nested more than {MOST_NESTING} levels deep"))
     }
-}
-
-fn height_of(node: &Node) -> usize {
-    let entries = node.entries().iter().map(|entry| &entry.value);
-    node.items().iter().chain(entries).map(height_of).max().map_or(0, |height| height + 1)
 }
 
 /// A plain scalar by the core schema of YAML 1.2, or why it is refused and what to write instead.
@@ -285,13 +376,14 @@ fn plain_scalar(text: &str) -> Result<Content, (String, String)> {
         }
         _ => {}
     }
+    let shown = quoted(text);
     let digits = text.trim_start_matches(['+', '-']);
     if text.len() - digits.len() > 1 {
         return Ok(Content::Text(text.to_owned()));
     }
     if matches!(digits, ".inf" | ".Inf" | ".INF" | ".nan" | ".NaN" | ".NAN") {
         return Err((
-            format!("`{text}` is not a finite number"),
+            format!("`{shown}` is not a finite number"),
             "write a finite number, or leave the key out where it is optional".to_owned(),
         ));
     }
@@ -308,8 +400,8 @@ fn plain_scalar(text: &str) -> Result<Content, (String, String)> {
         && digits.bytes().all(|b| b.is_ascii_digit() || b"_.".contains(&b));
     if based || grouped {
         return Err((
-            format!("`{text}` is a number to some readers and text to others"),
-            format!("write it in plain decimal digits, or \"{text}\" for the text"),
+            format!("`{shown}` is a number to some readers and text to others"),
+            format!("write it in plain decimal digits, or \"{shown}\" for the text"),
         ));
     }
     if !is_decimal(digits) {
@@ -317,8 +409,8 @@ fn plain_scalar(text: &str) -> Result<Content, (String, String)> {
     }
     if digits.len() > 1 && digits.starts_with('0') && digits.as_bytes()[1].is_ascii_digit() {
         return Err((
-            format!("`{text}` begins with a zero, which some readers take for octal"),
-            format!("leave the zero out, or write \"{text}\" for the text"),
+            format!("`{shown}` begins with a zero, which some readers take for octal"),
+            format!("leave the zero out, or write \"{shown}\" for the text"),
         ));
     }
     if digits.bytes().all(|b| b.is_ascii_digit()) {
@@ -327,7 +419,7 @@ fn plain_scalar(text: &str) -> Result<Content, (String, String)> {
                 Ok(Content::Integer(n))
             }
             _ => Err((
-                format!("`{text}` is too large to be kept exactly"),
+                format!("`{shown}` is too large to be kept exactly"),
                 "whole numbers reach from -9223372036854775808 to 18446744073709551615".to_owned(),
             )),
         };
@@ -335,7 +427,7 @@ fn plain_scalar(text: &str) -> Result<Content, (String, String)> {
     match text.parse::<f64>() {
         Ok(x) if x.is_finite() => Ok(Content::Float(x)),
         _ => Err((
-            format!("`{text}` is too large for a number"),
+            format!("`{shown}` is too large for a number"),
             "numbers reach to about 1.8e308".to_owned(),
         )),
     }

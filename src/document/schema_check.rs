@@ -8,7 +8,7 @@ mod branches;
 mod words;
 
 use super::node::{Content, Entry, Node, Place, Tree, start_of};
-use super::{Diagnostic, suggestion};
+use super::{Diagnostic, MOST_FAULTS, Severity, quoted, suggestion};
 use serde_json::{Map, Value};
 use std::collections::BTreeSet;
 use words::{accepts, constants, described, expected};
@@ -17,19 +17,87 @@ use words::{accepts, constants, described, expected};
 pub fn check(schema: &Value, tree: &Tree) -> Vec<Diagnostic> {
     let no_definitions = Map::new();
     let definitions = schema.get("$defs").and_then(Value::as_object).unwrap_or(&no_definitions);
-    let mut faults = Vec::new();
-    Checker { definitions }.check(schema, Spot::root(&tree.root), &mut faults);
-    faults.sort_by_key(|fault| fault.place);
+    let checker = Checker { definitions };
+    let kinds = checker.resolve(schema).get("type");
+    if kinds.and_then(Value::as_str) == Some("object")
+        && !matches!(tree.root.content, Content::Map(_))
+    {
+        // What it holds is not quoted: it may be any file, named by a slip.
+        let found = match &tree.root.content {
+            Content::Null => "nothing",
+            Content::List(_) => "a list",
+            _ => "text",
+        };
+        let name = &tree.sources[0].name;
+        return vec![Diagnostic::placeless(format!(
+            "`{name}`: expected a YAML mapping, found {found}"
+        ))];
+    }
+    let mut faults = Faults::default();
+    checker.check(schema, Spot::root(&tree.root), &mut faults);
+    let all = faults.count();
+    let mut told = faults.list;
+    told.sort_by_key(|fault| fault.place);
     // A key unknown to a flattened choice is unknown to the mapping around it, too.
-    faults.dedup_by(|b, a| a.place == b.place && a.message == b.message);
-    faults
-        .into_iter()
-        .map(|fault| {
-            let mut diagnostic = tree.fault(fault.place, fault.message).label(fault.label);
-            diagnostic.help = fault.help;
-            diagnostic
-        })
-        .collect()
+    told.dedup_by(|b, a| a.place == b.place && a.message == b.message);
+    let left = all - told.len();
+    let others = (left > 0).then(|| Diagnostic::others(Severity::Error, left));
+    let told = told.into_iter().map(|fault| {
+        let mut diagnostic = tree.fault(fault.place, fault.message).label(fault.label);
+        diagnostic.help = fault.help;
+        diagnostic
+    });
+    told.chain(others).collect()
+}
+
+/// Faults in the order of the reading: the first ones, and how many there are.
+#[derive(Default)]
+struct Faults {
+    list: Vec<Fault>,
+    /// Places of unknown keys: one is met as often as there are choices around it.
+    unknown: BTreeSet<Place>,
+    /// How many faults there are but for unknown keys.
+    others: usize,
+}
+
+impl Faults {
+    fn count(&self) -> usize {
+        self.others + self.unknown.len()
+    }
+
+    /// Whether a further fault is only counted: to put it into words could take longer than all the rest.
+    fn is_full(&self) -> bool {
+        self.list.len() >= MOST_FAULTS
+    }
+
+    /// Takes the fault that `made` puts into words, or counts it.
+    fn push(&mut self, made: impl FnOnce() -> Fault) {
+        self.others += 1;
+        self.tell(made);
+    }
+
+    /// The same for an unknown key at `place`.
+    fn push_unknown(&mut self, place: Place, made: impl FnOnce() -> Fault) {
+        if self.unknown.insert(place) {
+            self.tell(made);
+        }
+    }
+
+    fn tell(&mut self, made: impl FnOnce() -> Fault) {
+        if !self.is_full() {
+            self.list.push(made());
+        }
+    }
+
+    /// Takes what another reading of a part found.
+    fn append(&mut self, mut found: Self) {
+        self.others += found.others;
+        let told = self.unknown.clone();
+        self.unknown.append(&mut found.unknown);
+        let room = MOST_FAULTS.saturating_sub(self.list.len());
+        let fresh = found.list.into_iter().filter(|fault| !told.contains(&fault.place));
+        self.list.extend(fresh.take(room));
+    }
 }
 
 /// A fault that is not yet tied to its source.
@@ -81,8 +149,8 @@ impl<'a> Spot<'a> {
         let above = self.above.map_or_else(String::new, Spot::path);
         match self.step {
             Step::Root => above,
-            Step::Key(key) if above.is_empty() => key.to_owned(),
-            Step::Key(key) => format!("{above}.{key}"),
+            Step::Key(key) if above.is_empty() => quoted(key).into_owned(),
+            Step::Key(key) => format!("{above}.{}", quoted(key)),
             Step::Item(number) => format!("{above}[{number}]"),
         }
     }
@@ -137,17 +205,17 @@ impl<'s> Checker<'s> {
         schema
     }
 
-    fn check(&self, schema: &'s Value, spot: Spot<'_>, faults: &mut Vec<Fault>) {
+    fn check(&self, schema: &'s Value, spot: Spot<'_>, faults: &mut Faults) {
         let about = schema;
         let schema = self.resolve(schema);
         if *schema == Value::Bool(false) {
-            faults.push(spot.fault(format!("{} is not allowed here", spot.name()), ""));
+            faults.push(|| spot.fault(format!("{} is not allowed here", spot.name()), ""));
             return;
         }
         if let Some(kinds) = schema.get("type")
             && !accepts(kinds, spot.node)
         {
-            faults.push(self.wrong_type(&[schema], about, &spot));
+            faults.push(|| self.wrong_type(&[schema], about, &spot));
             return;
         }
         if let Some(branches) =
@@ -162,7 +230,7 @@ impl<'s> Checker<'s> {
         }
         let known = constants(schema);
         if !known.is_empty() && !known.contains(&&spot.node.to_json()) {
-            faults.push(unknown_value(&known, &spot));
+            faults.push(|| unknown_value(&known, &spot));
         }
         match &spot.node.content {
             Content::Integer(_) | Content::Float(_) => check_range(schema, &spot, faults),
@@ -172,13 +240,7 @@ impl<'s> Checker<'s> {
         }
     }
 
-    fn check_list(
-        &self,
-        schema: &'s Value,
-        items: &[Node],
-        spot: Spot<'_>,
-        faults: &mut Vec<Fault>,
-    ) {
+    fn check_list(&self, schema: &'s Value, items: &[Node], spot: Spot<'_>, faults: &mut Faults) {
         let first = schema.get("prefixItems").and_then(Value::as_array);
         for (number, item) in items.iter().enumerate() {
             let item_schema =
@@ -197,19 +259,15 @@ impl<'s> Checker<'s> {
         };
         let items = if wanted.ends_with('1') && !wanted.ends_with("11") { "item" } else { "items" };
         let found = if count == 0 { "none".to_owned() } else { count.to_string() };
-        faults.push(spot.fault(
-            format!("{} must have {wanted} {items}, found {found}", spot.name()),
-            format!("expected {wanted} {items}"),
-        ));
+        faults.push(|| {
+            spot.fault(
+                format!("{} must have {wanted} {items}, found {found}", spot.name()),
+                format!("expected {wanted} {items}"),
+            )
+        });
     }
 
-    fn check_map(
-        &self,
-        schema: &'s Value,
-        entries: &[Entry],
-        spot: Spot<'_>,
-        faults: &mut Vec<Fault>,
-    ) {
+    fn check_map(&self, schema: &'s Value, entries: &[Entry], spot: Spot<'_>, faults: &mut Faults) {
         let mut known = BTreeSet::new();
         self.property_names(schema, &mut known);
         let closed = ["additionalProperties", "unevaluatedProperties"]
@@ -217,33 +275,39 @@ impl<'s> Checker<'s> {
             .any(|name| schema.get(name) == Some(&Value::Bool(false)));
         let own = schema.get("properties").and_then(Value::as_object);
         let rest = schema.get("additionalProperties").filter(|s| s.is_object());
+        let written: BTreeSet<&str> = entries.iter().map(|entry| entry.key.as_str()).collect();
+        let unwritten: Vec<&str> = known.iter().copied().filter(|k| !written.contains(k)).collect();
         let mut meant = Vec::new();
         for entry in entries {
             let property = own.and_then(|own| own.get(&entry.key));
             if let Some(property) = property.or(rest.filter(|_| !known.contains(&*entry.key))) {
                 self.check(property, spot.entry(entry), faults);
             } else if closed && !known.contains(&*entry.key) {
-                let unwritten = known.iter().copied().filter(|k| spot.node.get(k).is_none());
-                let near = suggestion(&entry.key, unwritten);
-                meant.extend(near);
-                faults.push(unknown_key(&entry.key, entry.key_place, near, &known, &spot));
+                faults.push_unknown(entry.key_place, || {
+                    let near = suggestion(&entry.key, unwritten.iter().copied());
+                    meant.extend(near);
+                    unknown_key(&entry.key, entry.key_place, near, &known, &spot)
+                });
             }
         }
         for required in schema.get("required").and_then(Value::as_array).into_iter().flatten() {
             let Some(key) = required.as_str() else { continue };
             // A misspelled key is one fault, not two.
-            if spot.node.get(key).is_some() || meant.contains(&key) {
+            if written.contains(key) || meant.contains(&key) {
                 continue;
             }
-            let property = own.and_then(|own| own.get(key)).unwrap_or(&Value::Null);
-            let expectation = self.expected_by(property);
-            let about = described(property).map_or_else(String::new, |about| format!(": {about}"));
-            let message = match spot.path().as_str() {
-                "" => format!("missing key `{key}`"),
-                path => format!("missing key `{key}` in `{path}`"),
-            };
-            let fault = spot.fault(message, format!("expected `{key}` here")).at(spot.key);
-            faults.push(fault.help(format!("add `{key}`, {expectation}{about}")));
+            faults.push(|| {
+                let property = own.and_then(|own| own.get(key)).unwrap_or(&Value::Null);
+                let expectation = self.expected_by(property);
+                let about =
+                    described(property).map_or_else(String::new, |about| format!(": {about}"));
+                let message = match spot.path().as_str() {
+                    "" => format!("missing key `{key}`"),
+                    path => format!("missing key `{key}` in `{path}`"),
+                };
+                let fault = spot.fault(message, format!("expected `{key}` here")).at(spot.key);
+                fault.help(format!("add `{key}`, {expectation}{about}"))
+            });
         }
     }
 
@@ -313,6 +377,7 @@ fn unknown_key(
         path => format!("not a key of `{path}`"),
     };
     let names: Vec<&str> = known.iter().copied().collect();
+    let key = quoted(key);
     spot.fault(format!("unknown key `{key}`"), label).at(place).help(match near {
         Some(near) => format!("did you mean `{near}`?"),
         None if names.is_empty() => "remove it: nothing is expected here".to_owned(),
@@ -326,6 +391,7 @@ fn unknown_value(known: &[&Value], spot: &Spot<'_>) -> Fault {
     let written = spot.node.scalar_text().unwrap_or_default();
     let list = names.join(", ");
     let near = suggestion(&written, names.iter().map(String::as_str));
+    let written = quoted(&written);
     let label = if names.len() == 1 {
         format!("expected `{list}`")
     } else {
@@ -337,7 +403,7 @@ fn unknown_value(known: &[&Value], spot: &Spot<'_>) -> Fault {
     })
 }
 
-fn check_range(schema: &Value, spot: &Spot<'_>, faults: &mut Vec<Fault>) {
+fn check_range(schema: &Value, spot: &Spot<'_>, faults: &mut Faults) {
     #[expect(clippy::cast_precision_loss, reason = "compared with bounds far below 2^53")]
     let value = match spot.node.content {
         Content::Integer(value) => value as f64,
@@ -373,12 +439,14 @@ fn check_range(schema: &Value, spot: &Spot<'_>, faults: &mut Vec<Fault>) {
             range.join(" and ")
         }
     };
-    let fault = spot.fault(
-        format!("{} must be {range}, found {value}", spot.name()),
-        format!("expected a number {range}"),
-    );
-    faults.push(match described(schema) {
-        Some(about) => fault.help(about),
-        None => fault,
+    faults.push(|| {
+        let fault = spot.fault(
+            format!("{} must be {range}, found {value}", spot.name()),
+            format!("expected a number {range}"),
+        );
+        match described(schema) {
+            Some(about) => fault.help(about),
+            None => fault,
+        }
     });
 }

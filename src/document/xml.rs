@@ -2,7 +2,7 @@
 //!
 //! URDF and SDF share this: elements whose text or attributes hold numbers separated by blanks.
 
-use super::{Diagnostic, Severity, Source};
+use super::{Diagnostic, FaultList, Source, quoted};
 use roxmltree::{Document, Node, ParsingOptions};
 use std::ops::Range;
 
@@ -27,6 +27,12 @@ pub fn parse(source: &Source, max_bytes: usize) -> Result<Document<'_>, Vec<Diag
             source.name,
             text.len()
         ))]);
+    }
+    if !text.trim_start_matches('\u{feff}').trim_start().starts_with('<') {
+        // Nothing of it is quoted: it may be any file, named by a slip.
+        let found = if text.trim().is_empty() { "nothing" } else { "text that is none" };
+        let message = format!("`{}`: expected XML, found {found}", source.name);
+        return Err(vec![Diagnostic::placeless(message)]);
     }
     if let Some(start) = crowded_tag(text) {
         return Err(vec![
@@ -130,19 +136,28 @@ pub fn text<'a>(node: Node<'a, '_>) -> &'a str {
 #[derive(Debug)]
 pub struct Faults<'s> {
     source: &'s Source,
-    /// Found so far, in the order of the reading.
-    pub list: Vec<Diagnostic>,
+    list: FaultList,
 }
 
 impl<'s> Faults<'s> {
     /// None yet, in `source`.
     pub fn new(source: &'s Source) -> Self {
-        Self { source, list: Vec::new() }
+        Self { source, list: FaultList::default() }
     }
 
     /// Whether one of them makes the document unusable.
     pub fn any_error(&self) -> bool {
-        self.list.iter().any(|fault| fault.severity == Severity::Error)
+        self.list.any_error()
+    }
+
+    /// Those of the faults found so far that are kept.
+    pub fn kept(&self) -> &[Diagnostic] {
+        self.list.kept()
+    }
+
+    /// Found so far, in the order of the reading.
+    pub fn finish(self) -> Vec<Diagnostic> {
+        self.list.finish()
     }
 
     /// A fault of `node`, to be completed and pushed.
@@ -210,7 +225,7 @@ impl<'s> Faults<'s> {
                 _ => {
                     self.list.push(
                         Diagnostic::error(self.source, span, format!("malformed number in {what}"))
-                            .label(format!("expected a finite number, found `{token}`")),
+                            .label(format!("expected a finite number, found `{}`", quoted(token))),
                     );
                     return None;
                 }
@@ -277,7 +292,7 @@ error: not well-formed XML
         let mut faults = Faults::new(&source);
         assert_eq!(faults.numbers::<3>(document.root_element()), None);
         assert_eq!(
-            faults.list[0].render(false),
+            faults.list.kept()[0].render(false),
             "\
 error: malformed number in <pose>
  --> a.sdf:2:2
@@ -291,6 +306,6 @@ error: malformed number in <pose>
         let mut faults = Faults::new(&source);
         assert_eq!(faults.numbers::<2>(document.root_element()), Some([1.0, 2.0]));
         assert_eq!(faults.numbers::<3>(document.root_element()), None);
-        assert_eq!(faults.list[0].label, "expected 3 numbers, found 2");
+        assert_eq!(faults.list.kept()[0].label, "expected 3 numbers, found 2");
     }
 }

@@ -3,7 +3,7 @@
 use super::choice::FactorDoc;
 use super::document::ManifestDoc;
 use super::faults::{Faults, step};
-use crate::document::suggestion;
+use crate::document::{listed, quoted, suggestion};
 use crate::studies::Condition;
 use crate::studies::FactorValue;
 use std::collections::{BTreeMap, BTreeSet};
@@ -11,8 +11,11 @@ use std::collections::{BTreeMap, BTreeSet};
 /// More conditions than any study has: a crossing gone wrong.
 const MOST_CONDITIONS: usize = 20_000;
 
-/// More factors than any study crosses: each cell holds a value of every one.
+/// More factors than any study has: every condition holds a value of each.
 const MOST_FACTORS: usize = 100;
+
+/// More entries of `exclude` than anyone writes: each is held against every condition.
+const MOST_EXCLUSIONS: usize = 1000;
 
 /// Columns of tables that no factor may be named after.
 const RESERVED: [&str; 7] = ["key", "trial", "outcome", "coverage-percent", "value", "sd", "n"];
@@ -30,15 +33,17 @@ pub struct Factor {
 pub(super) fn cross(doc: &ManifestDoc, faults: &mut Faults<'_>) -> (Vec<Factor>, Vec<Condition>) {
     let mut factors: Vec<Factor> = Vec::new();
     let mut cells = vec![Condition(Vec::new())];
+    if doc.factors.0.len() > MOST_FACTORS {
+        let found = doc.factors.0.len();
+        let message = format!("expected at most {MOST_FACTORS} factors, found {found}");
+        faults.at_key("/factors", message, "these are crossed with one another");
+        return (factors, Vec::new());
+    }
     for (name, written) in &doc.factors.0 {
         let pointer = step("/factors", name);
-        if factors.len() == MOST_FACTORS {
-            let message = format!("there are more than {MOST_FACTORS} factors");
-            faults.at_key(&pointer, message, "this is one too many");
-            return (factors, Vec::new());
-        }
         check_name(name, &pointer, faults);
         let mut values: Vec<String> = Vec::new();
+        let mut known_values = BTreeSet::new();
         let mut note = |list: &[FactorValue], pointer: &str, faults: &mut Faults<'_>| {
             if list.is_empty() {
                 faults.at(pointer, "a factor needs at least one value", "expected values");
@@ -49,7 +54,7 @@ pub(super) fn cross(doc: &ManifestDoc, faults: &mut Faults<'_>) -> (Vec<Factor>,
                     let message = format!("value `{value}` is written twice");
                     faults.at(&format!("{pointer}/{i}"), message, "already in this list");
                 }
-                if !values.contains(&value.0) {
+                if known_values.insert(value.0.clone()) {
                     values.push(value.0.clone());
                 }
             }
@@ -151,6 +156,12 @@ fn exclude(
     cells: &mut Vec<Condition>,
     faults: &mut Faults<'_>,
 ) {
+    if doc.exclude.len() > MOST_EXCLUSIONS {
+        let found = doc.exclude.len();
+        let message = format!("`exclude` has at most {MOST_EXCLUSIONS} entries, found {found}");
+        faults.at_key("/exclude", message, "leave values out of `factors` instead");
+        return;
+    }
     for (i, cell) in doc.exclude.iter().enumerate() {
         let pointer = format!("/exclude/{i}");
         if !check_cell(cell, factors, &pointer, faults) {
@@ -171,8 +182,14 @@ fn include(
     cells: &mut Vec<Condition>,
     faults: &mut Faults<'_>,
 ) {
+    let mut there: BTreeSet<Condition> = cells.iter().cloned().collect();
     for (i, cell) in doc.include.iter().enumerate() {
         let pointer = format!("/include/{i}");
+        if cells.len() > MOST_CONDITIONS {
+            let message = format!("these are more than {MOST_CONDITIONS} conditions");
+            faults.at(&pointer, message, "with this condition");
+            return;
+        }
         let missing: Vec<&str> =
             factors.iter().map(|f| f.name.as_str()).filter(|f| !cell.contains_key(*f)).collect();
         if !missing.is_empty() {
@@ -184,7 +201,7 @@ fn include(
         }
         let added =
             Condition(factors.iter().map(|f| (f.name.clone(), cell[&f.name].0.clone())).collect());
-        if cells.contains(&added) {
+        if !there.insert(added.clone()) {
             let fault = faults.fault(&pointer, "this condition is there already");
             faults.push(fault.label(format!("`{added}`")).warning());
         } else {
@@ -211,8 +228,8 @@ pub(super) fn is_kebab(name: &str) -> bool {
 /// A suggestion, or the list of what is known.
 pub(super) fn known_or_near(word: &str, known: &[&str]) -> String {
     match suggestion(word, known.iter().copied()) {
-        Some(near) => format!("did you mean `{near}`? (known: {})", known.join(", ")),
+        Some(near) => format!("did you mean `{}`? (known: {})", quoted(near), listed(known)),
         None if known.is_empty() => "there is none".to_owned(),
-        None => format!("known: {}", known.join(", ")),
+        None => format!("known: {}", listed(known)),
     }
 }

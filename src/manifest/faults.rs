@@ -2,25 +2,28 @@
 
 use super::crossing::{Factor, known_or_near};
 use super::inputs::WrittenIn;
-use crate::document::{Diagnostic, Severity, Tree};
+use crate::document::{Diagnostic, FaultList, Severity, Tree, quoted};
 use crate::studies::FactorValue;
+use std::collections::BTreeSet;
+use std::sync::Arc;
 
 /// Faults of one manifest.
 pub(super) struct Faults<'a> {
     /// The manifest's tree, overrides included.
     pub(super) tree: &'a Tree,
-    list: Vec<Diagnostic>,
+    list: FaultList,
+    /// Where faults stand and what they say, so that each is told once.
+    known: BTreeSet<(Option<(Arc<str>, usize)>, String, String)>,
 }
 
 impl<'a> Faults<'a> {
     pub(super) fn new(tree: &'a Tree) -> Self {
-        Self { tree, list: Vec::new() }
+        Self { tree, list: FaultList::default(), known: BTreeSet::new() }
     }
 
     /// An error at the value that `pointer` names, not yet collected.
     pub(super) fn fault(&self, pointer: &str, message: impl Into<String>) -> Diagnostic {
         if self.is_full() {
-            // It is only counted: to look for its place would take time that grows with the manifest.
             return Diagnostic::placeless(message);
         }
         self.tree.fault(self.tree.place(pointer), message)
@@ -32,6 +35,11 @@ impl<'a> Faults<'a> {
             return Diagnostic::placeless(message);
         }
         self.tree.fault(self.tree.key_place(pointer), message)
+    }
+
+    /// What may have been meant by `word`, for a fault that is told.
+    pub(super) fn near(&self, word: &str, known: &[&str]) -> String {
+        if self.is_full() { String::new() } else { known_or_near(word, known) }
     }
 
     /// Collects an error at a value.
@@ -48,9 +56,16 @@ impl<'a> Faults<'a> {
 
     /// Collects a fault; conditions that share one share its telling.
     pub(super) fn push(&mut self, fault: Diagnostic) {
-        if !self.list.contains(&fault) {
+        let place =
+            fault.place.as_ref().map(|(source, span)| (Arc::clone(&source.name), span.start));
+        if self.known.insert((place, fault.message.clone(), fault.label.clone())) {
             self.list.push(fault);
         }
+    }
+
+    /// Whether a further error is only counted: to look for its place and for what was meant takes longer than all the rest.
+    fn is_full(&self) -> bool {
+        self.list.is_full(Severity::Error)
     }
 
     pub(super) fn extend(&mut self, faults: impl IntoIterator<Item = Diagnostic>) {
@@ -76,14 +91,14 @@ impl<'a> Faults<'a> {
         pointer: &str,
     ) -> bool {
         let Some(factor) = self.check_factor(factors, name, pointer, true) else { return false };
-        let known: Vec<&str> = factor.values.iter().map(String::as_str).collect();
-        if known.contains(&value.0.as_str()) {
+        if factor.values.contains(&value.0) {
             return true;
         }
+        let known: Vec<&str> = factor.values.iter().map(String::as_str).collect();
         let fault = self
             .fault(pointer, format!("`{value}` is not a value of the factor `{name}`"))
             .label("unknown value")
-            .help(known_or_near(&value.0, &known));
+            .help(self.near(&value.0, &known));
         self.push(fault);
         false
     }
@@ -105,7 +120,8 @@ impl<'a> Faults<'a> {
             } else {
                 self.fault(pointer, message)
             };
-            self.push(fault.label("not a key of `factors`").help(known_or_near(name, &known)));
+            let help = self.near(name, &known);
+            self.push(fault.label("not a key of `factors`").help(help));
         }
         found
     }
@@ -120,19 +136,22 @@ impl<'a> Faults<'a> {
         complete: bool,
     ) {
         let known: Vec<&str> = factor.values.iter().map(String::as_str).collect();
-        let mut written = Vec::new();
-        let mut meant = Vec::new();
+        let levels: BTreeSet<&str> = known.iter().copied().collect();
+        let (mut written, mut meant) = (BTreeSet::new(), BTreeSet::new());
         for key in keys {
-            written.push(key.as_str());
-            if known.contains(&key.as_str()) {
+            written.insert(key.as_str());
+            if levels.contains(key.as_str()) {
                 continue;
             }
-            let help = known_or_near(key, &known);
-            meant.extend(crate::document::suggestion(key, known.iter().copied()));
+            let mut help = String::new();
+            if !self.is_full() {
+                help = known_or_near(key, &known);
+                meant.extend(crate::document::suggestion(key, known.iter().copied()));
+            }
             let fault = self
                 .key_fault(
                     &step(pointer, key),
-                    format!("`{key}` is not a value of the factor `{}`", factor.name),
+                    format!("`{}` is not a value of the factor `{}`", quoted(key), factor.name),
                 )
                 .label("unknown value")
                 .help(help);
@@ -141,6 +160,7 @@ impl<'a> Faults<'a> {
         for level in known.iter().filter(|_| complete) {
             // A misspelled value is one fault, not two.
             if !written.contains(level) && !meant.contains(level) {
+                let level = quoted(level);
                 let message = format!("`{level}`, a value of `{}`, has no entry here", factor.name);
                 let fault =
                     self.key_fault(pointer, message).label(format!("expected `{level}: ...`"));
@@ -150,12 +170,12 @@ impl<'a> Faults<'a> {
     }
 
     pub(super) fn any_error(&self) -> bool {
-        self.list.iter().any(|fault| fault.severity == Severity::Error)
+        self.list.any_error()
     }
 
     /// All faults: those of the manifest in its order, then those of other files.
     pub(super) fn finish(self) -> Vec<Diagnostic> {
-        let mut list = self.list;
+        let mut list = self.list.finish();
         let rank = |fault: &Diagnostic| {
             let place = fault.place.as_ref();
             let own = place.and_then(|(source, span)| {

@@ -13,7 +13,7 @@ use super::priors::{Exploration, Knowledge, Told, UsedPrior, read_as};
 use super::readers;
 use super::resolve::{Known, Resolver};
 use crate::digest::{Sha256Digest, TrialKey};
-use crate::document::Source;
+use crate::document::{Source, reports};
 use crate::grid::OccupancyGrid;
 use crate::json;
 use crate::rng::Seeds;
@@ -187,7 +187,7 @@ impl<'a> Resolver<'a> {
             let text = String::from_utf8(descriptor.to_vec()).map_err(|e| e.to_string())?;
             let source = Source::new(sealed_as[0].clone(), text);
             readers::explored(&source, &sealed_as[1], &image)
-                .map_err(|faults| faults.iter().map(|f| f.render(false)).collect())
+                .map_err(|faults| reports(&faults, false).concat())
         });
         match read {
             Ok(grid) => Some(read_as(&grid, *grid.frame(), unknown)),

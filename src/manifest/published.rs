@@ -6,7 +6,7 @@ use super::document::ManifestDoc;
 use super::faults::{Faults, step};
 use super::figures::check_figures;
 use super::resolve::Resolved;
-use crate::document::{Diagnostic, Source, suggestion};
+use crate::document::{Diagnostic, Source, listed, suggestion};
 use crate::studies::outcomes::OutcomeTable;
 use crate::studies::prior_map::{
     AgreementTable, CoverageTable, EffectsTable, MILESTONES, MeasuresTable, coverage_at_distance,
@@ -34,6 +34,9 @@ const MEASURE: &str = "measure";
 /// No paper prints more (bytes); a table takes many times its text.
 const MOST_BYTES: usize = 1 << 19;
 
+/// Of how many values that no factor has it is asked whether one was meant.
+const MOST_UNKNOWN: usize = 1000;
+
 /// Reads a tidy CSV: columns named after factors, then `coverage-percent`, `value`, and where known `sd` and
 /// `n`; one row per published number. Where a column `measure` says what was measured, there need be no coverage.
 pub(super) fn read(
@@ -43,25 +46,39 @@ pub(super) fn read(
     faults: &mut Faults<'_>,
 ) -> Option<Table> {
     if source.text.len() > MOST_BYTES {
-        let message =
-            format!("a file of {} bytes: expected at most {MOST_BYTES}", source.text.len());
-        faults.push(Diagnostic::error(source, line(source, 1), message));
+        faults.push(Diagnostic::placeless(format!(
+            "`{}` is too large: expected at most {MOST_BYTES} bytes, found {}",
+            source.name,
+            source.text.len()
+        )));
         return None;
     }
-    let table = match Table::from_csv(&source.text) {
-        Ok(table) => table,
-        Err(error) => {
-            faults.push(Diagnostic::error(source, line(source, error.line), error.problem));
-            return None;
-        }
-    };
-    let numbers = columns(kind, table.column(MEASURE).is_some());
+    let table = Table::from_csv(&source.text);
+    let by_measure = table.as_ref().is_ok_and(|table| table.column(MEASURE).is_some());
+    let numbers = columns(kind, by_measure);
     let mut fine = true;
     let known: Vec<&str> = factors
         .iter()
         .map(|f| f.name.as_str())
         .chain(numbers.iter().map(|(name, _)| *name))
         .collect();
+    let mut header = source.text.lines().next().unwrap_or_default().split(',');
+    if !header.any(|column| known.contains(&column.trim_matches(['"', '\u{feff}']))) {
+        // Nothing of it is quoted: it may be any file, named by a slip.
+        let message = format!(
+            "`{}`: expected a CSV of published numbers, found text whose first line names none of its columns",
+            source.name
+        );
+        faults.push(Diagnostic::placeless(message).help(format!("known: {}", listed(&known))));
+        return None;
+    }
+    let table = match table {
+        Ok(table) => table,
+        Err(error) => {
+            faults.push(Diagnostic::error(source, line(source, error.line), error.problem));
+            return None;
+        }
+    };
     for column in table.columns.iter().filter(|c| !known.contains(&c.as_str())) {
         let fault =
             Diagnostic::error(source, line(source, 1), format!("unknown column `{column}`"))
@@ -75,19 +92,30 @@ pub(super) fn read(
         faults.push(fault.label(format!("expected a column `{name}`")));
         fine = false;
     }
+    let levels: BTreeMap<&str, BTreeSet<&str>> = factors
+        .iter()
+        .map(|factor| (factor.name.as_str(), factor.values.iter().map(String::as_str).collect()))
+        .collect();
     let mut unknown = BTreeSet::new();
-    for (i, row) in table.rows.iter().enumerate() {
-        // Exact while no field spans lines; a place one line off is still a help then.
-        let place = line(source, i + 2);
+    // Exact while no field spans lines; a place one line off is still a help then.
+    let mut rest = 0;
+    let lines = source.text.split_inclusive('\n').map(|line| {
+        rest += line.len();
+        rest - line.len()..rest - line.len() + line.trim_end_matches(['\n', '\r']).len()
+    });
+    let lines = lines.skip(1).chain(std::iter::repeat(source.text.len()..source.text.len()));
+    for (row, place) in table.rows.iter().zip(lines) {
         for (column, value) in table.columns.iter().zip(row) {
             if let Some(factor) = factors.iter().find(|f| f.name == *column) {
                 // A paper may have more levels than are run; one that is nearly a level is a slip.
                 let level = value.to_string();
-                let names: Vec<&str> = factor.values.iter().map(String::as_str).collect();
-                if !names.contains(&level.as_str())
-                    && suggestion(&level, names.iter().copied()).is_some()
+                let names = &levels[factor.name.as_str()];
+                if !names.contains(level.as_str())
+                    && unknown.len() < MOST_UNKNOWN
                     && unknown.insert((column, level.clone()))
+                    && suggestion(&level, names.iter().copied()).is_some()
                 {
+                    let names: Vec<&str> = factor.values.iter().map(String::as_str).collect();
                     let message = format!("`{level}` is not a value of the factor `{column}`");
                     let fault = Diagnostic::error(source, place.clone(), message)
                         .label("this row will stand beside nothing")

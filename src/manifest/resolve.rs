@@ -197,7 +197,7 @@ impl Resolver<'_> {
                 .faults
                 .key_fault(&step("/license-of", path), format!("no input is read from `{path}`"))
                 .label("expected the path of an input, as written")
-                .help(known_or_near(path, &known));
+                .help(self.faults.near(path, &known));
             self.faults.push(fault);
         }
     }

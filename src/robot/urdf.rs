@@ -30,13 +30,13 @@ pub fn read(source: &Source) -> Result<(Robot, Vec<Diagnostic>), Vec<Diagnostic>
     let document = xml::parse(source, MAX_BYTES)?;
     let mut faults = Faults::new(source);
     let tree = strict::check(&document, &mut faults);
-    let (Some(tree), false) = (tree, faults.any_error()) else { return Err(faults.list) };
+    let (Some(tree), false) = (tree, faults.any_error()) else { return Err(faults.finish()) };
 
     let description = match urdf_rs::read_from_string(&source.text) {
         Ok(description) => description,
         Err(fault) => {
             faults.push(Diagnostic::placeless(format!("`{}` is not a URDF: {fault}", source.name)));
-            return Err(faults.list);
+            return Err(faults.finish());
         }
     };
     let frames = place(&description, &tree.root);
@@ -64,7 +64,7 @@ pub fn read(source: &Source) -> Result<(Robot, Vec<Diagnostic>), Vec<Diagnostic>
             Diagnostic::placeless(format!("robot `{}` has no body", description.name))
                 .help("give a link a box, cylinder or sphere collision"),
         );
-        return Err(faults.list);
+        return Err(faults.finish());
     };
     let [low, high] = shape::extent(&shapes);
     let bounds = footprint.bounds();
@@ -100,9 +100,9 @@ pub fn read(source: &Source) -> Result<(Robot, Vec<Diagnostic>), Vec<Diagnostic>
                 camera: sensors.camera,
                 compass: sensors.compass,
             };
-            Ok((robot, faults.list))
+            Ok((robot, faults.finish()))
         }
-        _ => Err(faults.list),
+        _ => Err(faults.finish()),
     }
 }
 

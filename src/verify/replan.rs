@@ -4,7 +4,7 @@ use super::{Earlier, Made, Pipeline, PlannedTrial, Replanned};
 use crate::bundle::{Bundle, BundleContent, Fault, assemble, format};
 use crate::claims::sensitivity::{Run, in_words};
 use crate::digest::Sha256Digest;
-use crate::document::Source;
+use crate::document::{Source, reports};
 use crate::manifest::{self, Experiment, Inputs, Measured, WrittenIn};
 use crate::plan::{ENGINE_VERSION, Plan, Selection};
 use crate::rng::Seeds;
@@ -113,7 +113,7 @@ fn resolve(
 ) -> Result<Experiment, String> {
     match manifest::resolve(source, overrides, inputs) {
         Ok((experiment, _)) => Ok(experiment),
-        Err(faults) => Err(faults.iter().map(|f| f.render(false)).collect()),
+        Err(faults) => Err(reports(&faults, false).concat()),
     }
 }
 

@@ -6,8 +6,9 @@ use reenact::bundle::{Form, Tree, archive};
 use std::fs;
 use std::path::Path;
 
-/// The most seconds that an attack may take, on a busy machine and with a program that is not optimised.
-const SECONDS: f64 = 20.0;
+/// The longest (s) that an attack may keep the program, built without optimisation and on a machine that is busy. What costs
+/// more than its length takes minutes then.
+const MOST_SECONDS: f64 = 60.0;
 
 /// How the attacker hands over a bundle.
 pub(crate) enum Made {
@@ -67,7 +68,7 @@ pub(crate) fn run_all(cases: &[Case]) -> String {
         }
         println!("{:<72} {}  {seconds:>6.2} s", case.name, case.rung);
         for (_, seconds) in &answers {
-            assert!(*seconds < SECONDS, "{}: {seconds} s of at most {SECONDS} s", case.name);
+            assert!(*seconds < MOST_SECONDS, "{}: {seconds} s", case.name);
         }
         said += &format!(
             "## {}\nrefused at level {}, exit code {}\n{answer}\n",

@@ -4,9 +4,9 @@ use crate::bundle::wall_time::WallTimes;
 use crate::cli::calibrate::Calibrator;
 use crate::cli::exit::Failure;
 use crate::cli::progress::Progress;
-use crate::cli::terminal::Terminal;
+use crate::cli::terminal::{Terminal, counted};
 use crate::plan::Plan;
-use crate::provenance::{Environment, TrialWatch, processors, unforeseen_seed};
+use crate::provenance::{Environment, TrialWatch, most_jobs, processors, unforeseen_seed};
 use crate::runner::{Executor, Observer, RunEvent, Scheduler, TrialStore, Twice};
 use crate::store::DirectoryStore;
 use crate::studies::{self, TrialRecord, TrialSpec};
@@ -42,6 +42,23 @@ pub(super) enum Times {
     Twice,
 }
 
+/// How many threads `--jobs` asks for: all processors by default, and never more than there is any use for.
+pub(super) fn jobs(asked: Option<usize>, terminal: Terminal) -> Result<usize, Failure> {
+    match asked {
+        None => Ok(processors()),
+        Some(0) => Err(Failure::not_understood("`--jobs` must be at least 1, found 0")),
+        Some(asked) if asked > most_jobs() => {
+            let most = most_jobs();
+            terminal.note(&format!(
+                "note: --jobs {asked}: {most} threads are started, the most that {} can use",
+                counted(processors(), "processor")
+            ));
+            Ok(most)
+        }
+        Some(asked) => Ok(asked),
+    }
+}
+
 impl Execution {
     /// `jobs` threads, all processors by default, and the store unless it is not to be used.
     pub(super) fn new(
@@ -49,12 +66,17 @@ impl Execution {
         no_cache: bool,
         environment: &Environment,
     ) -> Result<Self, Failure> {
-        let scheduler = Scheduler::new(jobs.unwrap_or_else(processors)).map_err(Failure::failed)?;
+        // Whoever asked for more was told ([`jobs`]).
+        let jobs = jobs.unwrap_or_else(processors).min(most_jobs());
+        let scheduler = Scheduler::new(jobs).map_err(Failure::failed)?;
         let scheduler = scheduler.doubting(unforeseen_seed());
         let store = if no_cache {
             None
         } else {
-            Some(DirectoryStore::new(environment.store().map_err(Failure::not_understood)?))
+            let root = environment.store().map_err(Failure::not_understood)?;
+            let store = DirectoryStore::new(root);
+            store.sweep();
+            Some(store)
         };
         Ok(Self { scheduler, store })
     }
@@ -76,7 +98,10 @@ impl Execution {
         times: Times,
         terminal: Terminal,
     ) -> Result<Executed, Failure> {
-        let progress = Progress::of(&plan.trials, terminal).labelled(&plan.experiment.name);
+        let store = self.store.as_ref().filter(|_| times == Times::Once);
+        let progress = Progress::of(&plan.trials, terminal)
+            .labelled(&plan.experiment.name)
+            .interruptible(store.is_some());
         let (cached, doubted) = (AtomicUsize::new(0), AtomicUsize::new(0));
         let observer = |event: &RunEvent<'_>| {
             if let RunEvent::Started { cached: known, doubted: again, .. } = event {
@@ -98,10 +123,12 @@ impl Execution {
             Some(twice) => twice,
             None => &timed,
         };
-        let store = self.store.as_ref().filter(|_| times == Times::Once);
         let store = store.map(|store| store as &dyn TrialStore);
         let records = self.scheduler.run(&plan.trials, executor, store, &observer);
         progress.finish();
+        for warning in self.store.iter().flat_map(DirectoryStore::warnings) {
+            terminal.warning(&warning);
+        }
         let records = records.map_err(Failure::failed)?;
         if let Some(twice) = twice {
             twice.verdict(records.len()).map_err(Failure::failed)?;

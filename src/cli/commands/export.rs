@@ -13,7 +13,7 @@ pub(in crate::cli) fn run(args: &ExportArgs, terminal: Terminal) -> Result<Exit,
     let stem = format!("{}-{}", bundle.name(), bundle.results_digest().short());
     let mut tree = in_bag(&bundle);
     if let Some(signature) = &args.signature {
-        let bytes = load::bytes(signature)?;
+        let bytes = load::text_bytes(signature)?;
         let path = path_in_bag(&bytes).ok_or_else(|| {
             let expected =
                 "expected an OpenSSH signature (`ssh-keygen -Y sign`) or one of minisign";

@@ -1,12 +1,12 @@
 //! `reenact lock`: what a manifest's run yields, written down beside it.
 
-use super::execution::{Executed, Execution, Times};
+use super::execution::{Executed, Execution, Times, jobs};
 use super::locked::{account_of, path_of, read};
 use crate::bundle::{Circumstance, Moment, assemble, seal};
 use crate::cli::args::LockArgs;
 use crate::cli::exit::{Exit, Failure};
-use crate::cli::load;
 use crate::cli::terminal::{Terminal, counted};
+use crate::cli::{interrupt, load};
 use crate::compare::{Account, Extent, Lock, LockError, Tolerances, compare};
 use crate::document::Source;
 use crate::plan::{Plan, Selection};
@@ -19,9 +19,8 @@ pub(in crate::cli) fn run(
     environment: &Environment,
     terminal: Terminal,
 ) -> Result<Exit, Failure> {
-    if args.jobs == Some(0) {
-        return Err(Failure::not_understood("`--jobs` must be at least 1, found 0"));
-    }
+    interrupt::watch(terminal);
+    jobs(args.jobs, terminal)?;
     for manifest in &args.manifests {
         terminal.result(&lock_one(manifest, args, environment, terminal)?);
     }

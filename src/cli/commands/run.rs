@@ -1,6 +1,6 @@
 //! `reenact run`: plan, simulate, seal.
 
-use super::execution::{Executed, Execution, Times};
+use super::execution::{Executed, Execution, Times, jobs};
 use super::locked::{self, Held};
 use super::{probe, tables, verdicts};
 use crate::bundle::wall_time;
@@ -9,8 +9,8 @@ use crate::claims::Verdict;
 use crate::cli::args::{Format, RunArgs};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::fold::{narrowed, wrapped};
-use crate::cli::load;
 use crate::cli::terminal::{Terminal, counted};
+use crate::cli::{interrupt, load};
 use crate::compare::Lock;
 use crate::plan::Plan;
 use crate::provenance::{Environment, RunClock};
@@ -24,9 +24,8 @@ pub(in crate::cli) fn run(
     environment: &Environment,
     terminal: Terminal,
 ) -> Result<Exit, Failure> {
-    if args.jobs == Some(0) {
-        return Err(Failure::not_understood("`--jobs` must be at least 1, found 0"));
-    }
+    interrupt::watch(terminal);
+    jobs(args.jobs, terminal)?;
     // A missing lock is told before anything is simulated.
     let locks = locked::locks(args, terminal)?;
     let mut exit = Exit::Yes;

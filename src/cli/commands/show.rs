@@ -37,7 +37,7 @@ impl Models for Shelf {
             Err(why) => return Found::Missing(why),
         };
         let name = path.display().to_string();
-        match store::read(&path) {
+        match store::read(&path, load::MOST_INPUT) {
             Ok(bytes) => Found::Mesh(Arc::new(mesh::read(&name, &bytes))),
             Err(error) => Found::Missing(format!("`{name}`: {}", store::reason(&error))),
         }

@@ -1,14 +1,14 @@
 //! `reenact vary`: the claims of a manifest, judged again with one assumption at a time moved to each other value that
 //! its `range` states.
 
-use super::execution::{Execution, Times};
+use super::execution::{Execution, Times, jobs};
 use crate::bundle::assemble;
 use crate::claims::Verdict;
 use crate::claims::sensitivity::{Attempt, Flip, Sensitivity, in_words};
 use crate::cli::args::VaryArgs;
 use crate::cli::exit::{Exit, Failure};
-use crate::cli::load;
 use crate::cli::terminal::{Terminal, counted};
+use crate::cli::{interrupt, load};
 use crate::digest::Sha256Digest;
 use crate::manifest::{Assumption, Experiment};
 use crate::plan::Plan;
@@ -22,10 +22,10 @@ pub(in crate::cli) fn run(
     environment: &Environment,
     terminal: Terminal,
 ) -> Result<Exit, Failure> {
-    for (option, number) in [("--jobs", args.jobs), ("--trials", args.trials.map(|n| n as usize))] {
-        if number == Some(0) {
-            return Err(Failure::not_understood(format!("`{option}` must be at least 1, found 0")));
-        }
+    interrupt::watch(terminal);
+    jobs(args.jobs, terminal)?;
+    if args.trials == Some(0) {
+        return Err(Failure::not_understood("`--trials` must be at least 1, found 0"));
     }
     let execution = Execution::new(args.jobs, args.no_cache, environment)?;
     let study = Study { args, execution, terminal };

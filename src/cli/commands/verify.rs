@@ -1,11 +1,13 @@
 //! `reenact verify`: climb the ladder and say which rung holds.
 
+use super::execution::jobs;
 use crate::cli::args::{Format, VerifyArgs};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::load;
 use crate::cli::progress::Progress;
 use crate::cli::terminal::Terminal;
-use crate::provenance::{Environment, RunClock, processors, unforeseen_seed};
+use crate::document::reports;
+use crate::provenance::{Environment, RunClock, unforeseen_seed};
 use crate::verify::{
     Level, Options, Reenactment, Report, Reviewer, Trust, Verdict, Vouching, climb_for,
 };
@@ -28,16 +30,15 @@ pub(in crate::cli) fn run(
     }
     let trust = args.trust.as_deref().map(trust).transpose()?;
     let signature = match &args.signature {
-        Some(path) => Some((path.display().to_string(), load::bytes(path)?)),
+        Some(path) => Some((path.display().to_string(), load::text_bytes(path)?)),
         None => None,
     };
-    let now = clock.circumstance(environment, 1).ended;
     let vouching = Vouching {
         trust: trust.as_ref(),
         signature: signature.as_ref().map(|(name, bytes)| (name.as_str(), bytes.as_slice())),
-        now,
+        now: clock.now(),
     };
-    let jobs = args.jobs.unwrap_or_else(processors);
+    let jobs = jobs(args.jobs, terminal)?;
     let progress = Progress::unplanned(terminal);
     let pipeline = Reenactment::new(jobs).map_err(Failure::failed)?.observed_by(&progress);
     let seed = args.sample_seed.unwrap_or_else(unforeseen_seed);
@@ -51,7 +52,7 @@ pub(in crate::cli) fn run(
         Format::Junit => report.to_junit(),
     });
     if let Some(path) = &args.attest {
-        match report.attestation(now) {
+        match report.attestation(clock.circumstance(environment, 1).ended) {
             Ok(record) => {
                 load::write(path, record.as_bytes())?;
                 terminal.note(&format!("wrote {}", path.display()));
@@ -65,11 +66,8 @@ pub(in crate::cli) fn run(
 /// The keys in `path`.
 fn trust(path: &Path) -> Result<Trust, Failure> {
     let source = load::text(path)?;
-    Trust::read(&source).map_err(|faults| {
-        Failure::not_understood(
-            faults.iter().map(|f| f.render(false)).collect::<Vec<_>>().join("\n"),
-        )
-    })
+    Trust::read(&source)
+        .map_err(|faults| Failure::not_understood(reports(&faults, false).join("\n")))
 }
 
 /// An attestation that was asked for and could not be written is no yes, even where the bundle holds.

@@ -1,7 +1,7 @@
 //! Which of several alternatives was meant, so that its faults can be told instead of "no alternative fits".
 
 use super::words::{accepts, constants};
-use super::{Checker, Content, Entry, Fault, Spot, suggestion, unknown_value};
+use super::{Checker, Content, Entry, Fault, Faults, Spot, quoted, suggestion, unknown_value};
 use serde_json::Value;
 use std::collections::BTreeSet;
 
@@ -29,7 +29,7 @@ impl<'s> Checker<'s> {
         about: &'s Value,
         outside: &BTreeSet<&str>,
         spot: Spot<'_>,
-        faults: &mut Vec<Fault>,
+        faults: &mut Faults,
     ) {
         let mut leaves = Vec::new();
         for branch in branches {
@@ -41,7 +41,7 @@ impl<'s> Checker<'s> {
             .filter(|leaf| leaf.get("type").is_none_or(|kinds| accepts(kinds, spot.node)))
             .collect();
         if fitting.is_empty() {
-            faults.push(self.not_any(&leaves, about, &spot));
+            faults.push(|| self.not_any(&leaves, about, &spot));
             return;
         }
         match &spot.node.content {
@@ -58,7 +58,7 @@ impl<'s> Checker<'s> {
                 let free: Vec<&'s Value> =
                     fitting.into_iter().filter(|leaf| constants(leaf).is_empty()).collect();
                 if free.is_empty() {
-                    faults.push(match tagged(&leaves, text) {
+                    faults.push(|| match tagged(&leaves, text) {
                         Some(fault_help) => unknown_value(&known, &spot).help(fault_help),
                         None => unknown_value(&known, &spot),
                     });
@@ -87,14 +87,16 @@ impl<'s> Checker<'s> {
         fitting: &[&'s Value],
         entries: &[&Entry],
         spot: Spot<'_>,
-        faults: &mut Vec<Fault>,
+        faults: &mut Faults,
     ) {
+        let written: BTreeSet<&str> =
+            spot.node.entries().iter().map(|entry| entry.key.as_str()).collect();
         let score = |leaf: &'s Value| {
             let mut names = BTreeSet::new();
             self.property_names(leaf, &mut names);
             let open = names.is_empty();
             let known = entries.iter().filter(|e| names.contains(&*e.key)).count();
-            let missing = required(leaf).filter(|key| spot.node.get(key).is_none()).count();
+            let missing = required(leaf).filter(|key| !written.contains(key)).count();
             (open, known, std::cmp::Reverse(missing))
         };
         let scores: Vec<_> = fitting.iter().map(|leaf| score(leaf)).collect();
@@ -123,37 +125,42 @@ impl<'s> Checker<'s> {
         }
         let list = choices.join("`, `");
         if entries.is_empty() {
-            faults.push(spot.fault(
-                format!("{} must have one of the keys `{list}`, found none", spot.name()),
-                format!("expected one of `{list}`"),
-            ));
+            faults.push(|| {
+                spot.fault(
+                    format!("{} must have one of the keys `{list}`, found none", spot.name()),
+                    format!("expected one of `{list}`"),
+                )
+            });
         }
         for entry in entries {
-            let fault = spot
-                .fault(format!("unknown key `{}`", entry.key), format!("expected one of `{list}`"));
-            faults.push(fault.at(entry.key_place).help(
-                match suggestion(&entry.key, names.iter().copied()) {
-                    Some(near) => format!("did you mean `{near}`?"),
-                    None => format!("known keys: {}", choices.join(", ")),
-                },
-            ));
+            faults.push_unknown(entry.key_place, || {
+                let label = format!("expected one of `{list}`");
+                let key = quoted(&entry.key);
+                let fault = spot.fault(format!("unknown key `{key}`"), label);
+                fault.at(entry.key_place).help(
+                    match suggestion(&entry.key, names.iter().copied()) {
+                        Some(near) => format!("did you mean `{near}`?"),
+                        None => format!("known keys: {}", choices.join(", ")),
+                    },
+                )
+            });
         }
     }
 
     /// Adds the faults against the alternative that has the fewest.
-    fn check_best(&self, leaves: &[&'s Value], spot: Spot<'_>, faults: &mut Vec<Fault>) {
-        let mut least: Option<Vec<Fault>> = None;
+    fn check_best(&self, leaves: &[&'s Value], spot: Spot<'_>, faults: &mut Faults) {
+        let mut least: Option<Faults> = None;
         for leaf in leaves {
-            let mut found = Vec::new();
+            let mut found = Faults::default();
             self.check(leaf, spot, &mut found);
-            if found.is_empty() {
+            if found.count() == 0 {
                 return;
             }
-            if least.as_ref().is_none_or(|least| found.len() < least.len()) {
+            if least.as_ref().is_none_or(|least| found.count() < least.count()) {
                 least = Some(found);
             }
         }
-        faults.extend(least.unwrap_or_default());
+        faults.append(least.unwrap_or_default());
     }
 }
 

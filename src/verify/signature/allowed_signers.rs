@@ -5,7 +5,7 @@
 //! ```
 
 use crate::bundle::Moment;
-use crate::document::{Diagnostic, Source};
+use crate::document::{Diagnostic, FaultList, Source};
 use ssh_key::PublicKey;
 use ssh_key::public::KeyData;
 use std::ops::Range;
@@ -76,8 +76,21 @@ fn matches(pattern: &[u8], text: &[u8]) -> bool {
 /// # Errors
 /// Every line that is not understood, and a file that names nobody.
 pub(super) fn read(source: &Source) -> Result<Vec<Signer>, Vec<Diagnostic>> {
-    let (mut signers, mut faults) = (Vec::new(), Vec::new());
+    let (mut signers, mut faults) = (Vec::new(), FaultList::default());
     let mut start = 0;
+    let is_told = |line: &&str| !line.is_empty() && !line.starts_with('#');
+    let told: Vec<&str> = source.text.lines().map(str::trim).filter(is_told).collect();
+    if !told.iter().any(|line| line.split_whitespace().any(looks_like_a_key)) {
+        // No line is shown where none is a key: it may be any file, named by a slip.
+        let found = if told.is_empty() { "none" } else { "text of which no line is one" };
+        return Err(vec![
+            Diagnostic::placeless(format!(
+                "`{}`: expected keys to trust, found {found}",
+                source.name
+            ))
+            .help("it must be an OpenSSH `allowed_signers` file or a minisign public key"),
+        ]);
+    }
     for line in source.text.split_inclusive('\n') {
         let begin = start + line.len() - line.trim_start().len();
         start += line.len();
@@ -94,13 +107,7 @@ pub(super) fn read(source: &Source) -> Result<Vec<Signer>, Vec<Diagnostic>> {
             ),
         }
     }
-    if signers.is_empty() && faults.is_empty() {
-        faults.push(
-            Diagnostic::placeless(format!("`{}` names no key to trust", source.name))
-                .help("it must be an OpenSSH `allowed_signers` file or a minisign public key"),
-        );
-    }
-    if faults.is_empty() { Ok(signers) } else { Err(faults) }
+    if faults.is_empty() { Ok(signers) } else { Err(faults.finish()) }
 }
 
 struct Misread {
@@ -301,8 +308,8 @@ mod tests {
         assert_eq!(told.matches(help).count(), 5);
         assert_eq!(
             read_text("# nobody\n").unwrap_err(),
-            "error: `signers` names no key to trust\n |\n = help: it must be an OpenSSH `allowed_signers` file or a \
-             minisign public key\n"
+            "error: `signers`: expected keys to trust, found none\n |\n = help: it must be an OpenSSH `allowed_signers` file \
+             or a minisign public key\n"
         );
     }
 }

@@ -32,17 +32,20 @@ pub(super) fn problem(text: &str) -> Option<String> {
 impl Key {
     /// Reads a public key file, or the key alone.
     pub(super) fn read(source: &Source) -> Result<Self, Vec<Diagnostic>> {
-        let text = &source.text;
-        let mut lines = text.lines().filter(|line| !line.trim().is_empty());
-        let written = lines.next_back().unwrap_or_default();
-        let start = text.find(written).unwrap_or_default();
+        let lines = source.text.lines().enumerate();
+        let (number, written) =
+            lines.filter(|(_, line)| !line.trim().is_empty()).last().unwrap_or_default();
+        // What is written there is not shown: it may be a secret.
         let fault = || {
-            let place = start..start + written.len();
-            vec![
-                Diagnostic::error(source, place, "a minisign key cannot be read")
-                    .label("expected 56 characters beginning with `RW`")
-                    .help("give the public key (minisign.pub), not the secret key and not a signature"),
-            ]
+            let message = format!(
+                "`{}`: expected a minisign public key, 56 characters beginning with `RW`, found {} characters that are none \
+                 on line {}",
+                source.name,
+                written.trim().chars().count(),
+                number + 1
+            );
+            let help = "give the public key (minisign.pub), not the secret key and not a signature";
+            vec![Diagnostic::placeless(message).help(help)]
         };
         let public = PublicKey::from_base64(written.trim()).map_err(|_| fault())?;
         let id = id(written.trim()).ok_or_else(fault)?;

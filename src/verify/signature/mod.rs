@@ -12,7 +12,7 @@ mod ssh;
 mod tests;
 
 use crate::bundle::{Archive, Fault, Form, Moment, Tree, format};
-use crate::document::{Diagnostic, Source};
+use crate::document::{Diagnostic, Source, secret};
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -38,6 +38,16 @@ impl Trust {
     /// # Errors
     /// Every line that is not understood.
     pub fn read(source: &Source) -> Result<Self, Vec<Diagnostic>> {
+        if let Some(kind) = secret(&source.text) {
+            return Err(vec![
+                Diagnostic::placeless(format!("`{}`: expected public keys, found {kind}", source.name))
+                    .help(format!(
+                        "give the public key, which lies beside it (`{}.pub`), in an `allowed_signers` file; nothing of the \
+                         private key was printed or kept",
+                        source.name
+                    )),
+            ]);
+        }
         let keys = if minisign::is_public_key(&source.text) {
             Keys::Minisign(minisign::Key::read(source)?)
         } else {

@@ -196,8 +196,8 @@ fn without_a_signature_or_a_bag_nobody_vouches() {
     let fault = Trust::read(&Source::new("k.pub", "untrusted comment: a\nRWQ\n")).unwrap_err();
     assert_eq!(
         fault[0].render(false),
-        "error: a minisign key cannot be read\n --> k.pub:2:1\n  |\n2 | RWQ\n  | ^^^ expected 56 characters beginning with \
-         `RW`\n  |\n  = help: give the public key (minisign.pub), not the secret key and not a signature\n"
+        "error: `k.pub`: expected a minisign public key, 56 characters beginning with `RW`, found 3 characters that are none on \
+         line 2\n |\n = help: give the public key (minisign.pub), not the secret key and not a signature\n"
     );
 }
 
@@ -207,4 +207,37 @@ fn signatures_find_their_place_in_a_bag() {
     let minisign = fixture!("minisign.minisig").as_bytes();
     assert_eq!(path_in_bag(minisign), Some("tagmanifest-sha256.txt.minisig"));
     assert_eq!(path_in_bag(b"hello"), None);
+}
+
+/// A throw-away key; nothing was ever signed with it.
+const PRIVATE: &str = "-----BEGIN OPENSSH PRIVATE KEY-----
+b3BlbnNzaC1rZXktdjEAAAAABG5vbmUAAAAEbm9uZQAAAAAAAAABAAAAMwAAAAtzc2gtZWQyNTUx
+-----END OPENSSH PRIVATE KEY-----
+";
+
+#[test]
+fn not_a_byte_of_a_private_key_is_shown() {
+    let refused = |text: &str| {
+        let faults = Trust::read(&Source::new("id", text)).unwrap_err();
+        crate::document::reports(&faults, false).concat()
+    };
+    let says = |kind: &str| {
+        format!(
+            "error: `id`: expected public keys, found {kind}\n |\n = help: give the public key, which lies beside it (`id.pub`), in \
+             an `allowed_signers` file; nothing of the private key was printed or kept\n"
+        )
+    };
+    assert_eq!(refused(PRIVATE), says("an OpenSSH private key"));
+    // Even where a key that is good stands above it.
+    assert_eq!(refused(&format!("{SIGNERS}{PRIVATE}")), says("an OpenSSH private key"));
+    assert_eq!(refused(&PRIVATE.replace("OPENSSH ", "RSA ")), says("a private key"));
+    assert_eq!(refused("PuTTY-User-Key-File-3: ssh-ed25519\n"), says("a PuTTY private key"));
+    let minisign = "untrusted comment: minisign encrypted secret key\nRWRTY0Iyabcdef\n";
+    assert_eq!(refused(minisign), says("a minisign secret key"));
+    // A secret of another kind: nothing that looks like a key, so nothing is shown.
+    assert_eq!(
+        refused("root:x:0:0\npassword hunter2\n"),
+        "error: `id`: expected keys to trust, found text of which no line is one\n |\n = help: it must be an OpenSSH \
+         `allowed_signers` file or a minisign public key\n"
+    );
 }

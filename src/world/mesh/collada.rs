@@ -33,7 +33,7 @@ pub(super) fn read(name: &str, bytes: &[u8]) -> Result<Vec<Part>, Vec<Diagnostic
         let found = format!("expected <COLLADA>, found <{}>", root.tag_name().name());
         let fault = faults.at(root, "not a COLLADA file").label(found);
         faults.push(fault);
-        return Err(faults.list);
+        return Err(faults.finish());
     }
     let base = upright(root, &mut faults);
     let ids = root.descendants().filter_map(|n| Some((n.attribute("id")?, n))).collect();
@@ -47,7 +47,7 @@ pub(super) fn read(name: &str, bytes: &[u8]) -> Result<Vec<Part>, Vec<Diagnostic
         let fault = faults.at(root, format!("cannot read the mesh: {problem}"));
         faults.push(fault);
     }
-    if faults.any_error() { Err(faults.list) } else { Ok(parts) }
+    if faults.any_error() { Err(faults.finish()) } else { Ok(parts) }
 }
 
 /// From the file's unit and axes to metres with z up.

@@ -33,7 +33,7 @@ pub(super) fn read(
             Err(problems) => {
                 // A file that many collisions name is told of once.
                 for problem in problems {
-                    if !faults.list.contains(problem) {
+                    if !faults.kept().contains(problem) {
                         faults.push(problem.clone());
                     }
                 }

@@ -75,7 +75,7 @@ pub fn read_with(source: &Source, models: &mut dyn Models) -> Result<World, Vec<
         }
     }
     if faults.any_error() {
-        return Err(faults.list);
+        return Err(faults.finish());
     }
     Ok(World {
         name: stem(&source.name).to_owned(),
@@ -85,7 +85,7 @@ pub fn read_with(source: &Source, models: &mut dyn Models) -> Result<World, Vec<
         starts: BTreeMap::new(),
         goals: BTreeMap::new(),
         warnings: faults
-            .list
+            .finish()
             .iter()
             .filter(|f| f.severity == Severity::Warning)
             .map(said)

@@ -1,0 +1,220 @@
+//! Inputs that are no files, files of another kind, secrets, names that steer a terminal, and interrupts: an error at once, in
+//! little memory, and nothing of what was read by a slip is shown.
+
+#[path = "adversary/sandbox.rs"]
+mod sandbox;
+
+use sandbox::{Answer, Sandbox};
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+/// A study of two cells of three trials of 20 simulated seconds.
+const STUDY: &str = "
+reenact: 1
+name: tiny
+title: A tiny study
+license: CC-BY-4.0
+study: prior-map
+seed: 7
+trials: 3
+robot: kobuki.urdf
+world: {file: basic.yaml, layers: [walls]}
+start: {x-m: 3, y-m: 2, heading-deg: 0}
+factors:
+  prior: [none, floor-plan]
+prior-maps:
+  floor-plan: {floor-plan-of: world}
+parameters:
+  mission: {time-limit-s: 20}
+";
+
+/// The longest (s) that anything here may take, built without optimisation and on a machine that is busy.
+const MOST_SECONDS: f64 = 60.0;
+
+fn with_study() -> Sandbox {
+    let sandbox = Sandbox::new();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for file in ["robots/kobuki.urdf", "worlds/basic.yaml"] {
+        let name = Path::new(file).file_name().unwrap().to_str().unwrap();
+        fs::copy(root.join(file), sandbox.path(name)).unwrap();
+    }
+    fs::write(sandbox.path("tiny.yaml"), STUDY).unwrap();
+    sandbox
+}
+
+/// Asserts that `answer` is a refusal of a request that was not understood, and quick; gives what it said.
+#[track_caller]
+fn refused(answer: &Answer) -> &str {
+    assert_eq!((answer.stdout.as_str(), answer.code), ("", Some(2)), "{answer:?}");
+    assert!(answer.seconds < MOST_SECONDS, "{} s", answer.seconds);
+    &answer.stderr
+}
+
+#[test]
+fn of_two_hundred_thousand_faults_a_hundred_are_told_and_the_others_counted() {
+    let sandbox = with_study();
+    let unknown: String = (0..200_000).map(|i| format!("k{i}: 1\n")).collect();
+    fs::write(sandbox.path("tiny.yaml"), format!("{STUDY}{unknown}")).unwrap();
+    let answer = sandbox.reenact(&["check", "tiny.yaml"]);
+    let told = refused(&answer);
+    assert_eq!(told.matches("error: unknown key `k").count(), 100);
+    let (_, end) = told.split_once("error: unknown key `k99`\n").unwrap();
+    let (_, end) = end.split_once("\n\n").unwrap();
+    assert_eq!(
+        end,
+        "error: 199900 more errors like these\n |\n = help: mend those above first: many may have one cause\n\n\
+         error: tiny.yaml: 200000 errors\n"
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn inputs_that_are_no_files_are_refused_before_they_are_opened() {
+    let sandbox = with_study();
+    let pipe = sandbox.path("pipe");
+    assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    fs::create_dir(sandbox.path("folder")).unwrap();
+    std::os::unix::fs::symlink("circle", sandbox.path("circle")).unwrap();
+    let huge = fs::File::create(sandbox.path("huge.urdf")).unwrap();
+    huge.set_len(1 << 40).unwrap();
+    for (robot, found) in [
+        ("/dev/zero", "expected a file, found a device"),
+        ("pipe", "expected a file, found a pipe"),
+        ("folder", "expected a file, found a folder"),
+        ("circle", "expected a file, found a symbolic link that leads nowhere"),
+        ("huge.urdf", "it is too large: expected at most 67108864 bytes, found 1099511627776"),
+    ] {
+        let text = STUDY.replace("kobuki.urdf", robot);
+        fs::write(sandbox.path("tiny.yaml"), text).unwrap();
+        let answer = sandbox.reenact(&["check", "tiny.yaml"]);
+        let carets = "^".repeat(robot.len());
+        let says = format!(
+            "error: cannot read `{robot}`\n --> tiny.yaml:9:8\n  |\n9 | robot: {robot}\n  |        {carets} {found}\n  |\n  = \
+             help: paths are relative to the file they are written in\n\nerror: tiny.yaml: 1 error\n"
+        );
+        assert_eq!(refused(&answer), says);
+        // The same where the command line names it.
+        for words in [
+            &["check", robot][..],
+            &["show", robot],
+            &["solve-cmdp", robot],
+            &["verify", "tiny.yaml", "--trust", robot],
+        ] {
+            let answer = sandbox.reenact(words);
+            assert!(refused(&answer).starts_with("error: cannot read `"), "{words:?}: {answer:?}");
+        }
+    }
+}
+
+/// A path is easily mistaken, and what stands in the file may be nobody's business.
+#[test]
+fn nothing_is_shown_of_files_of_another_kind() {
+    let sandbox = with_study();
+    let secrets = [
+        "root:hunter2:0:0:root:/root:/bin/bash\n",
+        "hunter2\n",
+        "[hunter2, hunter2]\n",
+        "\t%hunter2\n@hunter2: {\n",
+        "-----BEGIN OPENSSH PRIVATE KEY-----\nhunter2AAAA\n-----END OPENSSH PRIVATE KEY-----\n",
+        "-----BEGIN RSA PRIVATE KEY-----\nProc-Type: 4,ENCRYPTED\n\nhunter2\n-----END RSA PRIVATE KEY-----\n",
+        "untrusted comment: minisign encrypted secret key\nRWRTY0IyHunter2hunter2\n",
+        "PuTTY-User-Key-File-3: ssh-ed25519\nComment: hunter2\nPrivate-Lines: 1\nhunter2\n",
+    ];
+    let as_part = |part: &str| match part {
+        "robot" => STUDY.replace("kobuki.urdf", "secret.urdf"),
+        "world" => STUDY.replace("{file: basic.yaml, layers: [walls]}", "{file: secret}"),
+        "calibration" => format!("{STUDY}sensitivity: secret\n"),
+        _ => format!(
+            "{STUDY}tables:\n  - id: t\n    title: t\n    coverage-table: {{metric: distance-m, at: [50], by: prior, \
+             baseline: none}}\n    published: secret\n"
+        ),
+    };
+    for secret in secrets {
+        for name in ["secret", "secret.urdf", "secret.lock"] {
+            fs::write(sandbox.path(name), secret).unwrap();
+        }
+        for part in ["robot", "world", "calibration", "table"] {
+            fs::write(sandbox.path("part.yaml"), as_part(part)).unwrap();
+            let answer = sandbox.reenact(&["check", "part.yaml"]);
+            let told = refused(&answer).to_lowercase();
+            assert!(told.contains("secret"), "{part}: the file is named: {told}");
+            assert!(!told.contains("hunter2"), "{part}: {told}");
+        }
+        for words in [
+            &["check", "secret"][..],
+            &["show", "secret"],
+            &["solve-cmdp", "secret"],
+            &["diff", "secret.lock", "secret.lock"],
+            &["verify", "tiny.yaml", "--trust", "secret"],
+        ] {
+            let answer = sandbox.reenact(words);
+            let told = refused(&answer).to_lowercase();
+            assert!(told.contains("secret"), "{words:?}: the file is named: {told}");
+            assert!(!told.contains("hunter2"), "{words:?}: {told}");
+        }
+    }
+}
+
+#[test]
+fn a_private_key_is_no_key_to_trust_and_none_of_it_is_printed() {
+    let sandbox = Sandbox::new();
+    let key =
+        "-----BEGIN OPENSSH PRIVATE KEY-----\nb3BlbnNzaC1rZXk\n-----END OPENSSH PRIVATE KEY-----\n";
+    fs::write(sandbox.path("id_ed25519"), key).unwrap();
+    let answer = sandbox.reenact(&["verify", "bundle", "--trust", "id_ed25519"]);
+    assert_eq!(
+        refused(&answer),
+        "error: `id_ed25519`: expected public keys, found an OpenSSH private key\n |\n = help: give the public key, which \
+         lies beside it (`id_ed25519.pub`), in an `allowed_signers` file; nothing of the private key was printed or kept\n"
+    );
+}
+
+#[test]
+fn what_a_manifest_calls_itself_steers_no_terminal() {
+    let sandbox = with_study();
+    let title = "title: \"A \\e[2J study \\u202e of \\x9b31m nothing\"";
+    fs::write(sandbox.path("tiny.yaml"), STUDY.replace("title: A tiny study", title)).unwrap();
+    let words = ["run", "tiny.yaml", "--no-cache", "--only", "prior=none", "--trials", "1"];
+    let answer = sandbox.reenact_that_writes(&words);
+    assert_eq!((answer.stderr.as_str(), answer.code), ("", Some(0)), "{answer:?}");
+    let first = answer.stdout.lines().next().unwrap();
+    assert_eq!(first, "A \\u{1b}[2J study \\u{202e} of \\u{9b}31m nothing");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_store_whose_name_is_no_text_is_told() {
+    use std::os::unix::ffi::OsStrExt as _;
+    let sandbox = with_study();
+    let output = Command::new(assert_cmd::cargo::cargo_bin!("reenact"))
+        .args(["run", "tiny.yaml"])
+        .current_dir(sandbox.path("."))
+        .env("REENACT_STORE", std::ffi::OsStr::from_bytes(b"st\xffre"))
+        .output()
+        .unwrap();
+    assert_eq!(
+        (String::from_utf8(output.stderr).unwrap().as_str(), output.status.code()),
+        (
+            "error: REENACT_STORE: expected a path in UTF-8, found `st\u{fffd}re`, which is none\n",
+            Some(2)
+        )
+    );
+}
+
+#[test]
+fn threads_that_nobody_needs_are_not_started() {
+    let sandbox = with_study();
+    let words = ["run", "tiny.yaml", "--no-cache", "--trials", "1", "--jobs", "100000"];
+    let answer = sandbox.reenact_that_writes(&words);
+    assert_eq!(answer.code, Some(0), "{answer:?}");
+    let processors = std::thread::available_parallelism().map_or(1, usize::from);
+    let most = (4 * processors).max(64);
+    let s = if processors == 1 { "" } else { "s" };
+    assert_eq!(
+        answer.stderr,
+        format!(
+            "note: --jobs 100000: {most} threads are started, the most that {processors} processor{s} can use\n"
+        )
+    );
+}
