@@ -5,7 +5,7 @@ use crate::digest::{Sha256Digest, TrialKey};
 use crate::runner::{StoreError, TrialStore};
 use crate::studies::{Outcome, TrialRecord};
 use fs_err as fs;
-use std::io::{self, Write as _};
+use std::io::{self, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 
 /// Finished trials in a directory: `ab/<key>.json`, one file each, safe to share between processes.
@@ -170,6 +170,24 @@ fn sync_folder(directory: &Path) -> io::Result<()> {
 /// Where it cannot be read, naming it.
 pub fn read(path: &Path) -> io::Result<Vec<u8>> {
     fs::read(path)
+}
+
+/// Reads no more than the first `most` bytes of a regular file.
+///
+/// # Errors
+/// Where it cannot be read, naming it.
+pub fn read_start(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    let metadata = fs::metadata(path)?;
+    if metadata.is_dir() {
+        return Err(io::ErrorKind::IsADirectory.into());
+    }
+    if !metadata.is_file() {
+        // Reading it could take for ever.
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "it is a device or a pipe"));
+    }
+    let mut bytes = Vec::new();
+    fs::File::open(path)?.take(most).read_to_end(&mut bytes)?;
+    Ok(bytes)
 }
 
 /// Opens a bundle: a zip, or a folder that holds a bag or a crate. What is wrong with it is data, not an error.

@@ -18,6 +18,7 @@ mod crate_entities;
 mod crate_metadata;
 mod crate_people;
 mod data_package;
+mod departure;
 mod fault;
 pub mod figures;
 pub mod format;
@@ -38,6 +39,7 @@ pub use capsule::Capsule;
 pub use content::{
     Author, BundleContent, Circumstance, Citation, SealedCondition, SealedInput, seal_inputs,
 };
+pub use departure::{Departure, shell_word};
 pub use fault::{Fault, visible};
 pub use moment::Moment;
 pub use reader::{Bundle, OpenError};

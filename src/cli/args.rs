@@ -26,6 +26,8 @@ pub(super) enum Command {
     Plan(PlanArgs),
     /// Check a bundle: safe, intact, coherent, derived, re-executed, replicated
     Verify(VerifyArgs),
+    /// Put a signature into an attestation that `verify` wrote
+    Attest(AttestArgs),
     /// Tell what changed between two bundles or locks
     Diff(DiffArgs),
     /// Write down what a manifest's run yields, so that drift is found
@@ -155,7 +157,7 @@ pub(super) struct VerifyArgs {
     /// fresh seeds
     #[arg(long, value_name = "0..6", default_value_t = 3)]
     pub(super) level: u8,
-    /// Trials to draw at level 4
+    /// Trials to draw at level 4, 1 or more
     #[arg(long, value_name = "N", default_value_t = 59)]
     pub(super) sample: usize,
     /// The reviewer's seed for drawing them, and the experiment's at level 6 [default: a fresh one, printed]
@@ -167,15 +169,28 @@ pub(super) struct VerifyArgs {
     /// A signature that lies beside the bundle rather than in it
     #[arg(long, value_name = "FILE", requires = "trust")]
     pub(super) signature: Option<PathBuf>,
-    /// Where the bundle holds, write a small record of that, ready to be signed and published
+    /// Where the bundle holds, write an attestation of that (an in-toto Statement in a DSSE envelope), and beside it, as
+    /// FILE.pae, the bytes to sign
     #[arg(long, value_name = "FILE")]
     pub(super) attest: Option<PathBuf>,
+    /// An attestation of this bundle, which one of the trusted keys must have signed
+    #[arg(long, value_name = "FILE", requires = "trust")]
+    pub(super) attestation: Option<PathBuf>,
     /// Threads for re-execution [default: all processors]
     #[arg(short, long, value_name = "N")]
     pub(super) jobs: Option<usize>,
     /// How the answer is written
     #[arg(long, value_enum, default_value = "human")]
     pub(super) format: Format,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct AttestArgs {
+    /// The attestation, as `verify --attest` wrote it; the signature is put into this file
+    pub(super) attestation: PathBuf,
+    /// A signature of FILE.pae by `ssh-keygen -Y sign -n reenact` or minisign
+    #[arg(long, value_name = "FILE")]
+    pub(super) signature: PathBuf,
 }
 
 #[derive(Debug, Args)]
@@ -193,6 +208,9 @@ pub(super) struct DiffArgs {
     /// Write the answer to this file
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
+    /// Show a bundle that fails its check all the same, under a banner
+    #[arg(long)]
+    pub(super) unchecked: bool,
 }
 
 /// How differences are written.
@@ -241,9 +259,13 @@ pub(super) struct ReportArgs {
     /// The page to write [default: the bundle's name with .html, in this folder]
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
+    /// Show a bundle that fails its check all the same, under a banner
+    #[arg(long)]
+    pub(super) unchecked: bool,
 }
 
 #[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub(super) struct ExportArgs {
     /// The bundle
     pub(super) bundle: PathBuf,
@@ -262,6 +284,9 @@ pub(super) struct ExportArgs {
     /// Where to write it [default: this folder]
     #[arg(short, long, value_name = "DIR", default_value = ".")]
     pub(super) out: PathBuf,
+    /// Write a bundle that fails its check all the same
+    #[arg(long)]
+    pub(super) unchecked: bool,
 }
 
 #[derive(Debug, Args)]
@@ -301,6 +326,9 @@ pub(super) struct ReplayArgs {
     /// Which candidate of that choice, from 1 [default: the chosen one]
     #[arg(long, value_name = "CANDIDATE", requires = "decision")]
     pub(super) gain: Option<usize>,
+    /// Show a bundle that fails its check all the same, under a banner
+    #[arg(long)]
+    pub(super) unchecked: bool,
 }
 
 /// A rate in Hz.

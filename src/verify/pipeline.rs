@@ -28,7 +28,10 @@ pub trait Replanned {
     fn content(&self) -> Result<BundleContent, String>;
 
     /// Executes the trials at `indices` of the plan again, never from a store; their record lines in that order.
-    fn execute(&self, indices: &[usize]) -> Vec<String>;
+    ///
+    /// # Errors
+    /// Where this program cannot execute them, in words.
+    fn execute(&self, indices: &[usize]) -> Result<Vec<String>, String>;
 
     /// Runs again the explorations whose maps the study starts from, and tells of every sealed map that came out otherwise.
     fn explore_again(&self) -> Vec<Fault> {
