@@ -47,8 +47,8 @@ reenact verify {stem}.zip                # levels 0 to 3: seconds
 reenact verify {stem}.zip --level 5      # every trial again, bit for bit
 ```
 
-Results digest: `sha256:{digest}`. Checksums show that nothing changed since they were made; who made them, only a signature
-shows.
+Results digest: `sha256:{digest}`.
+Checksums show that nothing changed since they were made; who made them, only a signature shows.
 
 {again}
 ## What is in it
