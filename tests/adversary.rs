@@ -7,8 +7,12 @@
 
 #[path = "adversary/archives.rs"]
 mod archives;
+#[path = "adversary/attested.rs"]
+mod attested;
 #[path = "adversary/case.rs"]
 mod case;
+#[path = "adversary/checked.rs"]
+mod checked;
 #[path = "adversary/files.rs"]
 mod files;
 #[path = "adversary/forged.rs"]
@@ -186,8 +190,9 @@ fn no_command_is_led_out_of_its_folder() {
     forger::reseal(&mut tree);
     let sandbox = Sandbox::new();
     fs::write(sandbox.path("bundle"), archive::write(&tree, "tiny", Form::Bag)).unwrap();
-    let says = "error: bundle: the bundle is damaged: data/study.resolved.json: expected a name of A-Z a-z 0-9 . _ - at \
-                /name, found a path that climbs out of its folder; `reenact verify` tells everything\n";
+    let says = "error: bundle: the bundle is not what it says: reached level 1 (fixity) of level 3 (derived)\nerror at level 2: \
+                data/study.resolved.json: expected a name of A-Z a-z 0-9 . _ - at /name, found a path that climbs out of its \
+                folder\n`reenact verify bundle` tells everything\n";
     for words in [
         &["export", "bundle", "--dir"][..],
         &["export", "bundle", "--flat"],
@@ -204,8 +209,9 @@ fn no_command_is_led_out_of_its_folder() {
         raw_zip::Entry::stored("bag/../../evil", "evil"),
     ];
     fs::write(sandbox.path("bundle"), raw_zip::zip(&slip)).unwrap();
-    let says = "error: bundle: 1 fault (bag/../../evil: expected a safe relative path, found a path that climbs out of its \
-                folder); `reenact verify` tells everything\n";
+    let says = "error: bundle: the bundle is not what it says: reached no level of level 3 (derived)\nerror at level 0: \
+                bag/../../evil: expected a safe relative path, found a path that climbs out of its folder\n`reenact verify \
+                bundle` tells everything\n";
     let answer = sandbox.reenact(&["export", "bundle", "--dir"]);
     assert_eq!((answer.stderr.as_str(), answer.code), (says, Some(1)));
 }

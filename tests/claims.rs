@@ -91,7 +91,7 @@ Claims about the machine (not among the results)
     assert!(measured.contains(told), "{measured}");
     let bundle = measured.lines().last().unwrap();
     let exported = reenact(folder, &["export", bundle, "--dir", "-o", "measured"], false);
-    let exported = exported.trim();
+    let exported = exported.lines().last().unwrap();
     let results = sealed(folder, exported, "results/claims.json").unwrap();
     assert!(results.contains("\"id\":\"P1\"") && !results.contains("P21"), "{results}");
     let verdicts = sealed(folder, exported, "circumstances/claims.json").unwrap();
@@ -131,8 +131,9 @@ Claims about the machine (not among the results)
     assert_eq!(digest(&pinned), digest(&measured));
     let bundle = pinned.lines().last().unwrap();
     let exported = reenact(folder, &["export", bundle, "--dir", "-o", "pinned"], true);
-    assert_eq!(sealed(folder, exported.trim(), "circumstances/wall-times.csv"), None);
-    assert_eq!(sealed(folder, exported.trim(), "results/claims.json"), Some(results));
+    let exported = exported.lines().last().unwrap();
+    assert_eq!(sealed(folder, exported, "circumstances/wall-times.csv"), None);
+    assert_eq!(sealed(folder, exported, "results/claims.json"), Some(results));
 }
 
 #[test]

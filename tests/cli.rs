@@ -142,13 +142,16 @@ fn a_bundle_verifies_to_the_top_and_replays_to_the_same_record() {
     assert_eq!(
         answer,
         Answer {
-            stdout: "none/0: the re-enacted record equals the archived one\n".into(),
+            stdout: "checked to level 3 (derived): the bundle is what it says\nnone/0: the re-enacted record equals the archived \
+                     one\n"
+                .into(),
             stderr: "wrote replay.html\nwrote still.svg\n".into(),
             code: 0,
         }
     );
     let answer = desk.run(&["report", &bundle, "-o", "report.html"]);
-    assert_eq!((answer.stdout.as_str(), answer.code), ("report.html\n", 0));
+    let says = "checked to level 3 (derived): the bundle is what it says\nreport.html\n";
+    assert_eq!((answer.stdout.as_str(), answer.code), (says, 0));
     for (page, holds) in
         [("replay.html", "<canvas"), ("report.html", "Distance travelled"), ("still.svg", "<svg")]
     {
@@ -161,7 +164,8 @@ fn a_bundle_verifies_to_the_top_and_replays_to_the_same_record() {
 fn a_changed_number_is_found_and_named() {
     let desk = Desk::new();
     let bundle = desk.bundle();
-    let folder = desk.run(&["export", &bundle, "--dir", "-o", "out"]).stdout.trim().to_owned();
+    let exported = desk.run(&["export", &bundle, "--dir", "-o", "out"]).stdout;
+    let folder = exported.lines().last().unwrap().to_owned();
     let table = desk.path(&folder).join("data/results/trials.csv");
     let text = std::fs::read_to_string(&table).unwrap();
     std::fs::write(&table, text.replace("explored", "stuck")).unwrap();

@@ -258,13 +258,21 @@ fn a_parameter_that_changed_is_named_by_probe_and_run_and_the_bundles_are_told_a
     assert_eq!(desk.run(&["diff", old, old]).code, 0);
     let answer = desk.run(&["diff", old, new]);
     assert_eq!((answer.stderr.as_str(), answer.code), ("", 1));
+    let line = "checked to level 3 (derived): the bundle is what it says";
+    assert!(
+        answer.stdout.starts_with(&format!("{old}: {line}\n{new}: {line}\n")),
+        "{}",
+        answer.stdout
+    );
     assert!(answer.stdout.contains("\nno two trials have the same key "), "{}", answer.stdout);
     let json = desk.run(&["diff", old, new, "--format", "json"]);
     assert_eq!((json.stdout.lines().count(), json.code), (1, 1));
-    let line: serde_json::Value = serde_json::from_str(&json.stdout).unwrap();
-    assert_eq!(line["matching"], serde_json::json!({"by-key": 0, "by-number": 1}));
+    assert_eq!(json.stderr, format!("{old}: {line}\n{new}: {line}\n"), "stdout is for programs");
+    let told: serde_json::Value = serde_json::from_str(&json.stdout).unwrap();
+    assert_eq!(told["matching"], serde_json::json!({"by-key": 0, "by-number": 1}));
     let answer = desk.run(&["diff", old, new, "--format", "html", "-o", "d.html"]);
-    assert_eq!((answer.stdout.as_str(), answer.code), ("d.html\n", 1));
+    let says = format!("{old}: {line}\n{new}: {line}\nd.html\n");
+    assert_eq!((answer.stdout, answer.code), (says, 1));
     assert!(desk.read("d.html").contains("<h1>What changed</h1>"));
     let answer = desk.run(&["diff", old, "demo/demo.lock"]);
     assert_eq!(answer.code, 1);

@@ -103,7 +103,7 @@ fn a_bundle_signed_with_openssh_verifies_by_its_allowed_signers() {
     let signed =
         desk.run(&["export", &bundle, "--signature", "tagmanifest-sha256.txt.sig", "-o", "signed"]);
     assert_eq!((signed.stderr.as_str(), signed.code), ("", 0));
-    let signed = signed.stdout.trim_end();
+    let signed = signed.stdout.lines().last().unwrap();
     let inside = desk.run(&["verify", "--level", "2", "--trust", "signers", signed]);
     assert_eq!(inside.code, 0, "{inside:?}");
     assert!(
@@ -229,7 +229,8 @@ fn a_study_with_its_engine_sealed_in_replicates_and_is_attested() {
         "a.json",
     ];
     let answer = desk.run(&words);
-    assert_eq!((answer.stderr.as_str(), answer.code), ("wrote a.json\n", 0), "{}", answer.stdout);
+    let wrote = "wrote a.json, unsigned, and a.json.pae, the bytes to sign\n";
+    assert_eq!((answer.stderr.as_str(), answer.code), (wrote, 0), "{}", answer.stdout);
     let says = "run again with the experiment's seed 18446744073709551615: of 1 claims 1 have the same verdict\n  S1: supported (";
     assert!(answer.stdout.contains(says), "{}", answer.stdout);
     assert!(
@@ -239,15 +240,41 @@ fn a_study_with_its_engine_sealed_in_replicates_and_is_attested() {
         "{}",
         answer.stdout
     );
-    let attested: serde_json::Value = serde_json::from_str(&desk.read("a.json")).unwrap();
+    let envelope: serde_json::Value = serde_json::from_str(&desk.read("a.json")).unwrap();
+    assert_eq!(envelope["signatures"], serde_json::json!([]));
+    let to_sign = desk.read("a.json.pae");
+    let (_, payload) = to_sign.split_once(" {").unwrap();
+    let statement: serde_json::Value = serde_json::from_str(&format!("{{{payload}")).unwrap();
+    let attested = &statement["predicate"];
     assert_eq!(
         (attested["level"].as_u64(), attested["date"].as_str()),
-        (Some(6), Some("2020-09-13T12:26:40+00:00"))
+        (Some(6), Some("2020-09-13T12:26:40Z"))
     );
+    assert_eq!(attested["replication"]["seed"], "18446744073709551615");
     let bytes = std::fs::read(desk.path(&bundle)).unwrap();
     let tree = archive::read(&bytes, &Limits::default()).unwrap().tree;
     let id = format!("sha256:{}", Sha256Digest::of(&tree["tagmanifest-sha256.txt"]));
-    assert_eq!(attested["bundle-id"], id);
+    assert_eq!(attested["bundleId"], id);
+
+    // As docs/verification.md tells reviewers and readers, with a key made for the occasion.
+    if desk.ssh_keygen(&["-q", "-t", "ed25519", "-N", "", "-C", "reviewer", "-f", "reviewer"]) {
+        desk.ssh_keygen(&["-Y", "sign", "-f", "reviewer", "-n", "reenact", "a.json.pae"]);
+        let signed = desk.run(&["attest", "a.json", "--signature", "a.json.pae.sig"]);
+        assert_eq!((signed.stderr.as_str(), signed.code), ("", 0));
+        assert!(signed.stdout.starts_with("a.json: signed with the key SHA256:"), "{signed:?}");
+        let line = format!("r@example.org namespaces=\"reenact\" {}", desk.read("reviewer.pub"));
+        std::fs::write(desk.path("signers"), line).unwrap();
+        let words = ["verify", &bundle, "--trust", "signers", "--attestation", "a.json"];
+        let read = desk.run(&words);
+        assert_eq!((read.stderr.as_str(), read.code), ("", 0), "{read:?}");
+        let says = "attested by r@example.org with the key SHA256:";
+        assert!(
+            read.stdout.contains(says)
+                && read
+                    .stdout
+                    .contains(": level 6 (replicated) held on 2020-09-13T12:26:40Z, by reenact ")
+        );
+    }
     let readme = String::from_utf8(tree["data/README.md"].clone()).unwrap();
     let install =
         concat!("\ncargo install reenact --version ", env!("CARGO_PKG_VERSION"), " --locked\n");

@@ -19,6 +19,7 @@ mod crate_entities;
 mod crate_metadata;
 mod crate_people;
 mod data_package;
+mod departure;
 mod fault;
 pub mod figures;
 pub mod format;
@@ -41,6 +42,7 @@ pub use class::{Class, class_of, is_tag_file, table_in_markdown};
 pub use content::{
     Author, BundleContent, Circumstance, Citation, SealedCondition, SealedInput, seal_inputs,
 };
+pub use departure::{Departure, shell_word};
 pub use fault::{Fault, visible};
 pub use moment::Moment;
 pub use reader::{Bundle, OpenError};

@@ -1,6 +1,6 @@
 //! `README.md` and `LICENSE.txt`: what a stranger reads first. They hold no number that the results hold too.
 
-use super::{Additions, BundleContent, Circumstance, format};
+use super::{Additions, BundleContent, Circumstance, Departure, format};
 use crate::digest::ResultsDigest;
 use crate::table::{Column, Kind};
 use std::collections::BTreeSet;
@@ -27,6 +27,7 @@ pub(super) fn readme(
         }
         text.push('\n');
     }
+    let again = again(content);
     text.push_str(&format!(
         "
 ## Check it
@@ -46,9 +47,10 @@ reenact verify {stem}.zip                # levels 0 to 3: seconds
 reenact verify {stem}.zip --level 5      # every trial again, bit for bit
 ```
 
-Results digest: `sha256:{digest}`. Whoever runs `study.yaml` with the same engine gets the same digest.
+Results digest: `sha256:{digest}`.
 Checksums show that nothing changed since they were made; who made them, only a signature shows.
 
+{again}
 ## What is in it
 
 | path | holds |
@@ -95,6 +97,39 @@ The crates that it needs are named in its `Cargo.lock`, each with its digest; th
     }
     text.push_str(&reading(content));
     text + &later
+}
+
+/// The command that gives the results digest again, wherever the bundle is unpacked.
+fn again(content: &BundleContent) -> String {
+    let departure = Departure::of(&content.resolved, content.partial);
+    let mut text = "## Run it again\n\n".to_owned();
+    if let Some(words) = departure.in_words() {
+        // Whatever could end the quotation stays where it is data.
+        let told = if words.contains('`') {
+            "`study.resolved.json` tells what was set and which part was run.".to_owned()
+        } else {
+            format!("It was run with `{words}`.")
+        };
+        text.push_str(&format!("This is not `study.yaml` as it stands. {told}\n\n"));
+    }
+    match departure.command() {
+        Some(command) => text.push_str(&format!(
+            "Whoever runs this in this folder, with the same engine, gets the same results digest:
+
+```
+{command} --out ../../again
+```
+
+Inputs are then those in `inputs/`, whatever paths the manifest names them by; the new bundle lands outside of this one.
+"
+        )),
+        None => text.push_str(
+            "What was set on the command line cannot stand on a line; it is under `study`, `overrides` in `study.resolved.json`.
+`reenact run study.yaml --out ../../again` in this folder, with a `--set` for each, gives the same results digest.
+",
+        ),
+    }
+    text
 }
 
 /// Three lines that read the trials with what people analyse data with; nothing where there are no trials to read.

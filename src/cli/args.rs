@@ -38,6 +38,8 @@ pub(super) enum Command {
     Plan(PlanArgs),
     /// Check a bundle: safe, intact, coherent, derived, re-executed, replicated
     Verify(VerifyArgs),
+    /// Put a signature into an attestation that `verify` wrote
+    Attest(AttestArgs),
     /// Tell what changed between two bundles or locks
     Diff(DiffArgs),
     /// Write down what a manifest's run yields, so that drift is found
@@ -167,7 +169,7 @@ pub(super) struct VerifyArgs {
     /// fresh seeds
     #[arg(long, value_name = "0..6", default_value_t = 3)]
     pub(super) level: u8,
-    /// Trials to draw at level 4
+    /// Trials to draw at level 4, 1 or more
     #[arg(long, value_name = "N", default_value_t = 59)]
     pub(super) sample: usize,
     /// Rows of the robustness table (`sensitivity:`) to run again from level 4 on, each a run of the study at another value
@@ -183,15 +185,28 @@ pub(super) struct VerifyArgs {
     /// A signature that lies beside the bundle rather than in it
     #[arg(long, value_name = "FILE", requires = "trust")]
     pub(super) signature: Option<PathBuf>,
-    /// Where the bundle holds, write a small record of that, ready to be signed and published
+    /// Where the bundle holds, write an attestation of that (an in-toto Statement in a DSSE envelope), and beside it, as
+    /// FILE.pae, the bytes to sign
     #[arg(long, value_name = "FILE")]
     pub(super) attest: Option<PathBuf>,
+    /// An attestation of this bundle, which one of the trusted keys must have signed
+    #[arg(long, value_name = "FILE", requires = "trust")]
+    pub(super) attestation: Option<PathBuf>,
     /// Threads for re-execution [default: all processors]
     #[arg(short, long, value_name = "N")]
     pub(super) jobs: Option<usize>,
     /// How the answer is written
     #[arg(long, value_enum, default_value = "human")]
     pub(super) format: Format,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct AttestArgs {
+    /// The attestation, as `verify --attest` wrote it; the signature is put into this file
+    pub(super) attestation: PathBuf,
+    /// A signature of FILE.pae by `ssh-keygen -Y sign -n reenact` or minisign
+    #[arg(long, value_name = "FILE")]
+    pub(super) signature: PathBuf,
 }
 
 #[derive(Debug, Args)]
@@ -209,6 +224,9 @@ pub(super) struct DiffArgs {
     /// Write the answer to this file
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
+    /// Show a bundle that fails its check all the same, under a banner
+    #[arg(long)]
+    pub(super) unchecked: bool,
 }
 
 /// How differences are written.
@@ -257,9 +275,13 @@ pub(super) struct ReportArgs {
     /// The page to write [default: the bundle's name with .html, in this folder]
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
+    /// Show a bundle that fails its check all the same, under a banner
+    #[arg(long)]
+    pub(super) unchecked: bool,
 }
 
 #[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub(super) struct ExportArgs {
     /// The bundle
     pub(super) bundle: PathBuf,
@@ -278,6 +300,9 @@ pub(super) struct ExportArgs {
     /// Where to write it [default: this folder]
     #[arg(short, long, value_name = "DIR", default_value = ".")]
     pub(super) out: PathBuf,
+    /// Write a bundle that fails its check all the same
+    #[arg(long)]
+    pub(super) unchecked: bool,
 }
 
 #[derive(Debug, Args)]
@@ -317,6 +342,9 @@ pub(super) struct ReplayArgs {
     /// Which candidate of that choice, from 1 [default: the chosen one]
     #[arg(long, value_name = "CANDIDATE", requires = "decision")]
     pub(super) gain: Option<usize>,
+    /// Show a bundle that fails its check all the same, under a banner
+    #[arg(long)]
+    pub(super) unchecked: bool,
 }
 
 /// A rate in Hz.

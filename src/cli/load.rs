@@ -3,15 +3,17 @@
 use super::args::SelectArgs;
 use super::calibrate::Calibrator;
 use super::exit::Failure;
-use super::terminal::{Terminal, counted};
-use crate::bundle::Bundle;
+use super::terminal::Terminal;
 use crate::bundle::archive::{Archive, Limits};
+use crate::bundle::{Resolved, format, names};
 use crate::document::{Severity, Source};
 use crate::manifest::{self, Experiment, Inputs, Measured, WrittenIn};
 use crate::plan::{Plan, Selection};
 use crate::store::{self, reason};
 use crate::studies::TrialSpec;
+use crate::verify::LONGEST_ATTESTATION;
 use crate::world::mesh;
+use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
@@ -37,15 +39,23 @@ pub(super) fn manifest(
 ) -> Result<Loaded, Failure> {
     let source = text(manifest)?;
     let folder = manifest.parent().unwrap_or(Path::new("")).to_owned();
-    let (found, mut faults) =
-        match manifest::resolve(&source, set, &Folder { path: folder, calibrator, terminal }) {
-            Ok((experiment, warnings)) => {
-                let mut faults = warnings;
-                faults.extend(manifest::check_claims(&experiment));
-                (Some(experiment), faults)
-            }
-            Err(faults) => (None, faults),
-        };
+    let sealed = sealed_beside(manifest, &folder)?;
+    if !sealed.is_empty() {
+        let inputs = folder.join(format::INPUTS);
+        terminal.note(&format!("inputs are those that the bundle holds in `{}`", inputs.display()));
+    }
+    let (found, mut faults) = match manifest::resolve(
+        &source,
+        set,
+        &Folder { path: folder, sealed, calibrator, terminal },
+    ) {
+        Ok((experiment, warnings)) => {
+            let mut faults = warnings;
+            faults.extend(manifest::check_claims(&experiment));
+            (Some(experiment), faults)
+        }
+        Err(faults) => (None, faults),
+    };
     faults.sort_by_key(|f| std::cmp::Reverse(f.severity));
     terminal.diagnostics(&faults);
     match found {
@@ -80,19 +90,6 @@ pub(super) fn archive(path: &Path) -> Result<Result<Archive, Vec<crate::bundle::
     store::open_bundle(path, &Limits::default()).map_err(|e| unreadable(path, &e))
 }
 
-/// Reads a bundle whose content is needed.
-pub(super) fn bundle(path: &Path) -> Result<Bundle, Failure> {
-    let damaged = |what: String| Failure {
-        exit: super::Exit::No,
-        message: format!("{}: {what}; `reenact verify` tells everything", path.display()),
-    };
-    let archive = archive(path)?.map_err(|faults| {
-        let first = faults.first().map(ToString::to_string).unwrap_or_default();
-        damaged(format!("{} ({first})", counted(faults.len(), "fault")))
-    })?;
-    Bundle::open(archive).map_err(|e| damaged(e.to_string()))
-}
-
 /// Reads a text file.
 pub(super) fn text(path: &Path) -> Result<Source, Failure> {
     let bytes = text_bytes(path)?;
@@ -109,6 +106,11 @@ pub(super) fn text(path: &Path) -> Result<Source, Failure> {
 /// Reads what should be a short text.
 pub(super) fn text_bytes(path: &Path) -> Result<Vec<u8>, Failure> {
     store::read(path, MOST_TEXT).map_err(|e| unreadable(path, &e))
+}
+
+/// Reads what should be an attestation: none is longer than that.
+pub(super) fn attestation(path: &Path) -> Result<Vec<u8>, Failure> {
+    store::read(path, LONGEST_ATTESTATION as u64 + 1).map_err(|e| unreadable(path, &e))
 }
 
 /// Reads a file.
@@ -143,9 +145,35 @@ fn unreadable(path: &Path, error: &std::io::Error) -> Failure {
     }
 }
 
+/// The inputs of an unpacked bundle whose manifest this is, by the path that it names each by; none for other manifests.
+fn sealed_beside(manifest: &Path, folder: &Path) -> Result<BTreeMap<String, PathBuf>, Failure> {
+    let resolved = folder.join(format::RESOLVED);
+    if manifest.file_name().is_none_or(|name| name != format::STUDY) || !resolved.exists() {
+        return Ok(BTreeMap::new());
+    }
+    let fault = |found: String| {
+        Failure::not_understood(format!("`{}` cannot be read: {found}", resolved.display()))
+    };
+    let read = Resolved::read(&bytes(&resolved)?).map_err(|f| fault(f.to_string()))?;
+    let sealed =
+        read.inputs.into_iter().map(|input| match input.path.strip_prefix(format::INPUTS) {
+            Some(name) if names::hazard(name).is_none() => {
+                Ok((input.as_written, folder.join(&input.path)))
+            }
+            _ => Err(fault(format!(
+                "expected an input in `{}`, found `{}`",
+                format::INPUTS,
+                input.path
+            ))),
+        });
+    sealed.collect()
+}
+
 /// Inputs of a manifest in this folder.
 struct Folder<'a> {
     path: PathBuf,
+    /// Where the inputs of an unpacked bundle are.
+    sealed: BTreeMap<String, PathBuf>,
     calibrator: Calibrator<'a>,
     terminal: Terminal,
 }
@@ -153,14 +181,15 @@ struct Folder<'a> {
 impl Inputs for Folder<'_> {
     fn read(&self, as_written: &str, written_in: WrittenIn) -> Result<Vec<u8>, String> {
         let beside = self.path.join(as_written);
+        let beside = self.sealed.get(as_written).unwrap_or(&beside);
         let read = |path: &Path| store::read(path, MOST_INPUT);
         match written_in {
             WrittenIn::Manifest | WrittenIn::Calibration | WrittenIn::PreviousMap => {
-                read(&beside).map_err(|e| reason(&e))
+                read(beside).map_err(|e| reason(&e))
             }
             // Given on the command line: from here, as a shell completes it, or else from the manifest.
             WrittenIn::CommandLine => read(Path::new(as_written)).or_else(|here| {
-                read(&beside)
+                read(beside)
                     .map_err(|_| format!("{}, neither here nor beside the manifest", reason(&here)))
             }),
         }

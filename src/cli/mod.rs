@@ -4,6 +4,7 @@
 
 mod args;
 mod calibrate;
+mod checked;
 mod commands;
 mod estimate;
 mod exit;
@@ -79,6 +80,7 @@ fn dispatch(
         Command::Check(args) => commands::check::run(&args, terminal),
         Command::Plan(args) => commands::plan::run(&args, environment, terminal),
         Command::Verify(args) => commands::verify::run(&args, environment, terminal),
+        Command::Attest(args) => commands::attest::run(&args, terminal),
         Command::Diff(args) => commands::diff::run(&args, terminal),
         Command::Lock(args) => commands::lock::run(&args, environment, terminal),
         Command::Vary(args) => commands::vary::run(&args, environment, terminal),

@@ -87,6 +87,16 @@ impl Selection {
         Ok(selection)
     }
 
+    /// The same as the command line writes it, a word each; nothing for a whole plan.
+    pub fn options(&self) -> Vec<String> {
+        let only = self.only.iter().map(|(factor, values)| {
+            ["--only".to_owned(), format!("{factor}={}", values.join(","))]
+        });
+        let trials = self.trials.map(|trials| ["--trials".to_owned(), trials.to_string()]);
+        let shard = self.shard.map(|(i, n)| ["--shard".to_owned(), format!("{i}/{n}")]);
+        only.chain(trials).chain(shard).flatten().collect()
+    }
+
     /// The selection as a bundle keeps it.
     pub fn to_json(&self) -> serde_json::Value {
         serde_json::json!({"only": self.only, "trials": self.trials, "shard": self.shard})

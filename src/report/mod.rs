@@ -6,6 +6,7 @@
 mod agreement;
 mod assumptions;
 pub mod bag;
+mod banner;
 mod claim;
 mod content;
 mod difference;
@@ -26,7 +27,8 @@ mod tables;
 mod template;
 
 pub use agreement::Agreement;
-pub use bag::{Bag, bag};
+pub use bag::{Bag, bag, bag_under_banner};
+pub use banner::{drawing_under_banner, page_under_banner};
 pub use claim::{ClaimRow, ComparisonRow};
 pub use content::{
     Assumption, Citation, Figure, Flip, Headline, Measured, OutcomeCount, ReportCell,

@@ -78,6 +78,8 @@ pub enum Severity {
     Error,
     /// This program cannot judge that far; another version may.
     Obstacle,
+    /// We failed, which says nothing of the bundle.
+    Failure,
     /// Worth knowing.
     Note,
 }
@@ -112,6 +114,7 @@ impl std::fmt::Display for Finding {
         let severity = match self.severity {
             Severity::Error => "error",
             Severity::Obstacle => "obstacle",
+            Severity::Failure => "failure",
             Severity::Note => "note",
         };
         write!(f, "{severity} at level {}: {}", self.level.number(), self.path)?;

@@ -4,8 +4,8 @@ use super::earlier::{Earlier, EarlierAgain};
 use super::reexecution::{self, Sample};
 use super::replication::{self, Replication};
 use super::signature::{self, Signed, Vouching};
-use super::{Finding, Level, Pipeline, Severity, coherent, derived, fixity, support};
-use crate::bundle::{Archive, Bundle, Fault, Moment, OpenError, format};
+use super::{Attestation, Finding, Level, Pipeline, Severity, coherent, derived, fixity, support};
+use crate::bundle::{Archive, Bundle, Departure, Fault, Moment, OpenError, format};
 use crate::digest::{BundleId, ResultsDigest, StudyDigest};
 use serde::Serialize;
 
@@ -42,8 +42,12 @@ pub enum Verdict {
     Broken,
     /// The bundle is what it says, and fresh seeds say the opposite of one of its verdicts: exit code 1.
     NotReplicated,
+    /// The attestation that was given does not attest this bundle: exit code 1.
+    NotAttested,
     /// This program cannot judge that far: exit code 2.
     Unanswered,
+    /// This program failed on the way: exit code 3.
+    Failed,
 }
 
 /// What verification found.
@@ -59,6 +63,8 @@ pub struct Report {
     pub findings: Vec<Finding>,
     /// The study's name, where it could be read.
     pub name: Option<String>,
+    /// How the run departs from the manifest as it stands, where the bundle could be read.
+    pub departure: Option<Departure>,
     /// The engine that ran it.
     pub engine: Option<String>,
     /// This very bundle.
@@ -69,6 +75,8 @@ pub struct Report {
     pub study_digest: Option<StudyDigest>,
     /// Who vouches for it, where that was asked and found good.
     pub signed: Option<Signed>,
+    /// The attestation that was held against the bundle, or why it does not attest it.
+    pub attestation: Option<Result<Attestation, Fault>>,
     /// What was executed again, at level 4 or 5.
     pub sample: Option<Sample>,
     /// What fresh seeds said, at level 6.
@@ -93,6 +101,10 @@ impl Report {
             } else {
                 Verdict::Broken
             }
+        } else if self.findings.iter().any(|f| f.severity == Severity::Failure) {
+            Verdict::Failed
+        } else if matches!(self.attestation, Some(Err(_))) {
+            Verdict::NotAttested
         } else if self.reached == Some(self.asked) {
             Verdict::Holds
         } else {
@@ -163,17 +175,29 @@ pub fn climb_for(
     options: &Options,
     pipeline: &dyn Pipeline,
 ) -> Report {
+    climb_and_keep(reviewer, opened, options, pipeline).0
+}
+
+/// [`climb_for`], and the bundle for whoever goes on with it; `None` where it cannot be read at all.
+pub fn climb_and_keep(
+    reviewer: &Reviewer<'_>,
+    opened: Result<Archive, Vec<Fault>>,
+    options: &Options,
+    pipeline: &dyn Pipeline,
+) -> (Report, Option<Bundle>) {
     let report = Report {
         asked: options.level,
         reached: None,
         judged: vec![Level::Safe],
         findings: Vec::new(),
         name: None,
+        departure: None,
         engine: None,
         bundle_id: None,
         results_digest: None,
         study_digest: None,
         signed: None,
+        attestation: None,
         sample: None,
         replication: None,
         earlier: Vec::new(),
@@ -183,8 +207,8 @@ pub fn climb_for(
     };
     let began = (reviewer.clock)();
     let mut climb = Climb { report, options, pipeline, clock: reviewer.clock, began };
-    climb.lower(opened, &reviewer.vouching);
-    climb.report.finish()
+    let bundle = climb.lower(opened, &reviewer.vouching);
+    (climb.report.finish(), bundle)
 }
 
 /// A climb on its way.
@@ -210,14 +234,21 @@ impl Climb<'_> {
     }
 
     /// Levels 0 to 2, and on where they leave a bundle to read.
-    fn lower(&mut self, opened: Result<Archive, Vec<Fault>>, vouching: &Vouching<'_>) {
+    fn lower(
+        &mut self,
+        opened: Result<Archive, Vec<Fault>>,
+        vouching: &Vouching<'_>,
+    ) -> Option<Bundle> {
         let archive = match opened {
             Ok(archive) => archive,
-            Err(faults) => return self.report.note(Level::Safe, Severity::Error, faults),
+            Err(faults) => {
+                self.report.note(Level::Safe, Severity::Error, faults);
+                return None;
+            }
         };
         self.took(Level::Safe);
         if !self.signature(&archive, vouching) {
-            return;
+            return None;
         }
         if self.wants(Level::Fixity) {
             self.report.judged.push(Level::Fixity);
@@ -231,9 +262,13 @@ impl Climb<'_> {
         }
         let bundle = match Bundle::open(archive) {
             Ok(bundle) => bundle,
-            Err(error) => return self.unreadable(error),
+            Err(error) => {
+                self.unreadable(error);
+                return None;
+            }
         };
         self.report.name = Some(bundle.name().to_owned());
+        self.report.departure = Some(Departure::of(bundle.resolved(), bundle.is_partial()));
         self.report.engine = Some(bundle.engine().to_owned());
         self.report.bundle_id = bundle.bundle_id();
         self.report.results_digest = Some(bundle.results_digest());
@@ -248,6 +283,7 @@ impl Climb<'_> {
             self.report.judged.push(Level::Derived);
             self.upper(&bundle);
         }
+        Some(bundle)
     }
 
     /// Who vouches; whether to go on.
@@ -337,7 +373,15 @@ impl Climb<'_> {
         if level == Level::Full {
             self.report.note(level, Severity::Error, replanned.explore_again());
         }
-        let (sample, faults) = reexecution::check(bundle, replanned.as_ref(), &indices, seed);
+        let (sample, faults) = match reexecution::check(bundle, replanned.as_ref(), &indices, seed)
+        {
+            Ok(answer) => answer,
+            Err(fault) => return self.report.note(Level::Sampled, Severity::Failure, [fault]),
+        };
+        if sample.executed == 0 {
+            let fault = reexecution::nothing_executed(sample.of);
+            self.report.note(Level::Sampled, Severity::Obstacle, [fault]);
+        }
         // A single trial that differs fails the sample as well as the whole.
         self.report.note(Level::Sampled, Severity::Error, faults);
         self.report.sample = Some(sample);

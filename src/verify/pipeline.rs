@@ -29,7 +29,10 @@ pub trait Replanned {
     fn content(&self) -> Result<BundleContent, String>;
 
     /// Executes the trials at `indices` of the plan again, never from a store; their record lines in that order.
-    fn execute(&self, indices: &[usize]) -> Vec<String>;
+    ///
+    /// # Errors
+    /// Where this program cannot execute them, in words.
+    fn execute(&self, indices: &[usize]) -> Result<Vec<String>, String>;
 
     /// Inputs that runs before the study's own made, of units that [`Self::make_again`] executes.
     fn earlier(&self) -> Vec<Earlier> {

@@ -76,12 +76,15 @@ pub(super) fn capped(mut faults: Vec<Fault>) -> Vec<Fault> {
 }
 
 /// Executes the trials at `indices` again and holds them against the bundle's records.
+///
+/// # Errors
+/// Where this program did not execute what it was asked to, which says nothing of the bundle.
 pub(super) fn check(
     bundle: &Bundle,
     replanned: &dyn Replanned,
     indices: &[usize],
     seed: Option<u64>,
-) -> (Sample, Vec<Fault>) {
+) -> Result<(Sample, Vec<Fault>), Fault> {
     let planned = replanned.trials();
     let sealed: Vec<(String, &str)> = bundle
         .conditions()
@@ -92,16 +95,41 @@ pub(super) fn check(
             lines.map(move |(i, line)| (format!("{path}:{}", i + 1), line))
         })
         .collect();
-    let fresh = replanned.execute(indices);
+    let trials = format!("{}{}", format::PAYLOAD, format::TRIALS);
+    let failed = |found: String| {
+        let expected = format!("{} trials executed again", indices.len());
+        Fault::new(&trials, expected, found).hint("this is a bug in reenact, or too little memory")
+    };
+    let fresh = replanned.execute(indices).map_err(failed)?;
+    if fresh.len() != indices.len() {
+        return Err(failed(fresh.len().to_string()));
+    }
     let mut faults = Vec::new();
     for (&index, fresh) in indices.iter().zip(&fresh) {
-        let Some((place, line)) = sealed.get(index) else { continue };
-        if line != fresh {
-            faults.push(differing(place, &planned[index], fresh, line));
+        match (sealed.get(index), planned.get(index)) {
+            (Some((_, line)), _) if line == fresh => {}
+            (Some((place, line)), Some(trial)) => {
+                faults.push(differing(place, trial, fresh, line));
+            }
+            _ => {
+                let expected = format!("a record of the plan's trial {}", index + 1);
+                faults.push(Fault::new(&trials, expected, "none"));
+            }
         }
     }
     let equal = fresh.len().saturating_sub(faults.len());
-    (Sample { seed, executed: indices.len(), equal, of: planned.len() }, faults)
+    Ok((Sample { seed, executed: fresh.len(), equal, of: planned.len() }, faults))
+}
+
+/// What stands in the way of a level that executed nothing: it has shown nothing.
+pub(super) fn nothing_executed(of: usize) -> Fault {
+    let path = format!("{}{}", format::PAYLOAD, format::TRIALS);
+    let fault = Fault::new(path, "trials to execute again", "none");
+    fault.hint(if of == 0 {
+        "the bundle holds no trial, so there is none to execute"
+    } else {
+        "a sample of no trial shows nothing: draw one at least with `--sample`"
+    })
 }
 
 fn differing(place: &str, trial: &PlannedTrial, fresh: &str, sealed: &str) -> Fault {

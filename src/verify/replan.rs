@@ -303,12 +303,12 @@ impl Replanned for Study<'_> {
         assemble::assemble(&self.plan, self.bundle.study_yaml(), &self.selection, &records)
     }
 
-    fn execute(&self, indices: &[usize]) -> Vec<String> {
+    fn execute(&self, indices: &[usize]) -> Result<Vec<String>, String> {
         let specs: Vec<TrialSpec> = indices.iter().map(|&i| self.plan.trials[i].clone()).collect();
         self.scheduler
             .run(&specs, &studies::execute, None, self.observer)
             .map(|records| records.iter().map(TrialRecord::to_line).collect())
-            .unwrap_or_default()
+            .map_err(|e| e.to_string())
     }
 
     fn explore_again(&self) -> Vec<Fault> {

@@ -1,10 +1,11 @@
 //! The report's three forms: for people, for programs, for CI.
 
-use super::{Finding, Level, Report, Severity, Verdict};
-use crate::bundle::visible;
+use super::{Attestation, Finding, Level, Report, Severity, Verdict};
+use crate::bundle::{Departure, visible};
 use crate::figure::svg::escape;
 use crate::json;
-use serde_json::json;
+use crate::plan::Selection;
+use serde_json::{Value, json};
 
 impl Report {
     /// For people: what it is, one line a level, every finding, and the answer last.
@@ -17,11 +18,12 @@ impl Report {
         };
         // One line each, whatever a stranger called them.
         let one_line = |text: &String| visible(text).replace('\n', " ");
-        fact("study", self.name.as_ref().map(one_line));
+        fact("study", self.name.as_ref().map(one_line).map(|name| self.with_departure(name)));
         fact("engine", self.engine.as_ref().map(one_line));
         fact("results", self.results_digest.map(|digest| format!("sha256:{digest}")));
         fact("bundle", self.bundle_id.map(|id| format!("sha256:{id}")));
         fact("signed", self.signed.as_ref().map(ToString::to_string));
+        fact("attested", self.attested().map(ToString::to_string));
         let levels = self.levels();
         let width = levels.iter().map(|level| level.name().len()).max().unwrap_or(0).max(9);
         for level in levels {
@@ -38,6 +40,9 @@ impl Report {
             text.push_str(&format!("{}\n", finding.replace('\n', "\n    ")));
         }
         for line in self.in_words() {
+            text.push_str(&format!("{line}\n"));
+        }
+        for line in self.attestation_in_words() {
             text.push_str(&format!("{line}\n"));
         }
         if !self.circumstances.is_empty() {
@@ -62,16 +67,20 @@ impl Report {
             "reached": self.reached,
             "verdict": self.verdict(),
             "name": self.name,
+            "partial": self.departure.as_ref().map(|departure| departure.partial),
+            "overrides": self.departure.as_ref().map(|departure| &departure.overrides),
+            "selection": self.selection(),
             "engine": self.engine,
             "bundle-id": self.bundle_id,
             "results-digest": self.results_digest.map(|digest| format!("sha256:{digest}")),
             "study-digest": self.study_digest,
             "signed": self.signed,
-            "levels": self
-                .levels()
-                .into_iter()
-                .map(|level| json!({"level": level, "name": level.name(), "state": self.state(level)}))
-                .collect::<Vec<_>>(),
+            "attestation": match &self.attestation {
+                Some(Ok(attestation)) => json!(attestation),
+                Some(Err(fault)) => json!({"refused": fault.to_string()}),
+                None => json!(null),
+            },
+            "levels": self.states(),
             "findings": self.findings,
             "sample": self.sample,
             "earlier": self.earlier,
@@ -94,21 +103,32 @@ impl Report {
         let levels = self.levels();
         let of = |level: Level| self.findings.iter().filter(move |finding| finding.level == level);
         let mut cases = String::new();
-        let (mut failures, mut skipped, mut total) = (0, 0, 0.0);
+        let (mut failures, mut errors, mut skipped, mut total) = (0, 0, 0, 0.0);
         for level in &levels {
             let told = |wanted: fn(Severity) -> bool| -> Vec<String> {
                 of(*level).filter(|f| wanted(f.severity)).map(Finding::to_string).collect()
             };
-            let broken = told(|severity| severity == Severity::Error);
+            let mut broken = told(|severity| severity == Severity::Error);
+            if broken.is_empty() && self.state(*level) == "failed" {
+                // All trials are a sample, too: what fails the sample is told there.
+                broken = self.sample.iter().map(super::Sample::in_words).collect();
+            }
+            let failed = told(|severity| severity == Severity::Failure);
             let mut body = String::new();
-            if let Some(first) = broken.first() {
-                failures += 1;
-                body.push_str(&format!(
-                    "<failure message=\"{}\" type=\"{}\">{}</failure>",
-                    printable(first),
+            let told_as = |element: &str, all: &[String]| {
+                format!(
+                    "<{element} message=\"{}\" type=\"{}\">{}</{element}>",
+                    printable(all.first().map_or("", String::as_str)),
                     level.name(),
-                    printable(&broken.join("\n"))
-                ));
+                    printable(&all.join("\n"))
+                )
+            };
+            if !broken.is_empty() {
+                failures += 1;
+                body.push_str(&told_as("failure", &broken));
+            } else if !failed.is_empty() {
+                errors += 1;
+                body.push_str(&told_as("error", &failed));
             } else if self.state(*level) != "passed" {
                 skipped += 1;
                 let why = told(|severity| severity == Severity::Obstacle);
@@ -129,13 +149,33 @@ impl Report {
                 "    <testcase name=\"level {level}\" classname=\"reenact.verify\" time=\"{seconds:.3}\">{body}</testcase>\n"
             ));
         }
-        let counts = format!("tests=\"{}\" failures=\"{failures}\" errors=\"0\"", levels.len());
+        let mut tests = levels.len();
+        if let Some(attestation) = &self.attestation {
+            tests += 1;
+            let told =
+                |element: &str, text: &str| format!("<{element}>{}</{element}>", printable(text));
+            let body = match attestation {
+                Ok(_) => told("system-out", &self.attestation_in_words().join("\n")),
+                Err(fault) => {
+                    failures += 1;
+                    let text = printable(&fault.to_string());
+                    format!("<failure message=\"{text}\" type=\"attestation\">{text}</failure>")
+                }
+            };
+            cases.push_str(&format!(
+                "    <testcase name=\"attestation\" classname=\"reenact.verify\" time=\"0.000\">{body}</testcase>\n"
+            ));
+        }
+        let counts = format!("tests=\"{tests}\" failures=\"{failures}\" errors=\"{errors}\"");
         let name = printable(self.name.as_deref().unwrap_or("bundle"));
         let facts = [
             ("bundle-id", self.bundle_id.map(|id| format!("sha256:{id}"))),
             ("results-digest", self.results_digest.map(|digest| format!("sha256:{digest}"))),
             ("engine", self.engine.clone()),
+            ("partial", self.departure.as_ref().map(|departure| departure.partial.to_string())),
+            ("departure", self.departure.as_ref().and_then(Departure::in_words)),
             ("signed", self.signed.as_ref().map(ToString::to_string)),
+            ("attested", self.attested().map(ToString::to_string)),
             ("answer", Some(self.answer_with_limits())),
         ];
         let mut properties = String::new();
@@ -166,15 +206,53 @@ impl Report {
         lines.flat_map(|text| text.lines().map(plain).collect::<Vec<_>>()).collect()
     }
 
+    /// A study's name and how its run departs from the manifest.
+    fn with_departure(&self, name: String) -> String {
+        match self.departure.as_ref().and_then(Departure::in_words) {
+            Some(words) => format!("{name} ({words})"),
+            None => name,
+        }
+    }
+
+    /// Which part was run, where it was a part.
+    fn selection(&self) -> Option<Value> {
+        let departure = self.departure.as_ref().filter(|departure| departure.partial)?;
+        departure.selection.as_ref().map(Selection::to_json)
+    }
+
+    fn attested(&self) -> Option<&Attestation> {
+        self.attestation.as_ref().and_then(|answer| answer.as_ref().ok())
+    }
+
+    /// What the attestation says besides the level, or why it is refused, a line each.
+    fn attestation_in_words(&self) -> Vec<String> {
+        let lines = match &self.attestation {
+            None => Vec::new(),
+            Some(Ok(attestation)) => attestation.in_words(),
+            Some(Err(fault)) => vec![format!("attestation refused: {fault}")],
+        };
+        // One line each, whatever a stranger wrote.
+        lines.iter().map(|line| visible(line).replace('\n', " ")).collect()
+    }
+
+    /// Every level asked for with what became of it, as programs read it.
+    pub(super) fn states(&self) -> Vec<Value> {
+        let state = |level: Level| json!({"level": level, "name": level.name(), "state": self.state(level)});
+        self.levels().into_iter().map(state).collect()
+    }
+
     fn state(&self, level: Level) -> &'static str {
-        let weighs =
-            |severity| self.findings.iter().any(|f| f.level == level && f.severity == severity);
-        if weighs(Severity::Error) {
+        let fails = |wanted: Level| {
+            self.findings.iter().any(|f| f.level == wanted && f.severity == Severity::Error)
+        };
+        // A trial that differs fails the sample and the whole that it is of; above what failed nothing is passed.
+        let of_all = level == Level::Full && self.judged.contains(&level) && fails(Level::Sampled);
+        if fails(level) || of_all {
             "failed"
-        } else if weighs(Severity::Obstacle) || !self.judged.contains(&level) {
-            "not judged"
-        } else {
+        } else if self.reached >= Some(level) {
             "passed"
+        } else {
+            "not judged"
         }
     }
 
@@ -185,6 +263,13 @@ impl Report {
             Verdict::NotReplicated => {
                 "the bundle is what it says, but not every verdict holds with fresh seeds"
             }
+            Verdict::NotAttested if self.reached == Some(self.asked) => {
+                "the bundle is what it says, but the attestation is refused"
+            }
+            Verdict::NotAttested => {
+                "this program cannot judge further, and the attestation is refused"
+            }
+            Verdict::Failed => "this program failed, which says nothing of the bundle",
             Verdict::Unanswered => "this program cannot judge further",
         }
     }

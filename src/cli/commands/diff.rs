@@ -3,8 +3,8 @@
 use super::locked;
 use crate::cli::args::{DiffArgs, DiffFormat};
 use crate::cli::exit::{Exit, Failure};
-use crate::cli::load;
 use crate::cli::terminal::Terminal;
+use crate::cli::{checked, load};
 use crate::compare::{Account, Extent, Tolerances, compare};
 use crate::{json, report};
 use std::path::Path;
@@ -12,15 +12,28 @@ use std::path::Path;
 /// Compares two sides.
 pub(in crate::cli) fn run(args: &DiffArgs, terminal: Terminal) -> Result<Exit, Failure> {
     let tolerances = Tolerances::parse(&args.tolerance).map_err(Failure::not_understood)?;
-    let (a, b) = (side(&args.a, terminal)?, side(&args.b, terminal)?);
-    let comparison =
-        compare(&a, &b, Extent::Whole, &tolerances).map_err(Failure::not_understood)?;
+    let (a, b) = (side(&args.a, args, terminal)?, side(&args.b, args, terminal)?);
+    let sides = [&a, &b];
+    let words: Vec<&str> = sides.iter().filter_map(|side| side.words.as_deref()).collect();
+    let banners: Vec<&str> = sides.iter().filter_map(|side| side.banner.as_deref()).collect();
+    let (words, banner) = (words.join("\n"), banners.join("; "));
+    let comparison = compare(&a.account, &b.account, Extent::Whole, &tolerances)
+        .map_err(Failure::not_understood)?;
     let (a, b) = (args.a.display().to_string(), args.b.display().to_string());
     let text = match args.format {
         DiffFormat::Human => comparison.to_human([&a, &b]),
         DiffFormat::Json => json::canonical(&comparison.to_json()) + "\n",
-        DiffFormat::Html => report::difference_page(&comparison, [&a, &b]),
+        DiffFormat::Html => {
+            let page = report::difference_page(&comparison, [&a, &b]);
+            if banner.is_empty() { page } else { report::page_under_banner(&page, &banner) }
+        }
     };
+    // Where stdout is for programs, what was found of the bundles is for people.
+    if args.output.is_none() && args.format != DiffFormat::Human {
+        terminal.note(&words);
+    } else if !words.is_empty() {
+        terminal.result(&words);
+    }
     match &args.output {
         Some(path) => {
             load::write(path, text.as_bytes())?;
@@ -31,18 +44,32 @@ pub(in crate::cli) fn run(args: &DiffArgs, terminal: Terminal) -> Result<Exit, F
     Ok(if comparison.is_same() { Exit::Yes } else { Exit::No })
 }
 
-/// What one side says: a lock by its name, a bundle otherwise. One that cannot be read leaves the question open, which is
-/// no answer of ours: 2, not 1.
-fn side(path: &Path, terminal: Terminal) -> Result<Account, Failure> {
+/// One side.
+struct Side {
+    account: Account,
+    /// What checking it found; nothing for a lock.
+    words: Option<String>,
+    banner: Option<String>,
+}
+
+/// What one side says: a lock by its name, a bundle otherwise.
+fn side(path: &Path, args: &DiffArgs, terminal: Terminal) -> Result<Side, Failure> {
     if path.extension().is_some_and(|extension| extension == "lock") {
-        return Ok(locked::read(&load::text(path)?, terminal)?.account().clone());
+        let account = locked::read(&load::text(path)?, terminal)?.account().clone();
+        return Ok(Side { account, words: None, banner: None });
     }
-    let bundle = load::bundle(path).map_err(|failure| match failure.exit {
-        Exit::No => Failure::not_understood(failure.message),
-        _ => failure,
+    let checked = checked::bundle(path, args.unchecked).map_err(|refused| {
+        // One that cannot be read leaves the question open, which is no answer of ours: 2, not 1.
+        if refused.failure.exit == Exit::No && !refused.is_read {
+            Failure::not_understood(refused.failure.message)
+        } else {
+            refused.into()
+        }
     })?;
-    Account::of_bundle(&bundle).map_err(|faults| {
+    let account = Account::of_bundle(&checked.bundle).map_err(|faults| {
         let first = faults.first().map(ToString::to_string).unwrap_or_default();
         Failure::not_understood(format!("{}: {first}", path.display()))
-    })
+    })?;
+    let named = |text: String| format!("{}: {text}", path.display());
+    Ok(Side { account, words: Some(named(checked.words)), banner: checked.banner.map(named) })
 }

@@ -3,13 +3,13 @@
 use crate::bundle::{Form, archive, in_bag};
 use crate::cli::args::ExportArgs;
 use crate::cli::exit::{Exit, Failure};
-use crate::cli::load;
 use crate::cli::terminal::Terminal;
+use crate::cli::{checked, load};
 use crate::verify::path_in_bag;
 
 /// Writes a bundle again.
 pub(in crate::cli) fn run(args: &ExportArgs, terminal: Terminal) -> Result<Exit, Failure> {
-    let bundle = load::bundle(&args.bundle)?;
+    let checked::Checked { bundle, words, .. } = checked::bundle(&args.bundle, args.unchecked)?;
     let stem = format!("{}-{}", bundle.name(), bundle.results_digest().short());
     let mut tree = in_bag(&bundle);
     if let Some(signature) = &args.signature {
@@ -26,7 +26,7 @@ pub(in crate::cli) fn run(args: &ExportArgs, terminal: Terminal) -> Result<Exit,
         for (path, bytes) in &tree {
             load::write(&folder.join(path), bytes)?;
         }
-        terminal.result(&folder.display().to_string());
+        terminal.result(&format!("{words}\n{}", folder.display()));
         return Ok(Exit::Yes);
     }
     let (form, name) = match (args.flat, args.rocrate) {
@@ -36,6 +36,6 @@ pub(in crate::cli) fn run(args: &ExportArgs, terminal: Terminal) -> Result<Exit,
     };
     let path = args.out.join(name);
     load::write(&path, &archive::write(&tree, &stem, form))?;
-    terminal.result(&path.display().to_string());
+    terminal.result(&format!("{words}\n{}", path.display()));
     Ok(Exit::Yes)
 }

@@ -1,5 +1,6 @@
 //! One file per command.
 
+pub(super) mod attest;
 pub(super) mod cache;
 pub(super) mod check;
 pub(super) mod completions;

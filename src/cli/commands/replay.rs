@@ -2,11 +2,14 @@
 
 use crate::cli::args::ReplayArgs;
 use crate::cli::exit::{Exit, Failure};
-use crate::cli::load;
 use crate::cli::progress::Working;
 use crate::cli::terminal::{Terminal, counted};
+use crate::cli::{checked, load};
 use crate::plan::Plan;
-use crate::report::{GainView, Note, Shown, bag, gain_svg, replay_page, still_svg};
+use crate::report::{
+    GainView, Note, Shown, bag_under_banner, drawing_under_banner, gain_svg, page_under_banner,
+    replay_page, still_svg,
+};
 use crate::studies::recording::Recording;
 use crate::studies::{self, Setup, TrialRecord};
 use crate::verify::plan_of;
@@ -20,7 +23,8 @@ pub(in crate::cli) fn run(args: &ReplayArgs, terminal: Terminal) -> Result<Exit,
              for a bag of ROS 2 messages, `--plans DIR` for the plans of a deadline study",
         ));
     }
-    let bundle = load::bundle(&args.bundle)?;
+    let checked::Checked { bundle, words, banner } = checked::bundle(&args.bundle, args.unchecked)?;
+    let banner = banner.as_deref();
     let (plan, _) = plan_of(&bundle).map_err(Failure::not_understood)?;
     let archived = bundle.records().map_err(|faults| {
         let first = faults.first().map(ToString::to_string).unwrap_or_default();
@@ -54,6 +58,7 @@ pub(in crate::cli) fn run(args: &ReplayArgs, terminal: Terminal) -> Result<Exit,
         let trials: Vec<(String, &Recording)> =
             played.iter().map(|(name, recording)| (name.clone(), recording)).collect();
         let page = replay_page(&plan.experiment.title, &trials, &notes);
+        let page = banner.map_or(page.clone(), |banner| page_under_banner(&page, banner));
         load::write(path, page.as_bytes())?;
         terminal.note(&format!("wrote {}", path.display()));
     }
@@ -69,11 +74,12 @@ pub(in crate::cli) fn run(args: &ReplayArgs, terminal: Terminal) -> Result<Exit,
             }
             Some(decision) => gain_still(&plan, args, decision, recording)?,
         };
+        let still = banner.map_or(still.clone(), |banner| drawing_under_banner(&still, banner));
         load::write(path, still.as_bytes())?;
         terminal.note(&format!("wrote {}", path.display()));
     }
     if let (Some(path), Some((_, recording))) = (&args.mcap, played.first()) {
-        let bag = bag(recording, args.scan_rate).map_err(Failure::failed)?;
+        let bag = bag_under_banner(recording, args.scan_rate, banner).map_err(Failure::failed)?;
         load::write(path, &bag.bytes)?;
         terminal.note(&format!("wrote {}", path.display()));
         for (topic, count) in &bag.counts {
@@ -88,7 +94,8 @@ pub(in crate::cli) fn run(args: &ReplayArgs, terminal: Terminal) -> Result<Exit,
         let count = counted(recording.plans.len(), "plan");
         terminal.note(&format!("wrote {count} to {}", folder.display()));
     }
-    let told: Vec<&str> = notes.iter().map(|note| note.text.as_str()).collect();
+    let told = notes.iter().map(|note| note.text.as_str());
+    let told: Vec<&str> = std::iter::once(words.as_str()).chain(told).collect();
     terminal.result(&told.join("\n"));
     Ok(exit)
 }

@@ -2,15 +2,15 @@
 
 use crate::cli::args::ReportArgs;
 use crate::cli::exit::{Exit, Failure};
-use crate::cli::load;
 use crate::cli::terminal::Terminal;
+use crate::cli::{checked, load};
 use crate::report;
 use crate::verify::plan_of;
 use std::path::PathBuf;
 
 /// Writes the page.
 pub(in crate::cli) fn run(args: &ReportArgs, terminal: Terminal) -> Result<Exit, Failure> {
-    let bundle = load::bundle(&args.bundle)?;
+    let checked::Checked { bundle, words, banner } = checked::bundle(&args.bundle, args.unchecked)?;
     let (plan, selection) = plan_of(&bundle).map_err(Failure::not_understood)?;
     let content = report::content_of(&bundle, &plan, &selection)
         .map_err(|message| Failure { exit: Exit::No, message })?;
@@ -18,7 +18,11 @@ pub(in crate::cli) fn run(args: &ReportArgs, terminal: Terminal) -> Result<Exit,
         let stem = format!("{}-{}", bundle.name(), bundle.results_digest().short());
         PathBuf::from(stem).with_extension("html")
     });
-    load::write(&output, report::page(&content).as_bytes())?;
-    terminal.result(&output.display().to_string());
+    let mut page = report::page(&content);
+    if let Some(banner) = &banner {
+        page = report::page_under_banner(&page, banner);
+    }
+    load::write(&output, page.as_bytes())?;
+    terminal.result(&format!("{words}\n{}", output.display()));
     Ok(Exit::Yes)
 }

@@ -11,7 +11,7 @@ use crate::provenance::{Environment, RunClock, unforeseen_seed};
 use crate::verify::{
     Level, Options, Reenactment, Report, Reviewer, Trust, Verdict, Vouching, climb_for,
 };
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Verifies one bundle.
 pub(in crate::cli) fn run(
@@ -28,15 +28,26 @@ pub(in crate::cli) fn run(
             "`--trust` needs `--level 1` or more: a signature vouches for digests, and level 0 compares none",
         ));
     }
+    if args.sample == 0 {
+        return Err(Failure::not_understood(
+            "`--sample` must be 1 or more, found 0: a level that executes nothing shows nothing; `--level 3` is the highest that \
+             needs no execution",
+        ));
+    }
     let trust = args.trust.as_deref().map(trust).transpose()?;
     let signature = match &args.signature {
         Some(path) => Some((path.display().to_string(), load::text_bytes(path)?)),
         None => None,
     };
     let vouching = Vouching {
-        trust: trust.as_ref(),
+        // An attestation asks who checked the bundle, not who made it.
+        trust: trust.as_ref().filter(|_| args.attestation.is_none() || signature.is_some()),
         signature: signature.as_ref().map(|(name, bytes)| (name.as_str(), bytes.as_slice())),
         now: clock.now(),
+    };
+    let attestation = match &args.attestation {
+        Some(path) => Some((path.display().to_string(), load::attestation(path)?)),
+        None => None,
     };
     let jobs = jobs(args.jobs, terminal)?;
     let progress = Progress::unplanned(terminal);
@@ -44,18 +55,26 @@ pub(in crate::cli) fn run(
     let seed = args.sample_seed.unwrap_or_else(unforeseen_seed);
     let options = Options { level, sample: args.sample, rows: args.robustness, seed };
     let reviewer = Reviewer { vouching, clock: &|| clock.elapsed_seconds() };
-    let report = climb_for(&reviewer, load::archive(&args.bundle)?, &options, &pipeline);
+    let mut report = climb_for(&reviewer, load::archive(&args.bundle)?, &options, &pipeline);
     progress.finish();
+    if let (Some((name, bytes)), Some(trust)) = (&attestation, &trust) {
+        report.hold_against((name, bytes), trust, clock.now());
+    }
     terminal.result(&match args.format {
         Format::Human => report.to_human(),
         Format::Json => report.to_json(),
         Format::Junit => report.to_junit(),
     });
     if let Some(path) = &args.attest {
-        match report.attestation(clock.circumstance(environment, 1).ended) {
-            Ok(record) => {
-                load::write(path, record.as_bytes())?;
-                terminal.note(&format!("wrote {}", path.display()));
+        match report.attest(clock.circumstance(environment, 1).ended) {
+            Ok(envelope) => {
+                let mut to_sign = path.clone().into_os_string();
+                to_sign.push(".pae");
+                let to_sign = PathBuf::from(to_sign);
+                load::write(path, envelope.to_json().as_bytes())?;
+                load::write(&to_sign, &envelope.to_sign())?;
+                let (path, to_sign) = (path.display(), to_sign.display());
+                terminal.note(&format!("wrote {path}, unsigned, and {to_sign}, the bytes to sign"));
             }
             Err(why) => terminal.error(&format!("wrote no `{}`: {why}", path.display())),
         }
@@ -75,7 +94,8 @@ fn exit(report: &Report, attest: bool) -> Exit {
     match report.verdict() {
         Verdict::Holds if attest && report.bundle_id.is_none() => Exit::NotUnderstood,
         Verdict::Holds => Exit::Yes,
-        Verdict::Broken | Verdict::NotReplicated => Exit::No,
+        Verdict::Broken | Verdict::NotReplicated | Verdict::NotAttested => Exit::No,
         Verdict::Unanswered => Exit::NotUnderstood,
+        Verdict::Failed => Exit::Failed,
     }
 }

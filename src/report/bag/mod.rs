@@ -39,6 +39,18 @@ pub struct Bag {
 /// # Errors
 /// Where a message cannot be encoded, which is a bug.
 pub fn bag(recording: &Recording, scan_rate_hz: Option<f64>) -> Result<Bag, String> {
+    bag_under_banner(recording, scan_rate_hz, None)
+}
+
+/// [`bag`] with what its readers must know of the bundle: a metadata record `reenact` with the key `banner`.
+///
+/// # Errors
+/// As there.
+pub fn bag_under_banner(
+    recording: &Recording,
+    scan_rate_hz: Option<f64>,
+    banner: Option<&str>,
+) -> Result<Bag, String> {
     let mut writing = Writing {
         recording,
         writer: BagWriter::new()?,
@@ -48,6 +60,9 @@ pub fn bag(recording: &Recording, scan_rate_hz: Option<f64>) -> Result<Bag, Stri
         scan_period_s: scan_rate_hz.map_or(0.0, |rate| 1.0 / rate),
         scanned_s: None,
     };
+    if let Some(banner) = banner {
+        writing.writer.tell("reenact", "banner", banner)?;
+    }
     writing.still()?;
     let mut sensed = recording.sensed.as_deref().unwrap_or_default().iter().peekable();
     for frame in &recording.frames {

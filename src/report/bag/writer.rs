@@ -3,7 +3,7 @@
 use super::definitions::definition;
 use super::messages::{Message, nanoseconds};
 use byteorder::LittleEndian;
-use mcap::records::MessageHeader;
+use mcap::records::{MessageHeader, Metadata};
 use mcap::{WriteOptions, Writer};
 use std::collections::BTreeMap;
 use std::io::Cursor;
@@ -47,6 +47,13 @@ impl BagWriter {
         let time = nanoseconds(time_s);
         let header = MessageHeader { channel_id, sequence, log_time: time, publish_time: time };
         self.writer.write_to_known_channel(&header, &bytes).map_err(|e| e.to_string())
+    }
+
+    /// Writes the metadata record `name` with one entry.
+    pub(super) fn tell(&mut self, name: &str, key: &str, value: &str) -> Result<(), String> {
+        let metadata = BTreeMap::from([(key.to_owned(), value.to_owned())]);
+        let record = Metadata { name: name.to_owned(), metadata };
+        self.writer.write_metadata(&record).map_err(|e| e.to_string())
     }
 
     fn open<M: Message>(&mut self, topic: &'static str) -> Result<u16, String> {

@@ -1,6 +1,6 @@
 //! Signatures of minisign, of both its modes (the file itself, or its BLAKE2b hash).
 
-use super::{Refusal, Signed};
+use super::{Refusal, Signable, Signed};
 use crate::document::{Diagnostic, Source};
 use base64ct::{Base64, Encoding as _};
 use minisign_verify::{Error, PublicKey, Signature};
@@ -53,11 +53,12 @@ impl Key {
     }
 
     /// Holds the signature `text` of `message` against this key.
-    pub(super) fn check(&self, text: &str, message: &[u8]) -> Result<Signed, Refusal> {
-        let unreadable = || {
-            let found = "a minisign signature that cannot be read";
-            Refusal::new(found, "it must have four lines; it may be cut short")
-        };
+    pub(super) fn check(
+        &self,
+        text: &str,
+        message: &[u8],
+        of: Signable,
+    ) -> Result<Signed, Refusal> {
         let signature = Signature::decode(text).map_err(|_| unreadable())?;
         match self.public.verify(message, &signature, true) {
             Ok(()) => {
@@ -65,17 +66,34 @@ impl Key {
             }
             Err(Error::UnexpectedKeyId) => {
                 let other = text.lines().nth(1).and_then(id).ok_or_else(unreadable)?;
-                Err(Refusal::new(
-                    format!("one by the unknown key {other}"),
-                    "you trust another key; whether the signature fits the bundle cannot be told without its own",
-                ))
+                let hint = match of {
+                    Signable::Bundle => {
+                        "you trust another key; whether the signature fits the bundle cannot be told without its own"
+                    }
+                    Signable::Attestation => {
+                        "you trust another key; whether the signature fits the attestation cannot be told without its own"
+                    }
+                };
+                let refusal = Refusal::new(format!("one by the unknown key {other}"), hint);
+                Err(Refusal { stranger: Some(other), ..refusal })
             }
             Err(_) => Err(Refusal::new(
-                format!("one that does not fit this bundle, by the key {}", self.id),
-                "the bundle was changed after it was signed, or the signature is of another bundle",
+                format!("one that does not fit this {}, by the key {}", of.name(), self.id),
+                of.unfit(),
             )),
         }
     }
+}
+
+/// The id of the key that the signature `text` says made it.
+pub(super) fn key_of(text: &str) -> Result<String, Refusal> {
+    Signature::decode(text).map_err(|_| unreadable())?;
+    text.lines().nth(1).and_then(id).ok_or_else(unreadable)
+}
+
+fn unreadable() -> Refusal {
+    let found = "a minisign signature that cannot be read";
+    Refusal::new(found, "it must have four lines; it may be cut short")
 }
 
 /// A key's id as minisign prints it: bytes 2 to 9 of what is encoded, little-endian, in hex.

@@ -13,7 +13,7 @@ mod tests;
 
 use crate::bundle::{Archive, Fault, Form, Moment, Tree, format};
 use crate::document::{Diagnostic, Source, secret};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// The namespace of `ssh-keygen -Y sign -n`, so that a signature made for another purpose vouches for no bundle.
@@ -55,6 +55,59 @@ impl Trust {
         };
         Ok(Self { name: source.name.clone(), keys })
     }
+
+    /// The file that says whom to trust.
+    pub(super) fn name(&self) -> &str {
+        &self.name
+    }
+}
+
+/// What a signature is of, in the words of refusals.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Signable {
+    Bundle,
+    Attestation,
+}
+
+impl Signable {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Bundle => "bundle",
+            Self::Attestation => "attestation",
+        }
+    }
+
+    /// What a signature that does not fit may be.
+    fn unfit(self) -> &'static str {
+        match self {
+            Self::Bundle => {
+                "the bundle was changed after it was signed, or the signature is of another bundle"
+            }
+            Self::Attestation => {
+                "the attestation was changed after it was signed, or the signature is of something else"
+            }
+        }
+    }
+
+    /// What a signature by a key that nobody here knows is worth.
+    fn strange(self) -> &'static str {
+        match self {
+            Self::Bundle => "it fits the bundle, but none of the keys you trust made it",
+            Self::Attestation => "it fits the attestation, but none of the keys you trust made it",
+        }
+    }
+
+    /// What a signature of another namespace lacks.
+    fn purpose(self) -> &'static str {
+        match self {
+            Self::Bundle => {
+                "it was made for another purpose; bundles are signed with `ssh-keygen -Y sign -n reenact`"
+            }
+            Self::Attestation => {
+                "it was made for another purpose; attestations are signed with `ssh-keygen -Y sign -n reenact`"
+            }
+        }
+    }
 }
 
 /// What a reviewer brings along to see who vouches for a bundle.
@@ -69,7 +122,7 @@ pub struct Vouching<'a> {
 }
 
 /// A signature that was checked and is good.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub struct Signed {
     /// The principals that the trusted file names for the key, or the key itself where it names none.
@@ -201,39 +254,59 @@ pub(super) fn check(archive: &Archive, vouching: &Vouching<'_>) -> Outcome {
             "if its author signed it, give the file with `--signature FILE`",
         );
     };
-    match Kind::of(bytes) {
-        Some(kind) if kind == wanted => {}
-        Some(kind) => {
-            return refuse(
-                path,
-                kind.name(),
-                "keys of one kind cannot check signatures of the other",
-            );
-        }
-        None => return refuse(path, "neither an OpenSSH nor a minisign signature", ""),
-    }
-    let Ok(text) = std::str::from_utf8(bytes) else {
-        return refuse(path, "bytes that are no text", "");
-    };
-    let answer = match &trust.keys {
-        Keys::Ssh(signers) => ssh::check(signers, text, signed, vouching.now),
-        Keys::Minisign(key) => key.check(text, signed),
-    };
-    match answer {
+    match signer(trust, bytes, signed, vouching.now, Signable::Bundle) {
         Ok(signed) => Outcome::Good(signed),
-        Err(Refusal { found, hint }) => refuse(path, &found, hint),
+        Err(Refusal { found, hint, .. }) => refuse(path, &found, hint),
     }
+}
+
+/// Who of those in `trust` made the signature `bytes` of `message`.
+pub(super) fn signer(
+    trust: &Trust,
+    bytes: &[u8],
+    message: &[u8],
+    now: Moment,
+    of: Signable,
+) -> Result<Signed, Refusal> {
+    let (kind, text) = readable(bytes)?;
+    match (&trust.keys, kind) {
+        (Keys::Ssh(signers), Kind::Ssh) => ssh::check(signers, text, message, now, of),
+        (Keys::Minisign(key), Kind::Minisign) => key.check(text, message, of),
+        _ => Err(Refusal {
+            stranger: key_of(bytes, message).ok(),
+            ..Refusal::new(kind.name(), "keys of one kind cannot check signatures of the other")
+        }),
+    }
+}
+
+/// The key that made the signature `bytes`, where it fits `message` as far as the signature itself can tell: minisign's do
+/// not hold their key.
+pub(super) fn key_of(bytes: &[u8], message: &[u8]) -> Result<String, Refusal> {
+    match readable(bytes)? {
+        (Kind::Ssh, text) => ssh::fitting(text, message, Signable::Attestation).map(|(_, key)| key),
+        (Kind::Minisign, text) => minisign::key_of(text),
+    }
+}
+
+fn readable(bytes: &[u8]) -> Result<(Kind, &str), Refusal> {
+    let kind = Kind::of(bytes)
+        .ok_or_else(|| Refusal::new("neither an OpenSSH nor a minisign signature", ""))?;
+    let text =
+        std::str::from_utf8(bytes).map_err(|_| Refusal::new("bytes that are no text", ""))?;
+    Ok((kind, text))
 }
 
 /// Why a signature does not vouch: what was found, and what it may mean.
 #[derive(Debug, PartialEq, Eq)]
-struct Refusal {
-    found: String,
-    hint: &'static str,
+pub(super) struct Refusal {
+    pub(super) found: String,
+    pub(super) hint: &'static str,
+    /// The key, where all that is wrong with the signature is that nobody here knows it.
+    pub(super) stranger: Option<String>,
 }
 
 impl Refusal {
     fn new(found: impl Into<String>, hint: &'static str) -> Self {
-        Self { found: found.into(), hint }
+        Self { found: found.into(), hint, stranger: None }
     }
 }

@@ -1,18 +1,17 @@
 //! Signatures of `ssh-keygen -Y sign` (OpenSSH, PROTOCOL.sshsig).
 
 use super::allowed_signers::{Limits, Signer};
-use super::{NAMESPACE, Refusal, Signed};
+use super::{NAMESPACE, Refusal, Signable, Signed};
 use crate::bundle::Moment;
 use ssh_key::public::KeyData;
 use ssh_key::{Algorithm, EcdsaCurve, HashAlg, PublicKey, SshSig};
 
-/// Holds the armoured signature `text` of `message` against the trusted `signers`.
-pub(super) fn check(
-    signers: &[Signer],
+/// The key that made the armoured signature `text` of `message`, and its fingerprint; whose it is remains to be seen.
+pub(super) fn fitting(
     text: &str,
     message: &[u8],
-    now: Moment,
-) -> Result<Signed, Refusal> {
+    of: Signable,
+) -> Result<(KeyData, String), Refusal> {
     let signature = SshSig::from_pem(text.trim_end()).map_err(|e| {
         Refusal::new(
             format!("an OpenSSH signature that cannot be read ({e})"),
@@ -33,22 +32,32 @@ pub(super) fn check(
     if signature.namespace() != NAMESPACE {
         return Err(Refusal::new(
             format!("one of the namespace `{}`", signature.namespace().escape_debug()),
-            "it was made for another purpose; bundles are signed with `ssh-keygen -Y sign -n reenact`",
+            of.purpose(),
         ));
     }
     // The bytes first: who signed matters only if these very bytes were signed.
     if PublicKey::from(data.clone()).verify(NAMESPACE, message, &signature).is_err() {
         return Err(Refusal::new(
-            format!("one that does not fit this bundle, by the key {key}"),
-            "the bundle was changed after it was signed, or the signature is of another bundle",
+            format!("one that does not fit this {}, by the key {key}", of.name()),
+            of.unfit(),
         ));
     }
-    let known: Vec<&Signer> = signers.iter().filter(|signer| signer.owns(data)).collect();
+    Ok((data.clone(), key))
+}
+
+/// Holds the armoured signature `text` of `message` against the trusted `signers`.
+pub(super) fn check(
+    signers: &[Signer],
+    text: &str,
+    message: &[u8],
+    now: Moment,
+    of: Signable,
+) -> Result<Signed, Refusal> {
+    let (data, key) = fitting(text, message, of)?;
+    let known: Vec<&Signer> = signers.iter().filter(|signer| signer.owns(&data)).collect();
     if known.is_empty() {
-        return Err(Refusal::new(
-            format!("one by the unknown key {key}"),
-            "it fits the bundle, but none of the keys you trust made it",
-        ));
+        let refusal = Refusal::new(format!("one by the unknown key {key}"), of.strange());
+        return Err(Refusal { stranger: Some(key), ..refusal });
     }
     let named: Vec<&Signer> = known.into_iter().filter(|s| s.limits.may_sign(NAMESPACE)).collect();
     let Some(first) = named.first() else {

@@ -65,29 +65,52 @@ fn a_signature_that_nobody_asked_to_check_is_noted() {
 fn an_attestation_says_what_was_checked_and_nothing_more() {
     let date = Moment(1_768_478_400);
     let sealed = sample::sealed();
-    let report = climb_to(Level::Sampled, sealed.tree.clone());
-    assert_eq!(
-        report.attestation(date).unwrap(),
-        format!(
-            "{{\"bundle-id\":\"sha256:{}\",\"date\":\"2026-01-15T12:00:00+00:00\",\"engine\":\"test-1\",\"level\":4,\
-             \"level-name\":\"sampled\",\"program\":\"reenact {}\",\"reenact-attestation\":1,\"replication\":null,\
-             \"results-digest\":\"sha256:{}\",\"sample\":{{\"bound\":0,\"executed\":6,\"in-words\":\"all 6 trials gave the \
-             same bytes again\",\"of\":6,\"seed\":1}},\"signed\":null,\"study\":\"corridors\",\"study-digest\":\"sha256:{}\",\
-             \"verdict\":\"holds\"}}\n",
-            sealed.bundle_id,
-            crate::bundle::format::VERSION,
-            sealed.results_digest,
-            sealed.study_digest
-        )
+    let mut tree = sealed.tree.clone();
+    tree.insert("tagmanifest-sha256.txt.sig".into(), SIGNATURE.into());
+    let envelope = climb_to(Level::Sampled, tree).attest(date).unwrap();
+    let to_sign = String::from_utf8(envelope.to_sign()).unwrap();
+    let states: Vec<String> = ["safe", "fixity", "coherent", "derived", "sampled"]
+        .iter()
+        .enumerate()
+        .map(|(i, name)| format!("{{\"level\":{i},\"name\":\"{name}\",\"state\":\"passed\"}}"))
+        .collect();
+    let payload = format!(
+        "{{\"_type\":\"https://in-toto.io/Statement/v1\",\"predicate\":{{\"bundleId\":\"sha256:{id}\",\
+         \"date\":\"2026-01-15T12:00:00Z\",\"engine\":\"test-1\",\"level\":4,\"levelName\":\"sampled\",\"levels\":[{}],\
+         \"notChecked\":[],\"notes\":[{{\"expected\":\"keys to check the signature with\",\"found\":\"none\",\"hint\":\"name \
+         those you trust with `--trust FILE`; unchecked, it says nothing\",\"level\":1,\"path\":\
+         \"tagmanifest-sha256.txt.sig\"}}],\"overrides\":[],\"partial\":false,\"program\":\"reenact {}\",\"replication\":null,\
+         \"resultsDigest\":\"sha256:{}\",\"sample\":{{\"bound\":0,\"equal\":6,\"executed\":6,\"inWords\":\"all 6 trials gave \
+         the same bytes again\",\"of\":6,\"seed\":\"1\"}},\"selection\":{{\"only\":{{}},\"shard\":null,\"trials\":null}},\
+         \"signed\":null,\"study\":\"corridors\",\"studyDigest\":\"sha256:{}\",\"verdict\":\"holds\"}},\"predicateType\":\
+         \"https://crates.io/crates/reenact#re-execution/v1\",\"subject\":[{{\"digest\":{{\"sha256\":\"{id}\"}},\"name\":\
+         \"tagmanifest-sha256.txt\"}}]}}",
+        states.join(","),
+        crate::bundle::format::VERSION,
+        sealed.results_digest,
+        sealed.study_digest,
+        id = sealed.bundle_id,
     );
+    let head = format!("DSSEv1 28 application/vnd.in-toto+json {} ", payload.len());
+    assert_eq!(to_sign, head + &payload);
+    let json = envelope.to_json();
+    assert!(
+        json.starts_with("{\"payload\":\"eyJfdHlwZSI6Imh0dHBzOi8vaW4tdG90by5pby9TdGF0ZW1lbnQvdjEi"),
+        "{json}"
+    );
+    assert!(
+        json.ends_with("\",\"payloadType\":\"application/vnd.in-toto+json\",\"signatures\":[]}\n"),
+        "{json}"
+    );
+    assert_eq!(Envelope::read("a.json", json.as_bytes()).unwrap(), envelope);
     assert_eq!(
-        climb_to(Level::Full, forged()).attestation(date).unwrap_err(),
+        climb_to(Level::Full, forged()).attest(date).unwrap_err(),
         "the bundle holds to level 3 (derived) and not to level 5 (full), as was asked"
     );
     let opened = archive::read(&sealed.zip(Form::Crate), &Limits::default());
     let options = Options { level: Level::Derived, sample: 0, rows: None, seed: 0 };
     assert_eq!(
-        climb(opened, &options, &ENGINE).attestation(date).unwrap_err(),
+        climb(opened, &options, &ENGINE).attest(date).unwrap_err(),
         "a crate without its bag has no bundle id to attest; check the bundle itself"
     );
 }
@@ -248,7 +271,7 @@ fn junit_has_the_shape_that_viewers_expect() {
     let count = |name| suite.attribute(name).unwrap();
     assert_eq!(
         (count("tests"), count("failures"), count("skipped"), count("time")),
-        ("6", "1", "0", "1.250")
+        ("6", "2", "0", "1.250")
     );
 }
 

@@ -1,0 +1,124 @@
+//! Bundles for the commands that show, compare or hand on what they hold: each is checked to level 3 first, and what that
+//! found is the first thing said.
+
+use super::exit::{Exit, Failure};
+use super::load;
+use super::terminal::counted;
+use crate::bundle::{Bundle, shell_word, visible};
+use crate::verify::{
+    Finding, Level, Options, Reenactment, Report, Reviewer, Severity, Verdict, climb_and_keep,
+};
+use std::path::Path;
+
+/// Faults that a refusal lists.
+const FAULTS_LISTED: usize = 10;
+
+/// A bundle and what checking it found.
+pub(super) struct Checked {
+    pub(super) bundle: Bundle,
+    /// What was found, on one line.
+    pub(super) words: String,
+    /// What must stand over whatever is shown of it; `None` where it is what it says.
+    pub(super) banner: Option<String>,
+}
+
+/// Why a bundle is not gone on with.
+pub(super) struct Refused {
+    pub(super) failure: Failure,
+    /// Whether it could be read at all.
+    pub(super) is_read: bool,
+}
+
+impl From<Refused> for Failure {
+    fn from(refused: Refused) -> Self {
+        refused.failure
+    }
+}
+
+/// Opens and checks the bundle at `path`. One that is not what it says is refused, unless it is wanted `unchecked`.
+pub(super) fn bundle(path: &Path, unchecked: bool) -> Result<Checked, Refused> {
+    let unread = |failure| Refused { failure, is_read: false };
+    // Level 3 executes nothing, so it needs one thread and no seed.
+    let pipeline = Reenactment::new(1).map_err(Failure::failed).map_err(unread)?;
+    let options = Options { level: Level::Derived, sample: 1, rows: None, seed: 0 };
+    let opened = load::archive(path).map_err(unread)?;
+    let (report, bundle) = climb_and_keep(&Reviewer::anonymous(), opened, &options, &pipeline);
+    let Some(bundle) = bundle else { return Err(unread(refused(path, &report, None))) };
+    let reached = report.reached.map_or("no level".to_owned(), |level| format!("level {level}"));
+    let (words, is_good) = match report.verdict() {
+        Verdict::Holds => (format!("checked to {reached}: the bundle is what it says"), true),
+        Verdict::Unanswered => {
+            (format!("checked to {reached}: {}", why_not_further(&report)), false)
+        }
+        _ if unchecked => {
+            let faults = counted(of(&report, Severity::Error).count(), "fault");
+            (
+                format!("NOT WHAT IT SAYS: {faults}, reached {reached} of level {}", report.asked),
+                false,
+            )
+        }
+        _ => {
+            let failure = refused(path, &report, Some("; `--unchecked` goes on all the same"));
+            return Err(Refused { failure, is_read: true });
+        }
+    };
+    let words = match &report.unchecked[..] {
+        [] => words,
+        parts => format!("{words}; {}", parts.join(", ")),
+    };
+    let banner = (!is_good).then(|| words.clone());
+    Ok(Checked { bundle, words, banner })
+}
+
+fn of(report: &Report, severity: Severity) -> impl Iterator<Item = &Finding> {
+    report.findings.iter().filter(move |finding| finding.severity == severity)
+}
+
+/// Why this program could not judge the bundle to the end.
+fn why_not_further(report: &Report) -> String {
+    let obstacle = of(report, Severity::Obstacle).next();
+    let engine = report.engine.as_deref().map(one_line).unwrap_or_default();
+    match obstacle {
+        Some(finding) if finding.found == format!("engine {engine}") => {
+            format!("this program cannot derive the results of engine {engine}")
+        }
+        Some(finding) => {
+            let (expected, found) = (one_line(&finding.expected), one_line(&finding.found));
+            format!("this program cannot judge further (expected {expected}, found {found})")
+        }
+        None => "this program cannot judge further".to_owned(),
+    }
+}
+
+/// The refusal, with the first faults and what to do.
+fn refused(path: &Path, report: &Report, way_out: Option<&str>) -> Failure {
+    let name = path.display().to_string();
+    let severity = match report.verdict() {
+        Verdict::Broken => Severity::Error,
+        _ => Severity::Obstacle,
+    };
+    let faults: Vec<_> = of(report, severity).collect();
+    let reached = report.reached.map_or("no level".to_owned(), |level| format!("level {level}"));
+    let (exit, answer) = match severity {
+        Severity::Error => (Exit::No, "the bundle is not what it says"),
+        _ => (Exit::NotUnderstood, "this program cannot judge the bundle"),
+    };
+    let asked = report.asked;
+    let mut message = format!("error: {name}: {answer}: reached {reached} of level {asked}\n");
+    for fault in faults.iter().take(FAULTS_LISTED) {
+        // Further lines are set in, so that none can pass for one of ours.
+        let fault = visible(fault.to_string().trim_end()).replace('\n', "\n    ");
+        message.push_str(&format!("{fault}\n"));
+    }
+    if faults.len() > FAULTS_LISTED {
+        message.push_str(&format!("... and {} more\n", faults.len() - FAULTS_LISTED));
+    }
+    let word = shell_word(&name).unwrap_or(name);
+    let way_out = way_out.unwrap_or_default();
+    message.push_str(&format!("`reenact verify {word}` tells everything{way_out}\n"));
+    Failure { exit, message }
+}
+
+fn one_line(text: &str) -> String {
+    visible(text).replace('\n', " ")
+}

@@ -1,0 +1,95 @@
+//! What a reviewer can sign and publish: which bundle was checked, how far, by what, when, and what was noticed.
+//!
+//! In the field's form: an in-toto Statement about the bundle's list of digests, in a DSSE envelope. Reenact writes it
+//! unsigned and reads no private key; `ssh-keygen -Y sign` signs the bytes that DSSE says, and the signature is put in.
+
+mod dsse;
+mod reading;
+mod statement;
+
+pub use dsse::Envelope;
+pub use reading::Attestation;
+
+use super::{Report, Verdict};
+use crate::bundle::{Moment, format};
+use statement::{Digests, Note, Predicate, Replicated, Rung, Sampled, Statement, Subject};
+
+/// The most bytes that an envelope may have.
+pub const LONGEST: u64 = 1 << 20;
+
+impl Report {
+    /// The attestation of a check that holds, unsigned: the same check gives the same bytes.
+    ///
+    /// # Errors
+    /// Where there is nothing to attest, in words.
+    pub fn attest(&self, date: Moment) -> Result<Envelope, String> {
+        let (Some(level), Verdict::Holds) = (self.reached, self.verdict()) else {
+            let reached =
+                self.reached.map_or("no level".to_owned(), |level| format!("level {level}"));
+            return Err(if self.reached == Some(self.asked) {
+                "the attestation that was given is refused".to_owned()
+            } else {
+                format!(
+                    "the bundle holds to {reached} and not to level {}, as was asked",
+                    self.asked
+                )
+            });
+        };
+        let (Some(id), Some(results), Some(study), Some(departure)) =
+            (self.bundle_id, self.results_digest, self.study_digest, &self.departure)
+        else {
+            return Err(
+                "a crate without its bag has no bundle id to attest; check the bundle itself"
+                    .to_owned(),
+            );
+        };
+        let notes = self.findings.iter().map(|finding| Note {
+            level: finding.level.number(),
+            path: finding.path.clone(),
+            expected: finding.expected.clone(),
+            found: finding.found.clone(),
+            hint: finding.hint.clone(),
+        });
+        let levels = self.states().into_iter().map(|state| Rung {
+            level: state["level"].as_u64().unwrap_or_default(),
+            name: state["name"].as_str().unwrap_or_default().to_owned(),
+            state: state["state"].as_str().unwrap_or_default().to_owned(),
+        });
+        let predicate = Predicate {
+            bundle_id: format!("sha256:{id}"),
+            results_digest: format!("sha256:{results}"),
+            study_digest: format!("sha256:{study}"),
+            study: self.name.clone().unwrap_or_default(),
+            partial: departure.partial,
+            overrides: departure.overrides.clone(),
+            selection: departure.selection.as_ref().map(crate::plan::Selection::to_json),
+            verdict: statement::HOLDS.to_owned(),
+            level: level.number(),
+            level_name: level.name().to_owned(),
+            levels: levels.collect(),
+            sample: self.sample.as_ref().map(|sample| Sampled {
+                executed: sample.executed,
+                equal: sample.equal,
+                of: sample.of,
+                seed: sample.seed.map(|seed| seed.to_string()),
+                bound: sample.bound(),
+                in_words: sample.in_words(),
+            }),
+            replication: self.replication.as_ref().map(|replication| Replicated {
+                seed: replication.seed.to_string(),
+                in_words: replication.in_words(),
+            }),
+            signed: self.signed.clone(),
+            notes: notes.collect(),
+            not_checked: self.unchecked.clone(),
+            engine: self.engine.clone().unwrap_or_default(),
+            program: format!("reenact {}", format::VERSION),
+            date: statement::written(date),
+        };
+        let subject = Subject {
+            name: Some(format::TAG_MANIFEST.to_owned()),
+            digest: Digests { sha256: id.to_string() },
+        };
+        Ok(Envelope::unsigned(&Statement::about(subject, predicate)))
+    }
+}
