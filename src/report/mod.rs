@@ -3,7 +3,6 @@
 //! Everything here is a pure function of its arguments: no clock, no file, no network. Pages carry their
 //! style and script inside and forbid everything else by their own content security policy.
 
-mod agreement;
 mod assumptions;
 pub mod bag;
 mod claim;
@@ -25,7 +24,6 @@ mod still;
 mod tables;
 mod template;
 
-pub use agreement::Agreement;
 pub use bag::{Bag, bag};
 pub use claim::{ClaimRow, ComparisonRow};
 pub use content::{
