@@ -271,7 +271,7 @@ fn claims() -> Vec<ClaimRow> {
         },
         ClaimRow {
             id: "P3".into(),
-            ours: "our gains go with the paper's".into(),
+            ours: "gains here go with those printed".into(),
             verdict: "inconclusive".into(),
             numbers: "rank correlation +0.20 (95 % interval −0.10 to +0.50)".into(),
             paper_table: "silent".into(),
