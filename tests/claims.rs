@@ -77,14 +77,14 @@ fn claims_about_the_machine_are_circumstances() {
     let words = ["run", "demo/demo.yaml", "--set", "trials=1"];
     let measured = reenact(folder, &words, false);
     let told = "\
-Claims
+Claims of the paper
   claim  we find           paper's table
   P1     cannot-be-tested  supports
          (prior=floor-plan) has 1 runs to compare, fewer than the minimum of 10
-reproduction: 0 of 1 claims supported, 0 contradicted, 0 inconclusive, 1 cannot
-be tested
+reproduction: 0 of 1 claims of the paper supported, 0 contradicted, 0
+inconclusive, 1 cannot be tested
 
-Claims about the machine (not among the results)
+Claims of the paper about the machine (not among the results)
   claim  we find           paper's table
   P21    inconclusive      silent
 ";

@@ -43,10 +43,25 @@ impl Desk {
         std::fs::read_to_string(self.path(name)).unwrap()
     }
 
+    /// A desk with the short study on it.
+    fn with_study() -> Self {
+        let desk = Self::new();
+        for file in ["robots/kobuki.urdf", "worlds/basic.yaml"] {
+            let name = file.rsplit('/').next().unwrap();
+            std::fs::copy(root().join(file), desk.path(name)).unwrap();
+        }
+        std::fs::write(desk.path("short.yaml"), STUDY).unwrap();
+        desk
+    }
+
     fn run(&self, words: &[&str]) -> Answer {
+        self.run_in("", words)
+    }
+
+    fn run_in(&self, folder: &str, words: &[&str]) -> Answer {
         let output = Command::new(assert_cmd::cargo::cargo_bin!("reenact"))
             .args(words)
-            .current_dir(self.folder.path())
+            .current_dir(self.path(folder))
             .env("REENACT_STORE", self.path("store"))
             .env("SOURCE_DATE_EPOCH", "1600000000")
             .output()
@@ -202,12 +217,7 @@ claims:
 
 #[test]
 fn a_study_with_its_engine_sealed_in_replicates_and_is_attested() {
-    let desk = Desk::new();
-    for file in ["robots/kobuki.urdf", "worlds/basic.yaml"] {
-        let name = file.rsplit('/').next().unwrap();
-        std::fs::copy(root().join(file), desk.path(name)).unwrap();
-    }
-    std::fs::write(desk.path("short.yaml"), STUDY).unwrap();
+    let desk = Desk::with_study();
     let digest = |words: &[&str]| {
         let run = desk.run(words);
         assert_eq!((run.stderr.as_str(), run.code), ("", 0));
@@ -276,8 +286,7 @@ fn a_study_with_its_engine_sealed_in_replicates_and_is_attested() {
         );
     }
     let readme = String::from_utf8(tree["data/README.md"].clone()).unwrap();
-    let install =
-        concat!("\ncargo install reenact --version ", env!("CARGO_PKG_VERSION"), " --locked\n");
+    let install = "\n```\ncargo install --path . --locked\n```\n";
     assert!(
         readme.contains(install) && readme.contains(&format!("(engine {ENGINE_VERSION})")),
         "{readme}"
@@ -289,6 +298,67 @@ fn a_study_with_its_engine_sealed_in_replicates_and_is_attested() {
     let why = "error: wrote no `a.json`: the bundle holds to no level and not to level 3 (derived), as was asked\n";
     assert_eq!((broken.stderr.as_str(), broken.code), (why, 1));
     assert!(!desk.path("a.json").exists());
+}
+
+/// The lines of a Markdown text's fenced blocks that begin with `program`, without their comments.
+fn printed(text: &str, program: &str) -> Vec<String> {
+    let mut fenced = false;
+    text.lines()
+        .filter(|line| {
+            let is_fence = line.starts_with("```");
+            fenced ^= is_fence;
+            fenced && !is_fence
+        })
+        .map(|line| line.split(" #").next().unwrap_or_default().trim_end().to_owned())
+        .filter(|line| line.split(' ').next() == Some(program))
+        .collect()
+}
+
+#[test]
+fn commands_are_found_in_fenced_blocks_alone() {
+    let text =
+        "reenact a\n```\nreenact b c   # d\nsha256sum e\n```\nreenact f\n```sh\nreenact\n```\n";
+    assert_eq!(printed(text, "reenact"), ["reenact b c", "reenact"]);
+    assert_eq!(printed(text, "sha256sum"), ["sha256sum e"]);
+}
+
+/// Where they are said to work: those of the README and the page in the folder of the bundle, checksums in the folder above
+/// the README.
+#[test]
+fn every_command_that_a_bundle_and_its_page_print_works_as_printed() {
+    let desk = Desk::with_study();
+    let run = desk.run(&["run", "short.yaml", "--out", "bundles"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let bundle = run.stdout.lines().last().unwrap().to_owned();
+    let report = desk.run(&["report", &bundle, "-o", "page.html"]);
+    assert_eq!(report.code, 0, "{}", report.stderr);
+    let page = desk.read("page.html").replace("&#x2f;", "/");
+    let lines = page.split("<pre tabindex=\"0\"><code>").skip(1);
+    let mut commands: Vec<String> =
+        lines.map(|rest| rest.split("</code>").next().unwrap().to_owned()).collect();
+    assert!(commands.len() > 5, "{commands:?}");
+
+    let unpacked = desk.run(&["export", &bundle, "--dir", "--out", "tree"]);
+    assert_eq!(unpacked.code, 0, "{}", unpacked.stderr);
+    let bag = desk.path(unpacked.stdout.trim());
+    let readme = std::fs::read_to_string(bag.join("data/README.md")).unwrap();
+    let of_readme = printed(&readme, "reenact");
+    assert!(of_readme.len() > 1, "{readme}");
+    commands.extend(of_readme);
+    for line in &commands {
+        let words: Vec<&str> = line.split(' ').collect();
+        assert_eq!(words[0], "reenact", "{line}");
+        let answer = desk.run_in("bundles", &words[1..]);
+        assert_eq!(answer.code, 0, "{line}\n{}{}", answer.stdout, answer.stderr);
+    }
+    let sums = printed(&readme, "sha256sum");
+    assert_eq!(sums.len(), 1, "{readme}");
+    for line in sums {
+        let mut words = line.split(' ');
+        let checked = Command::new(words.next().unwrap()).args(words).current_dir(&bag).output();
+        let checked = checked.unwrap();
+        assert!(checked.status.success(), "{line}\n{}", String::from_utf8_lossy(&checked.stderr));
+    }
 }
 
 /// The small bundle in the repository, as a reviewer of years to come would check it: wholly, for as long as its engine is
@@ -310,6 +380,6 @@ fn the_published_quickstart_bundle_still_verifies() {
     } else {
         assert_eq!((answer.code, report["reached"].as_u64()), (2, Some(2)), "{}", answer.stdout);
         let hint = report["findings"][0]["hint"].as_str().unwrap();
-        assert!(hint.contains("`cargo install reenact --version "), "{hint}");
+        assert!(hint.contains("`cargo install --path . --locked`"), "{hint}");
     }
 }

@@ -125,7 +125,8 @@ pub fn findings<'a>(
 ) -> Findings<'a> {
     let experiment = &plan.experiment;
     let calibration = experiment.conditions.iter().find_map(|(_, setup)| setup.calibration());
-    Findings { factors, records, published: &experiment.published, calibration }
+    let design = &experiment.conditions;
+    Findings { factors, design, records, published: &experiment.published, calibration }
 }
 
 fn sealed_conditions(plan: &Plan, records: &[TrialRecord]) -> Vec<SealedCondition> {
@@ -198,6 +199,7 @@ fn results(plan: &Plan, records: &[TrialRecord]) -> Result<Results, String> {
         let mut note = String::new();
         let (tidy, print) = match &request.layout {
             TableLayout::CoverageTable(wanted) => {
+                note = method_note(findings.coverage_rules(wanted));
                 (findings.coverage_table(wanted), findings.coverage_table_in_print(wanted))
             }
             TableLayout::AgreementTable(wanted) => {
@@ -213,9 +215,11 @@ fn results(plan: &Plan, records: &[TrialRecord]) -> Result<Results, String> {
                 (findings.effects_table(wanted), print)
             }
             TableLayout::MeasuresTable(wanted) => {
+                note = method_note(findings.measures_rules(wanted));
                 (findings.measures_table(wanted), findings.measures_table_in_print(wanted))
             }
             TableLayout::OutcomeTable(wanted) => {
+                note = method_note(findings.outcome_rules(wanted));
                 (findings.outcome_table(wanted), findings.outcome_table_in_print(wanted))
             }
             TableLayout::ManeuverTable(wanted) => {
@@ -232,11 +236,17 @@ fn results(plan: &Plan, records: &[TrialRecord]) -> Result<Results, String> {
         files.push((path("md"), print.into_bytes()));
     }
     for request in &experiment.figures {
-        let svg = figures::draw(plan, &findings, request).svg;
-        files.push((format!("figures/{}.svg", request.id), svg.into_bytes()));
+        if let Some(drawn) = figures::draw(plan, &findings, request) {
+            files.push((format!("figures/{}.svg", request.id), drawn.svg.into_bytes()));
+        }
     }
     files.push(("claims.json".to_owned(), verdicts_json(&verdicts(plan, records)?)));
     Ok((files, described))
+}
+
+/// What the marks beside the paper's numbers mean, below a table; nothing where none stands there.
+fn method_note(rules: Option<String>) -> String {
+    rules.map_or_else(String::new, |rules| format!("\nMarks: {rules}.\n"))
 }
 
 /// Whether the run measures the machine.

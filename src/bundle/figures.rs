@@ -20,19 +20,23 @@ pub struct Drawn {
     pub alt: String,
 }
 
-/// The figure that `request` asks of `findings`, those of `plan`.
-pub fn draw(plan: &Plan, findings: &Findings<'_>, request: &FigureRequest) -> Drawn {
+/// The figure that `request` asks of `findings`, those of `plan`; `None` where no trial that was run has anything to show in
+/// it, as a partial run may leave it: axes alone would look like a result.
+pub fn draw(plan: &Plan, findings: &Findings<'_>, request: &FigureRequest) -> Option<Drawn> {
     let (title, tables) = (request.title.as_str(), &plan.experiment.tables);
     let drawn = |svg: String, kind: &str, words: String, caption: &'static str| {
         let alt = [format!("{kind}: {title}"), words];
         let alt = alt.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(". ");
         Drawn { svg, caption, alt }
     };
-    match &request.layout {
+    Some(match &request.layout {
         FigureLayout::CoverageCurve(curve) => {
             let tables: Vec<_> =
                 coverage_tables(tables).into_iter().map(|(_, table)| table).collect();
             let chart = findings.coverage_figure(title, curve, &tables);
+            if chart.is_empty() {
+                return None;
+            }
             drawn(
                 chart.to_svg(),
                 "Line chart",
@@ -55,6 +59,9 @@ pub fn draw(plan: &Plan, findings: &Findings<'_>, request: &FigureRequest) -> Dr
         ),
         FigureLayout::OutcomeBars(wanted) => {
             let chart = findings.outcome_figure(title, wanted);
+            if chart.is_empty() {
+                return None;
+            }
             let (kind, caption) = if chart.boxes.is_empty() {
                 (
                     "Bar chart",
@@ -71,6 +78,9 @@ pub fn draw(plan: &Plan, findings: &Findings<'_>, request: &FigureRequest) -> Dr
         }
         FigureLayout::OutcomeShares(wanted) => {
             let chart = findings.shares_figure(title, wanted);
+            if chart.is_empty() {
+                return None;
+            }
             drawn(
                 chart.to_svg(),
                 "Stacked bars",
@@ -80,6 +90,9 @@ pub fn draw(plan: &Plan, findings: &Findings<'_>, request: &FigureRequest) -> Dr
         }
         FigureLayout::PublishedScatter(wanted) => {
             let chart = findings.scatter_figure(title, wanted, tables);
+            if chart.is_empty() {
+                return None;
+            }
             drawn(
                 chart.to_svg(),
                 "Scatter chart",
@@ -98,7 +111,7 @@ pub fn draw(plan: &Plan, findings: &Findings<'_>, request: &FigureRequest) -> Dr
                  study's planner makes on it for one leg from the start to the goal within t_d.",
             )
         }
-    }
+    })
 }
 
 fn first<'p>(

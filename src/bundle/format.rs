@@ -66,9 +66,12 @@ pub const CIRCUMSTANCES: &str = "circumstances/";
 /// The engine's own source, where the bundle holds it.
 pub const ENGINE: &str = "engine/";
 
-/// The line that installs the program of `version`.
-pub fn install_line(version: &str) -> String {
-    format!("cargo install reenact --version {version} --locked")
+/// The line that installs the program from the root of a checkout of its source. No registry has it.
+pub const INSTALL: &str = "cargo install --path . --locked";
+
+/// Where and how to install the program of `version`, in words.
+pub fn install_words(version: &str) -> String {
+    format!("in a checkout of the source of reenact {version}, `{INSTALL}`")
 }
 
 /// Path of a condition's records, relative to [`PAYLOAD`].

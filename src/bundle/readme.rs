@@ -13,7 +13,7 @@ pub(super) fn readme(
     additions: Additions<'_>,
 ) -> String {
     let (version, engine) = (&circumstance.version, &content.engine);
-    let install = format::install_line(version);
+    let install = format::INSTALL;
     let stem = format!("{}-{}", content.name, digest.short());
     let mut later = String::new();
     let mut text = format!("# {}\n\n{}\n", content.title, content.description);
@@ -39,10 +39,16 @@ sha256sum --check manifest-sha256.txt tagmanifest-sha256.txt
 bagit.py --validate .
 ```
 
-With Reenact {version} (engine {engine}), which also derives every table from the trial records and runs trials again:
+With Reenact {version} (engine {engine}), which also derives every table from the trial records and runs trials again. It is
+installed from the root of a checkout of that version's source:
 
 ```
 {install}
+```
+
+Then, in the folder where the bundle lies:
+
+```
 reenact verify {stem}.zip                # levels 0 to 3: seconds
 reenact verify {stem}.zip --level 5      # every trial again, bit for bit
 ```
@@ -84,15 +90,17 @@ Checksums show that nothing changed since they were made; who made them, only a 
             "
 ## In ten years
 
-Where `cargo install` no longer finds that version, `{}` holds its source. Unpack it, read it, and build it:
+Where no checkout of that version can be had, `{path}` holds its source. Unpack it in this folder, read it, and
+build it:
 
 ```
+unzip {path}
 cargo install --path reenact-{version} --locked
 ```
 
 The crates that it needs are named in its `Cargo.lock`, each with its digest; they are not in here.
 ",
-            capsule.path
+            path = capsule.path
         );
     }
     text.push_str(&reading(content));

@@ -49,6 +49,7 @@ impl Claim {
         if self.id.is_empty() {
             faults.add("id", "expected a name, found nothing".to_owned());
         }
+        self.check_words(&mut faults);
         self.check_circumstance(&mut faults);
         for (path, selection) in self.expect.selections() {
             faults.selection(&path, selection);
@@ -62,13 +63,43 @@ impl Claim {
             .found
             .into_iter()
             .map(|(path, fault)| match path.as_str() {
-                "id" | "circumstance" => format!("claim `{}`: {path}: {fault}", self.id),
+                "" => format!("claim `{}`: {fault}", self.id),
+                "id" | "circumstance" | "says" | "ours" | "paper-table" => {
+                    format!("claim `{}`: {path}: {fault}", self.id)
+                }
                 path if path.starts_with("power") => {
                     format!("claim `{}`: {path}: {fault}", self.id)
                 }
                 path => format!("{head}.{path}: {fault}"),
             })
             .collect()
+    }
+
+    /// The paper's words or ours: one of them, and said.
+    fn check_words(&self, faults: &mut Faults<'_>) {
+        match (&self.says, &self.ours) {
+            (Some(_), Some(_)) => faults.add(
+                "",
+                "expected `says` or `ours`, found both; keep `says` where the words are the paper's, `ours` where they are your \
+                 own"
+                    .to_owned(),
+            ),
+            (None, None) => faults.add(
+                "",
+                "expected `says` with the paper's words, or `ours` with a check of your own, found neither".to_owned(),
+            ),
+            (Some(_), None) if self.paper_table.is_none() => faults.add(
+                "paper-table",
+                "expected `supports`, `contradicts` or `silent` beside `says`, found nothing; say what the paper's own numbers \
+                 show of its sentence"
+                    .to_owned(),
+            ),
+            _ => {}
+        }
+        for (key, words) in [("says", &self.says), ("ours", &self.ours)] {
+            let said = words.as_ref().is_none_or(|words| !words.trim().is_empty());
+            faults.unless(said, key, || "expected words, found none".to_owned());
+        }
     }
 
     fn check_circumstance(&self, faults: &mut Faults<'_>) {

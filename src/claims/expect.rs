@@ -5,7 +5,9 @@
 //! `brown-forsythe` (measures).
 //! ```yaml
 //! id: D1
-//! says: random is most effective from A except at the shortest deadline
+//! says: >-
+//!   the random strategy is the most effective when starting from location A, except when the shortest
+//!   deadline is enforced
 //! paper-table: supports
 //! expect:
 //!   greater:
@@ -18,7 +20,9 @@
 //! ```
 //! ```yaml
 //! id: P1
-//! says: the floor plan makes exploration significantly shorter
+//! says: >-
+//!   The use of the floor plan ... allows to explore the environment travelling a significantly shorter
+//!   distance
 //! paper-table: supports
 //! expect:
 //!   less:
@@ -35,7 +39,9 @@
 //! for shares, Welch's test for measures). A large p-value of a test for a difference is never taken for equality.
 //! ```yaml
 //! id: D4
-//! says: at the tightest deadline normalized-frontier is comparable to frontier
+//! says: >-
+//!   as the deadline becomes more stringent its advantage seems to vanish and it becomes more or less
+//!   comparable to the topological frontier
 //! paper-table: contradicts
 //! expect:
 //!   equivalent:
@@ -49,7 +55,9 @@
 //! difference from another cell.
 //! ```yaml
 //! id: P6
-//! says: in the office the floor plan saves 25 to 40 % of the time to 70 %
+//! says: >-
+//!   a speed-up for covering 70 % of the free area of 25 % wrt the use of no prior knowledge for the
+//!   furnished version and of almost 40 % for the unfurnished one
 //! paper-table: supports
 //! expect:
 //!   between:
@@ -63,7 +71,7 @@
 //! permutation p for measures).
 //! ```yaml
 //! id: D6
-//! says: strict deadlines boost failures of all algorithms
+//! says: the temporal deadlines are strict, and this boosts failure rates for all algorithms
 //! paper-table: supports
 //! expect:
 //!   trend:
@@ -79,8 +87,7 @@
 //! `homogeneous`: all cells across a factor lie within a margin of one another.
 //! ```yaml
 //! id: D1b
-//! says: at the shortest deadline all strategies do alike
-//! paper-table: silent
+//! ours: at the shortest deadline all strategies do alike
 //! expect:
 //!   homogeneous:
 //!     metric: success
@@ -92,7 +99,7 @@
 //! `rank`: one cell is `first` (highest) or `last` of those across a factor, or all stand in `descending` order.
 //! ```yaml
 //! id: D2b
-//! says: from B random is the worst
+//! ours: from B random is the worst
 //! paper-table: supports
 //! expect:
 //!   rank:
@@ -105,7 +112,7 @@
 //! than not. Several metrics of the same runs vote together: they are one pair, not several.
 //! ```yaml
 //! id: P11
-//! says: prior knowledge improves performance considerably
+//! says: Using a priori knowledge improves considerably the performance in all the three cases
 //! paper-table: supports
 //! expect:
 //!   sign-test:
@@ -121,7 +128,9 @@
 //! bound; by bootstrap.
 //! ```yaml
 //! id: D5
-//! says: the semantic strategies depend less on the start
+//! says: >-
+//!   The semantic strategies, on the contrary, appear to have a performance that is less dependent on the
+//!   start location
 //! paper-table: contradicts
 //! expect:
 //!   spread:
@@ -134,8 +143,7 @@
 //! measure does not meet it.
 //! ```yaml
 //! id: D11
-//! says: half of the runs of frontier arrive within five minutes
-//! paper-table: silent
+//! ours: half of the runs of frontier arrive within five minutes
 //! expect:
 //!   share:
 //!     that: {metric: time-s, at-most: 300}
@@ -146,7 +154,7 @@
 //! not meet it contradicts the claim.
 //! ```yaml
 //! id: D10
-//! says: a trial is a failure if it has not reached the target by the deadline
+//! says: a trial is considered a failure if the robot has not reached the target location by the given deadline
 //! paper-table: supports
 //! expect: {every: {that: {metric: time-s, at-most: deadline-s}, censored: reached-only}}
 //! ```
@@ -154,7 +162,9 @@
 //! else; by bootstrap over trials.
 //! ```yaml
 //! id: D7b
-//! says: aggressive maneuvers possibly increase collisions
+//! says: >-
+//!   more aggressive maneuvers, thus possibly also increasing the number of failures due to collisions
+//!   with the environment
 //! paper-table: silent
 //! expect:
 //!   rate:
@@ -166,7 +176,7 @@
 //! a base cell.
 //! ```yaml
 //! id: D15
-//! says: the same conclusions in relative value
+//! says: reaching the same conclusions in terms of relative value of the exploration strategies
 //! paper-table: silent
 //! expect:
 //!   correlation-with-published:
@@ -179,8 +189,7 @@
 //! skill over a constant and over `baseline` means beside it.
 //! ```yaml
 //! id: D15b
-//! says: success rates within 18 points of the paper's
-//! paper-table: silent
+//! ours: success rates within 18 points of the paper's
 //! expect:
 //!   rmse-with-published:
 //!     metric: success
@@ -193,7 +202,9 @@
 //! others, so that nobody takes it for overlooked; its verdict is `cannot-be-tested`.
 //! ```yaml
 //! id: P22
-//! says: the improvement is more evident in the real world than in simulations
+//! says: >-
+//!   The performance improvement ... is more evident in the real world, which is inherently more complex
+//!   and noisy, than in simulations
 //! paper-table: silent
 //! expect: {untestable: {because: there is no real world in a simulation}}
 //! ```

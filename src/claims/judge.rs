@@ -177,9 +177,9 @@ fn conclude(claim: &Claim, bench: &Bench<'_>, drafts: Vec<Draft>) -> Verdict {
     };
     Verdict {
         id: claim.id.clone(),
-        says: claim.says.clone(),
+        words: claim.words(),
         cite: claim.cite.clone(),
-        paper_table: claim.paper_table,
+        paper_table: claim.papers_table(),
         judgement,
         reason,
         form: claim.expect.form(),

@@ -4,7 +4,7 @@
 //! table, [`power::power`] says beforehand what a number of trials would decide.
 //!
 //! A verdict is supported, contradicted, inconclusive or cannot-be-tested. What the paper says
-//! ([`Claim::says`]), what its own table shows ([`Claim::paper_table`]) and what we find
+//! ([`Claim::words`]), what its own table shows ([`Claim::paper_table`]) and what we find
 //! ([`Verdict::judgement`]) stay three facts: none is computed from another.
 //!
 //! The rules (`docs/claims.md`): a p-value above alpha is never evidence of equality; runs that did not reach a
@@ -48,17 +48,25 @@ use std::fmt;
 /// A claim of the paper, as a manifest states it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(extend(
+    "not" = {"required": ["says", "ours"]},
+    "if" = {"required": ["ours"]},
+    "then" = {},
+    "else" = {"required": ["says", "paper-table"]}
+))]
 pub struct Claim {
     /// Short name, unique in the manifest.
     pub id: String,
-    /// What the paper says, in words.
-    pub says: String,
-    /// Where it says so.
+    /// What the paper says, in its own words, `...` where some are left out. Either this or `ours`.
+    pub says: Option<String>,
+    /// What we check besides, which the paper does not say, in our words. Shown and counted apart.
+    pub ours: Option<String>,
+    /// Where the paper says so.
     pub cite: Option<String>,
     /// The statement that is judged.
     pub expect: Expect,
-    /// Whether the paper's own table bears it out.
-    pub paper_table: PaperTable,
+    /// Whether the paper's own table bears it out; `silent` for a check of ours that does not say.
+    pub paper_table: Option<PaperTable>,
     /// Whether it is about the machine (wall times) rather than the study. Judged apart from the results.
     #[serde(default)]
     pub circumstance: bool,
@@ -66,6 +74,47 @@ pub struct Claim {
     pub power: Option<power::Assume>,
     /// Why this form, these cells or this margin, where the paper leaves it open.
     pub why: Option<String>,
+}
+
+/// Whose words a claim is in.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Words {
+    /// The paper's.
+    Says(String),
+    /// Our own: the paper does not say so.
+    Ours(String),
+}
+
+impl Words {
+    /// The key under which they stand.
+    pub fn key(&self) -> &'static str {
+        match self {
+            Self::Says(_) => "says",
+            Self::Ours(_) => "ours",
+        }
+    }
+
+    /// The words themselves.
+    pub fn text(&self) -> &str {
+        match self {
+            Self::Says(text) | Self::Ours(text) => text,
+        }
+    }
+}
+
+impl Claim {
+    /// Its words: the paper's where there are any. [`Claim::check`] refuses a claim with both or neither.
+    pub fn words(&self) -> Words {
+        match (&self.says, &self.ours) {
+            (Some(says), _) => Words::Says(says.clone()),
+            (None, ours) => Words::Ours(ours.clone().unwrap_or_default()),
+        }
+    }
+
+    /// What the paper's own table shows of it.
+    pub fn papers_table(&self) -> PaperTable {
+        self.paper_table.unwrap_or(PaperTable::Silent)
+    }
 }
 
 /// What the paper's own table shows of a claim: a statement of the manifest's author, never computed.

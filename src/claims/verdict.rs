@@ -1,6 +1,6 @@
 //! What judging a claim yields, and its canonical form in `results/claims.json`.
 
-use super::PaperTable;
+use super::{PaperTable, Words};
 use crate::stats::Interval;
 use serde_json::{Map, Value, json};
 use std::fmt;
@@ -126,8 +126,8 @@ pub fn agreement_in_words<'a>(statistics: impl IntoIterator<Item = (&'a str, f64
 pub struct Verdict {
     /// The claim's id.
     pub id: String,
-    /// What the paper says.
-    pub says: String,
+    /// What is claimed, by the paper or by us.
+    pub words: Words,
     /// Where it says so.
     pub cite: Option<String>,
     /// What the paper's own table shows, as the manifest states it.
@@ -266,7 +266,7 @@ impl Verdict {
     pub fn to_json(&self) -> Value {
         json!({
             "id": self.id,
-            "says": self.says,
+            self.words.key(): self.words.text(),
             "cite": self.cite,
             "paper-table": self.paper_table.to_string(),
             "verdict": self.judgement.to_string(),
@@ -298,9 +298,10 @@ pub struct Score {
 }
 
 impl Score {
-    /// Counts `verdicts`.
-    pub fn of(verdicts: &[Verdict]) -> Self {
-        let count = |j| verdicts.iter().filter(|v| v.judgement == j).count();
+    /// Counts `verdicts`, whosever words they are on.
+    pub fn of<'a>(verdicts: impl IntoIterator<Item = &'a Verdict>) -> Self {
+        let found: Vec<Judgement> = verdicts.into_iter().map(|v| v.judgement).collect();
+        let count = |j| found.iter().filter(|found| **found == j).count();
         Self {
             supported: count(Judgement::Supported),
             contradicted: count(Judgement::Contradicted),
@@ -310,14 +311,34 @@ impl Score {
     }
 }
 
-impl fmt::Display for Score {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let all = self.supported + self.contradicted + self.inconclusive + self.cannot_be_tested;
-        write!(
-            f,
-            "{} of {all} claims supported, {} contradicted, {} inconclusive, {} cannot be tested",
-            self.supported, self.contradicted, self.inconclusive, self.cannot_be_tested
+impl Score {
+    /// All of them.
+    pub fn all(&self) -> usize {
+        self.supported + self.contradicted + self.inconclusive + self.cannot_be_tested
+    }
+
+    /// The counts in words, `what` being what is counted: `2 of 3 claims of the paper supported, ...`.
+    pub fn in_words(&self, what: &str) -> String {
+        format!(
+            "{} of {} {what} supported, {} contradicted, {} inconclusive, {} cannot be tested",
+            self.supported,
+            self.all(),
+            self.contradicted,
+            self.inconclusive,
+            self.cannot_be_tested
         )
+    }
+
+    /// What the verdicts say of the paper, and apart from it what they say of our own checks: one line each, those of
+    /// nothing left out.
+    pub fn lines(verdicts: &[Verdict]) -> Vec<String> {
+        let of = |wanted: fn(&Words) -> bool, what: &str| {
+            let score = Self::of(verdicts.iter().filter(|verdict| wanted(&verdict.words)));
+            (score.all() > 0).then(|| score.in_words(what))
+        };
+        let papers = of(|words| matches!(words, Words::Says(_)), "claims of the paper");
+        let ours = of(|words| matches!(words, Words::Ours(_)), "checks of our own");
+        [papers, ours].into_iter().flatten().collect()
     }
 }
 

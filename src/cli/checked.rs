@@ -64,7 +64,7 @@ pub(super) fn bundle(path: &Path, unchecked: bool) -> Result<Checked, Refused> {
     };
     let words = match &report.unchecked[..] {
         [] => words,
-        parts => format!("{words}; {}", parts.join(", ")),
+        parts => format!("{words}; {}", one_line(&parts.join(", "))),
     };
     let banner = (!is_good).then(|| words.clone());
     Ok(Checked { bundle, words, banner })
@@ -101,6 +101,7 @@ fn refused(path: &Path, report: &Report, way_out: Option<&str>) -> Failure {
     let reached = report.reached.map_or("no level".to_owned(), |level| format!("level {level}"));
     let (exit, answer) = match severity {
         Severity::Error => (Exit::No, "the bundle is not what it says"),
+        _ if report.verdict() == Verdict::Failed => (Exit::Failed, "this program failed"),
         _ => (Exit::NotUnderstood, "this program cannot judge the bundle"),
     };
     let asked = report.asked;

@@ -53,6 +53,11 @@ pub struct Estimate {
 }
 
 impl EstimateChart {
+    /// Whether nothing of ours is in it: then it would be axes alone.
+    pub fn is_empty(&self) -> bool {
+        self.lines.iter().flat_map(PanelLine::rows).all(|row| row.value.is_none())
+    }
+
     /// The chart as the text of an SVG file.
     pub fn to_svg(&self) -> String {
         let dots = !self.boxes.is_empty();

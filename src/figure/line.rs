@@ -53,6 +53,11 @@ pub struct PublishedPoint {
 }
 
 impl LineChart {
+    /// Whether nothing of ours is in it: then it would be axes alone.
+    pub fn is_empty(&self) -> bool {
+        self.series.iter().all(|series| series.points.is_empty())
+    }
+
     /// The chart as the text of an SVG file.
     pub fn to_svg(&self) -> String {
         let plot = self.plot();

@@ -26,6 +26,13 @@ pub struct PanelLine<R> {
     pub panels: Vec<Panel<R>>,
 }
 
+impl<R> PanelLine<R> {
+    /// The rows of all its panels.
+    pub fn rows(&self) -> impl Iterator<Item = &R> {
+        self.panels.iter().flat_map(|panel| &panel.rows)
+    }
+}
+
 /// One panel.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Panel<R> {

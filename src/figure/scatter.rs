@@ -55,6 +55,11 @@ pub struct ScatterPoint {
 type Taken = (f64, f64, f64, f64);
 
 impl Scatter {
+    /// Whether nothing of ours is in it: then it would be axes alone.
+    pub fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+
     /// The chart as the text of an SVG file.
     pub fn to_svg(&self) -> String {
         let shown = |v: f64| v.is_finite() && (!self.logarithmic || v > 0.0);

@@ -100,6 +100,11 @@ pub struct Shares {
 }
 
 impl ShareChart {
+    /// Whether nothing of ours is in it: then it would be axes alone.
+    pub fn is_empty(&self) -> bool {
+        self.lines.iter().flat_map(PanelLine::rows).all(|row| row.ours.is_empty())
+    }
+
     /// The chart as the text of an SVG file.
     pub fn to_svg(&self) -> String {
         let layout =

@@ -12,8 +12,10 @@ use serde_json::Value;
 pub struct ClaimRow {
     /// Its id in the manifest.
     pub id: String,
-    /// The paper's sentence.
+    /// The paper's sentence, in its words; empty for a check of our own.
     pub says: String,
+    /// What we check besides, in our words; empty for a claim of the paper.
+    pub ours: String,
     /// Where it says so.
     pub cite: String,
     /// The verdict's name: `supported`, `contradicted`, `inconclusive`, `cannot-be-tested`.
@@ -74,6 +76,7 @@ fn row(verdict: &Value) -> ClaimRow {
     ClaimRow {
         id: text(verdict, "id"),
         says: text(verdict, "says"),
+        ours: text(verdict, "ours"),
         cite: text(verdict, "cite"),
         numbers: numbers(verdict, &comparisons) + &censored(&comparisons),
         differs: differs(&found, &paper_table).to_owned(),

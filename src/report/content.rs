@@ -1,7 +1,8 @@
 //! What a report says, before it has a look: plain values, filled in from a bundle.
 
-use super::{Agreement, ClaimRow, Evaluation, Provenance};
-use serde::Serialize;
+use super::{ClaimRow, Evaluation, Provenance};
+use crate::stats::compatibility::Agreement;
+use serde::{Serialize, Serializer};
 
 /// Everything on the page of one bundle.
 #[derive(Debug, Clone, Default, Serialize)]
@@ -136,7 +137,7 @@ pub struct ReportRow {
 #[derive(Debug, Clone, Default, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub struct ReportCell {
-    /// What we found; `None` where no trial got there.
+    /// What we found; `None` where there is nothing, for the reason that `agreement` says.
     pub ours: Option<Measured>,
     /// Difference of our mean to our baseline's (percent); `None` for the baseline itself.
     pub difference_percent: Option<f64>,
@@ -144,8 +145,14 @@ pub struct ReportCell {
     pub published: Option<Measured>,
     /// The difference to its baseline that the paper prints (percent).
     pub published_difference_percent: Option<f64>,
-    /// How the two compare; [`Agreement::between`] is the usual rule.
+    /// How the two agree, or why they cannot be compared.
+    #[serde(serialize_with = "by_name")]
     pub agreement: Agreement,
+}
+
+/// The page looks up mark and words by the name.
+fn by_name<S: Serializer>(agreement: &Agreement, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(agreement.name())
 }
 
 /// A figure.

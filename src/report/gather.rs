@@ -33,6 +33,7 @@ pub fn content_of(
         claim::rows("circumstances/claims.json", machine_verdicts, &experiment.claims)?;
     let tables: Vec<ReportTable> =
         experiment.tables.iter().map(|request| tables::table(&findings, request, plan)).collect();
+    let figures = figures(bundle, plan, &findings);
     let headline = headline(bundle, plan, &records);
     let circumstance = bundle.circumstance();
     let trial = plan.trials.first().map(|t| format!("{}/{}", t.condition.slug(), t.trial));
@@ -45,7 +46,7 @@ pub fn content_of(
         },
         authors: experiment.authors.iter().map(|a| a.name.clone()).collect(),
         license: experiment.license.clone().unwrap_or_default(),
-        limits: limits::limits(plan, &records, &tables, &claims),
+        limits: limits::limits(plan, &records, &tables, &claims, &figures),
         partial: limits::partial(plan, selection),
         evaluation: evaluation(Evaluated {
             file: &format!("{}-{}.zip", bundle.name(), bundle.results_digest().short()),
@@ -58,7 +59,7 @@ pub fn content_of(
         }),
         headline,
         tables,
-        figures: figures(bundle, plan, &findings),
+        figures,
         claims,
         machine_claims,
         assumptions: assumptions(experiment),
@@ -97,7 +98,7 @@ fn figures(bundle: &Bundle, plan: &Plan, findings: &Findings<'_>) -> Vec<Figure>
         .filter_map(|request| {
             let file = format!("figures/{}.svg", request.id);
             let bytes = bundle.result(&file)?;
-            let drawn = drawings::draw(plan, findings, request);
+            let drawn = drawings::draw(plan, findings, request)?;
             Some(Figure {
                 id: request.id.clone(),
                 title: request.title.clone(),

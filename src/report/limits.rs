@@ -1,7 +1,8 @@
 //! What the numbers cannot show: what the manifest states, and what the bundle itself shows.
 
-use super::{ClaimRow, ReportTable};
+use super::{ClaimRow, Figure, ReportTable};
 use crate::plan::{Plan, Selection};
+use crate::stats::compatibility::{Agreement, Silence};
 use crate::studies::{Outcome, StudyKind, TableLayout, TrialRecord};
 
 /// One sentence each, the manifest's own first. `tables` are those of the page, in the order of the plan's requests.
@@ -10,6 +11,7 @@ pub(super) fn limits(
     records: &[TrialRecord],
     tables: &[ReportTable],
     claims: &[ClaimRow],
+    figures: &[Figure],
 ) -> Vec<String> {
     let experiment = &plan.experiment;
     let mut limits = experiment.limits.clone();
@@ -42,6 +44,7 @@ pub(super) fn limits(
         }
     }
     limits.extend(cells(plan, tables));
+    limits.extend(left_out(plan, figures));
     if !experiment.shared_noise.is_empty() {
         limits.push(format!(
             "Trials that differ in {} alone see the same noise: they are paired, not independent.",
@@ -59,27 +62,50 @@ pub(super) fn limits(
     limits
 }
 
+/// Figures of the manifest in which no trial has anything to show.
+fn left_out(plan: &Plan, figures: &[Figure]) -> Option<String> {
+    let is_drawn = |id: &str| figures.iter().any(|figure| figure.id == id);
+    let wanted = plan.experiment.figures.iter();
+    let missing: Vec<String> = wanted
+        .filter(|request| !is_drawn(&request.id))
+        .map(|request| format!("\u{201c}{}\u{201d}", request.title))
+        .collect();
+    let one = "figure is left out, in which no trial of this run has anything to show";
+    let several = "figures are left out, in which no trial of this run has anything to show";
+    (!missing.is_empty())
+        .then(|| format!("{}: {}.", counted(missing.len(), one, several), missing.join(", ")))
+}
+
 /// Cells that no run reached, and means of fewer runs than there were.
 fn cells(plan: &Plan, tables: &[ReportTable]) -> Option<String> {
-    let (mut empty, mut fewer) = (0, 0);
+    let (mut unreached, mut absent, mut left_out, mut fewer) = (0, 0, 0, 0);
     for (request, table) in plan.experiment.tables.iter().zip(tables) {
         if !matches!(request.layout, TableLayout::CoverageTable(_)) {
             continue;
         }
         let all = || table.rows.iter().flat_map(|row| &row.cells);
         let most = all().filter_map(|cell| cell.ours?.n).max().unwrap_or(0);
-        empty += all().filter(|cell| cell.ours.is_none()).count();
+        let silent = |why| all().filter(|cell| cell.agreement == Agreement::Silent(why)).count();
+        unreached += silent(Silence::NotReached);
+        absent += silent(Silence::NotInDesign);
+        left_out += silent(Silence::NotRun);
         fewer += all().filter_map(|cell| cell.ours?.n).filter(|n| *n < most).count();
     }
-    let empty = (empty > 0)
-        .then(|| counted(empty, "cell was reached by no run", "cells were reached by no run"));
+    let told = |n: usize, one, several| (n > 0).then(|| counted(n, one, several));
+    let unreached = told(unreached, "cell was reached by no run", "cells were reached by no run");
+    let absent = told(
+        absent,
+        "cell belongs to no condition of the design",
+        "cells belong to no condition of the design",
+    );
+    let left_out = told(left_out, "cell was not run", "cells were not run");
     let fewer = (fewer > 0).then(|| {
         let mean = counted(fewer, "mean leaves", "means leave");
         format!(
             "{mean} out runs that never got there, which flatters them (their n stands in the cell)"
         )
     });
-    let parts: Vec<String> = [empty, fewer].into_iter().flatten().collect();
+    let parts: Vec<String> = [unreached, absent, left_out, fewer].into_iter().flatten().collect();
     (!parts.is_empty()).then(|| format!("Of the coverage tables, {}.", parts.join("; ")))
 }
 
@@ -112,9 +138,9 @@ fn counted(n: usize, one: &str, several: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::content_of;
+    use super::super::{ReportCell, content_of};
     use super::*;
-    use crate::bundle::{Bundle, Limits};
+    use crate::bundle::{Bundle, Limits, assemble, figures};
     use crate::verify::plan_of;
 
     /// The published quickstart: ten trials without and ten with a floor plan, nothing claimed.
@@ -138,14 +164,20 @@ mod tests {
         records[0].outcome = Outcome::Panicked;
         records[1].outcome = Outcome::Stuck;
         let mut tables = content_of(&bundle, &plan, &selection).unwrap().tables;
-        tables[0].rows[0].cells[0].ours = None;
+        let silent = |cell: &mut ReportCell, why| {
+            (cell.ours, cell.agreement) = (None, Agreement::Silent(why));
+        };
+        silent(&mut tables[0].rows[0].cells[0], Silence::NotReached);
+        silent(&mut tables[0].rows[0].cells[1], Silence::NotInDesign);
+        silent(&mut tables[0].rows[1].cells[0], Silence::NotInDesign);
+        silent(&mut tables[0].rows[1].cells[1], Silence::NotRun);
         let few = tables[1].rows[0].cells[1].ours.as_mut().unwrap();
         few.n = Some(3);
         let claims = [ClaimRow {
             numbers: "p = 0.02; 6 of 100 runs compared never reached the measure".to_owned(),
             ..ClaimRow::default()
         }];
-        let limits = limits(&plan, &records, &tables, &claims);
+        let limits = limits(&plan, &records, &tables, &claims, &[]);
         let expected = [
             "the house is invented",
             "Simulated in two dimensions by Reenact's own simulator, with robots and worlds as sealed here; the paper's runs \
@@ -153,12 +185,31 @@ mod tests {
             "Not the manifest as written: 1 value was set from the command line.",
             "1 trial failed to run: a fault of the program, not a result.",
             "1 of 20 trials ended before everything was explored.",
-            "Of the coverage tables, 1 cell was reached by no run; 1 mean leaves out runs that never got there, which \
-             flatters them (their n stands in the cell).",
+            "Of the coverage tables, 1 cell was reached by no run; 2 cells belong to no condition of the design; 1 cell was \
+             not run; 1 mean leaves out runs that never got there, which flatters them (their n stands in the cell).",
+            "1 figure is left out, in which no trial of this run has anything to show: \u{201c}Coverage over time\u{201d}.",
             "Trials that differ in prior alone see the same noise: they are paired, not independent.",
             "1 verdict compares runs of which some never reached the measure: see their details.",
         ];
         assert_eq!(limits, expected);
+    }
+
+    /// A partial run draws what it has, and nothing where it has nothing.
+    #[test]
+    fn a_figure_of_a_partial_run_shows_what_there_is_or_is_left_out() {
+        let (bundle, plan, _) = quickstart();
+        let records = bundle.records().unwrap();
+        let factors = assemble::factors(&plan);
+        let request = &plan.experiment.figures[0];
+        let drawn = |records: &[TrialRecord]| {
+            figures::draw(&plan, &assemble::findings(&plan, records, &factors), request)
+        };
+        let none = |record: &TrialRecord| record.condition().value("prior") == Some("none");
+        let half: Vec<TrialRecord> = records.iter().filter(|r| none(r)).cloned().collect();
+        assert_eq!(half.len(), 10);
+        let alt = drawn(&half).unwrap().alt;
+        assert!(alt.contains("none ends at") && !alt.contains("floor-plan ends at"), "{alt}");
+        assert_eq!(drawn(&[]), None);
     }
 
     #[test]

@@ -3,7 +3,6 @@
 //! Everything here is a pure function of its arguments: no clock, no file, no network. Pages carry their
 //! style and script inside and forbid everything else by their own content security policy.
 
-mod agreement;
 mod assumptions;
 pub mod bag;
 mod banner;
@@ -26,7 +25,6 @@ mod still;
 mod tables;
 mod template;
 
-pub use agreement::Agreement;
 pub use bag::{Bag, bag, bag_under_banner};
 pub use banner::{drawing_under_banner, page_under_banner};
 pub use claim::{ClaimRow, ComparisonRow};

@@ -3,7 +3,8 @@
 use super::inline_svg::inline_svg;
 use super::pack::base64;
 use super::template::{Template, render_in};
-use super::{Agreement, ReportContent, ReportTable};
+use super::{ClaimRow, ReportContent, ReportTable};
+use crate::stats::compatibility::{Agreement, Closeness, Tally, rules};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -11,6 +12,10 @@ use std::collections::BTreeMap;
 #[serde(rename_all = "kebab-case")]
 struct View<'a> {
     report: &'a ReportContent,
+    /// The claims of the paper.
+    claims: Vec<&'a ClaimRow>,
+    /// What we check besides.
+    checks: Vec<&'a ClaimRow>,
     score: Score,
     /// The figures' drawings, as they may stand in a page; empty where a figure is none.
     drawings: Vec<String>,
@@ -18,27 +23,46 @@ struct View<'a> {
     files: Vec<String>,
     /// By table: the most trials that stand behind a cell of it.
     runs: Vec<u64>,
-    /// By table: how many cells lie within, near and apart; `None` where none is compared.
-    marks: Vec<Option<[usize; 3]>>,
-    rule: &'static str,
-    /// Mark and words of every agreement by its name.
-    agreements: BTreeMap<String, [&'static str; 2]>,
+    /// By table: how many cells each method compared, by what it found.
+    marks: Vec<Vec<Compared>>,
+    /// By table: what its marks mean; empty where nothing is compared.
+    rules: Vec<String>,
+    /// Mark, words and look of every agreement by its name.
+    agreements: BTreeMap<&'static str, [&'static str; 3]>,
 }
 
 /// The whole report in a few counts: what a reader sees first.
 #[derive(Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 struct Score {
-    /// Claims by verdict, in the order in which one tells them.
+    /// Claims of the paper by verdict, in the order in which one tells them.
     verdicts: [Share; 4],
-    /// Claims by what the paper's own table says.
+    /// Checks of our own by verdict.
+    own: [Share; 4],
+    /// Claims of the paper by what its own table says.
     paper_tables: [Share; 3],
     /// Claims on which we and the paper's own table are at odds.
     differs: usize,
-    /// Cells that are published and that we have, by agreement.
-    cells: [Share; 3],
-    /// All of those.
-    compared: usize,
+    /// Cells that are published and that we have, by method: never added up.
+    cells: Vec<Compared>,
+}
+
+/// What one method found of the cells that it compared.
+#[derive(Debug, PartialEq, Eq, Serialize)]
+struct Compared {
+    /// `118 of 180 published percentages are compatible with ours at 95 %`.
+    words: String,
+    /// Counts with mark and words, those of nothing left out.
+    shares: Vec<Marked>,
+}
+
+/// How many cells have one mark.
+#[derive(Debug, PartialEq, Eq, Serialize)]
+struct Marked {
+    look: &'static str,
+    mark: &'static str,
+    words: &'static str,
+    count: usize,
 }
 
 /// How many of a kind.
@@ -50,32 +74,61 @@ struct Share {
 
 impl Score {
     fn of(content: &ReportContent) -> Self {
-        let claims = &content.claims;
-        let verdict =
-            |name| Share { name, count: claims.iter().filter(|c| c.verdict == name).count() };
+        let (claims, checks) = apart(&content.claims);
+        let of = |claims: &[&ClaimRow]| {
+            ["supported", "contradicted", "inconclusive", "cannot-be-tested"].map(|name| Share {
+                name,
+                count: claims.iter().filter(|c| c.verdict == name).count(),
+            })
+        };
         let paper =
             |name| Share { name, count: claims.iter().filter(|c| c.paper_table == name).count() };
-        let mut cells = ["within", "near", "apart"].map(|name| Share { name, count: 0 });
-        for counts in content.tables.iter().filter_map(marks) {
-            cells.iter_mut().zip(counts).for_each(|(share, count)| share.count += count);
-        }
+        let cells: Vec<Agreement> = content.tables.iter().flat_map(agreements).collect();
         Self {
-            verdicts: ["supported", "contradicted", "inconclusive", "cannot-be-tested"]
-                .map(verdict),
+            verdicts: of(&claims),
+            own: of(&checks),
             paper_tables: ["supports", "contradicts", "silent"].map(paper),
             differs: claims.iter().filter(|claim| !claim.differs.is_empty()).count(),
-            compared: cells.iter().map(|share| share.count).sum(),
-            cells,
+            cells: compared(&cells),
         }
     }
 }
 
-/// How many cells of `table` lie within, near and apart; `None` where none is compared.
-fn marks(table: &ReportTable) -> Option<[usize; 3]> {
-    let cells = || table.rows.iter().flat_map(|row| &row.cells);
-    let counts = [Agreement::Within, Agreement::Near, Agreement::Apart]
-        .map(|wanted| cells().filter(|cell| cell.agreement == wanted).count());
-    (counts != [0; 3]).then_some(counts)
+/// The claims of the paper, and what we check besides.
+fn apart(claims: &[ClaimRow]) -> (Vec<&ClaimRow>, Vec<&ClaimRow>) {
+    claims.iter().partition(|claim| claim.ours.is_empty())
+}
+
+/// How the cells of a table agree.
+fn agreements(table: &ReportTable) -> Vec<Agreement> {
+    table.rows.iter().flat_map(|row| &row.cells).map(|cell| cell.agreement).collect()
+}
+
+/// What each method found among `cells`.
+fn compared(cells: &[Agreement]) -> Vec<Compared> {
+    let of = |tally: Tally| {
+        let of_it = || cells.iter().filter(|cell| cell.method() == Some(tally.method));
+        let mut shares: Vec<Marked> = Vec::new();
+        for look in ["within", "near", "apart"] {
+            let mut alike = of_it().filter(|cell| self::look(**cell) == look);
+            if let Some(first) = alike.next() {
+                let (mark, words) = (first.mark(), first.words());
+                shares.push(Marked { look, mark, words, count: 1 + alike.count() });
+            }
+        }
+        Compared { words: tally.in_words(), shares }
+    };
+    Tally::of(cells).into_iter().map(of).collect()
+}
+
+/// The colour of a mark, which adds nothing to its shape.
+fn look(agreement: Agreement) -> &'static str {
+    match agreement {
+        Agreement::Compatible(_) | Agreement::Near(Closeness::Within10, _) => "within",
+        Agreement::Near(Closeness::Within20, _) => "near",
+        Agreement::Apart(_) | Agreement::Near(Closeness::Farther, _) => "apart",
+        Agreement::Silent(_) => "",
+    }
 }
 
 /// The most trials that stand behind a cell of `table`.
@@ -105,18 +158,20 @@ pub fn page(content: &ReportContent) -> String {
 }
 
 fn view(content: &ReportContent) -> View<'_> {
-    let all = [Agreement::Within, Agreement::Near, Agreement::Apart, Agreement::Silent];
-    let name = |a: &Agreement| serde_json::to_value(a).ok()?.as_str().map(str::to_owned);
+    let cells = content.tables.iter().flat_map(agreements);
     let drawing = |f: &super::Figure| inline_svg(&f.svg, &f.alt).unwrap_or_default();
+    let (claims, checks) = apart(&content.claims);
     View {
         report: content,
+        claims,
+        checks,
         score: Score::of(content),
         drawings: content.figures.iter().map(drawing).collect(),
         files: content.figures.iter().map(|figure| base64(figure.svg.as_bytes())).collect(),
         runs: content.tables.iter().map(most_runs).collect(),
-        marks: content.tables.iter().map(marks).collect(),
-        rule: Agreement::RULE,
-        agreements: all.iter().filter_map(|a| Some((name(a)?, [a.mark(), a.words()]))).collect(),
+        marks: content.tables.iter().map(|table| compared(&agreements(table))).collect(),
+        rules: content.tables.iter().map(|t| rules(agreements(t)).unwrap_or_default()).collect(),
+        agreements: cells.map(|a| (a.name(), [a.mark(), a.words(), look(a)])).collect(),
     }
 }
 
@@ -135,6 +190,7 @@ mod tests {
             "id=\"limits\"",
             "id=\"headline\"",
             "id=\"claims\"",
+            "id=\"own-checks\"",
             "id=\"machine-claims\"",
             "id=\"table-1\"",
             "id=\"coverage\"",
@@ -147,7 +203,7 @@ mod tests {
             "9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08",
             "parameters.<wbr>mapping.<wbr>particles",
             "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855",
-            "more than two published sd away",
+            "not compatible at 95 %",
             "reenact verify prior-9f86d081.zip",
             "not reached",
             "a footprint never harms",
@@ -160,6 +216,9 @@ mod tests {
             "download=\"bars.svg\"",
             "reenact verify --level 6 prior-9f86d081.zip",
             "doi:10.1000",
+            "<q>a floor plan shortens the way to 90 % coverage</q>",
+            "class=\"wide\">gains here go with those printed",
+            "Apart from them, of <strong>1</strong>",
             "15 trials per condition, one setting at a time, same noise",
         ] {
             at(text);
@@ -173,8 +232,16 @@ mod tests {
         let score = Score::of(&content());
         let counts = |shares: &[Share]| shares.iter().map(|s| s.count).collect::<Vec<_>>();
         assert_eq!(counts(&score.verdicts), [1, 1, 0, 0]);
+        assert_eq!(counts(&score.own), [0, 0, 1, 0], "not among the paper's");
         assert_eq!((counts(&score.paper_tables), score.differs), (vec![2, 0, 0], 1));
-        assert_eq!((counts(&score.cells), score.compared), (vec![11, 1, 3], 15), "one is missing");
+        let cells = &score.cells[0];
+        assert_eq!(score.cells.len(), 1);
+        assert_eq!(
+            cells.words, "12 of 15 published means are compatible with ours at 95 %",
+            "one is missing"
+        );
+        let shares: Vec<_> = cells.shares.iter().map(|s| (s.mark, s.count)).collect();
+        assert_eq!(shares, [("✓", 12), ("≠", 3)]);
     }
 
     #[test]

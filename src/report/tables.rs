@@ -1,10 +1,9 @@
 //! The tables of a study as the page shows them: ours beside the paper's, agreement marked.
 
-use super::Agreement;
 use super::content::{Measured, ReportCell, ReportRow, ReportTable};
 use crate::plan::Plan;
 use crate::studies::deadline::ManeuverTable;
-use crate::studies::outcomes::{OutcomeCell, OutcomeTable, Quantity};
+use crate::studies::outcomes::{OutcomeCell, OutcomeTable};
 use crate::studies::prior_map::effects::Effect;
 use crate::studies::prior_map::measures::MeasureCell;
 use crate::studies::prior_map::results::CoverageCell;
@@ -97,7 +96,7 @@ fn report_cell(cell: &CoverageCell) -> ReportCell {
         difference_percent: cell.difference_percent,
         published,
         published_difference_percent: cell.published_difference_percent,
-        agreement: Agreement::between(ours, published),
+        agreement: cell.agreement,
     }
 }
 
@@ -217,7 +216,8 @@ fn measures_table(
             let measured = |mean: f64, sd: Option<f64>, n| Measured { mean, sd, n };
             ReportCell {
                 ours: cell.ours.map(|s| measured(s.mean, (s.n > 1).then_some(s.sd), Some(s.n))),
-                published: cell.published.map(|(mean, sd)| measured(mean, sd, None)),
+                published: cell.published.map(|p| measured(p.value, p.sd, p.n)),
+                agreement: cell.agreement,
                 ..ReportCell::default()
             }
         };
@@ -250,7 +250,7 @@ fn outcome_table(
             .take(1)
             .flat_map(|cell| cell.rows.iter().map(|(_, value)| value.as_str()))
             .collect();
-        let cells = line.iter().map(|cell| outcome_cell(cell, &wanted.show)).collect();
+        let cells = line.iter().map(outcome_cell).collect();
         ReportRow { label: label.join(", "), cells }
     });
     ReportTable {
@@ -300,25 +300,10 @@ fn maneuver_table(
     }
 }
 
-fn outcome_cell(cell: &OutcomeCell, show: &Quantity) -> ReportCell {
+fn outcome_cell(cell: &OutcomeCell) -> ReportCell {
     let ours = cell.ours.map(|e| Measured { mean: e.value, sd: e.sd, n: Some(e.n) });
     let published = cell.published.map(|(mean, n)| Measured { mean, sd: None, n });
-    // A share's own binomial error is the measure of nearness.
-    let with_error = published.map(|p| match (show, p.n) {
-        (Quantity::Share(_), Some(n)) if n > 0 => {
-            let share = (p.mean / 100.0).clamp(0.0, 1.0);
-            #[expect(clippy::cast_precision_loss, reason = "a count of runs")]
-            let variance = share * (1.0 - share) / n as f64;
-            Measured { sd: Some(100.0 * variance.sqrt()), ..p }
-        }
-        _ => p,
-    });
-    ReportCell {
-        ours,
-        published,
-        agreement: Agreement::between(ours, with_error),
-        ..ReportCell::default()
-    }
+    ReportCell { ours, published, agreement: cell.agreement, ..ReportCell::default() }
 }
 
 /// Trials that were planned for a cell: fewer than the manifest's where `--trials` asked for fewer.

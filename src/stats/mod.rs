@@ -7,6 +7,7 @@
 
 pub mod agreement;
 pub mod bootstrap;
+pub mod compatibility;
 pub mod distribution;
 pub mod effect;
 pub mod equivalence;

@@ -1,8 +1,9 @@
 //! From records to what a reader sees, as far as all studies share it: the trials table and how cells are chosen.
 
 use super::deadline::Calibration;
-use super::{Condition, TrialRecord};
-use crate::table::{Table, Value};
+use super::{Condition, Setup, TrialRecord};
+use crate::stats::compatibility::{Agreement, Method, Silence, absence};
+use crate::table::{Column, Table, Value};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What the tables and figures of one experiment are made from.
@@ -10,6 +11,8 @@ use std::collections::{BTreeMap, BTreeSet};
 pub struct Findings<'a> {
     /// Factors and their values, in the manifest's order.
     pub factors: &'a [(String, Vec<String>)],
+    /// The conditions of the whole design, those that a partial run leaves out too.
+    pub design: &'a [(Condition, Setup)],
     /// The records, in plan order.
     pub records: &'a [TrialRecord],
     /// The paper's own numbers, by name: factor columns, `coverage-percent`, `value`, `sd`, `n`.
@@ -87,6 +90,12 @@ impl<'a> Findings<'a> {
             .collect()
     }
 
+    /// Why a cell of these factor values has no number of ours, where `trials` of it were run.
+    pub(super) fn absence(&self, fixed: &[(String, String)], trials: u64) -> Silence {
+        let planned = |condition: &Condition| fixed.iter().all(|f| condition.0.contains(f));
+        absence(self.design.iter().any(|(condition, _)| planned(condition)), trials)
+    }
+
     /// The row of the published table `name` for the values of `fixed` that it has columns for.
     pub(super) fn published_row(
         &self,
@@ -114,4 +123,59 @@ impl<'a> Findings<'a> {
 /// Six significant digits: more would only be noise in a table.
 pub(super) fn rounded(x: f64) -> f64 {
     format!("{x:.5e}").parse().unwrap_or(x)
+}
+
+/// The columns of a tidy table that tell how a cell agrees with the paper's.
+pub(super) const AGREEMENT: [&str; 5] = [
+    "agreement",
+    "agreement-method",
+    "agreement-low",
+    "agreement-high",
+    "agreement-relative-percent",
+];
+
+/// The values of those columns.
+pub(super) fn agreement_values(agreement: Agreement) -> [Value; 5] {
+    let difference = agreement.difference();
+    [
+        agreement.name().into(),
+        agreement.method().map(|method| method.name().to_owned()).into(),
+        difference.map(|d| rounded(d.low)).into(),
+        difference.map(|d| rounded(d.high)).into(),
+        agreement.relative_percent().map(rounded).into(),
+    ]
+}
+
+/// One of those columns, described; `unit` is that of the cell.
+pub(super) fn agreement_column(name: &str, unit: &str) -> Option<Column> {
+    let one_of = |meaning: &str, names: &[&str]| {
+        let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
+        Column::of_values(name, "", meaning, &names)
+    };
+    let end = |which: &str| {
+        Column::number(
+            name,
+            unit,
+            &format!("{which} end of the 95 % interval of ours less the paper's, by that method"),
+        )
+        .empty_where("nothing is compared, or by the relative difference")
+    };
+    let methods = Method::ALL.map(Method::name);
+    Some(match AGREEMENT.iter().position(|known| *known == name)? {
+        0 => one_of(
+            "Whether ours agrees with the paper's: compatible where the interval holds 0, apart where not; without spread \
+             only how near it is; or why nothing is compared",
+            &Agreement::NAMES,
+        ),
+        1 => one_of(
+            "How they were compared: shares by Newcombe's interval of the difference, means by the paper's prediction \
+             interval, others by the relative difference",
+            &methods,
+        )
+        .empty_where("nothing is compared"),
+        2 => end("Lower"),
+        3 => end("Upper"),
+        _ => Column::number(name, "%", "Ours less the paper's, in percent of the paper's")
+            .empty_where("the method is another, or the paper prints 0"),
+    })
 }

@@ -69,9 +69,12 @@ impl EarlierAgain {
 const ROWS: [(Level, usize); 2] = [(Level::Sampled, 1), (Level::Full, 3)];
 
 /// What executing some of an input again brought.
+#[derive(Default)]
 pub(super) struct Again {
     pub(super) executed: Option<EarlierAgain>,
     pub(super) faults: Vec<Fault>,
+    /// Why nothing could be executed, through no fault of the bundle.
+    pub(super) failure: Option<Fault>,
     /// What stays the author's word, in words.
     pub(super) on_trust: Option<String>,
 }
@@ -106,7 +109,7 @@ impl Earlier {
         };
         let drawn = Seeds::new(options.seed, Vec::new()).stream(label).places(count, of);
         if drawn.is_empty() {
-            return Again { executed: None, faults: Vec::new(), on_trust: self.on_trust() };
+            return Again { on_trust: self.on_trust(), ..Again::default() };
         }
         let compared = match replanned.make_again(self.made, &drawn) {
             Ok(compared) if compared.len() == drawn.len() => compared,
@@ -116,8 +119,8 @@ impl Earlier {
                     Ok(fewer) => format!("{} of them", fewer.len()),
                 };
                 let expected = format!("{} executed again", drawn.len());
-                let faults = vec![Fault::new(&self.path, expected, found)];
-                return Again { executed: None, faults, on_trust: self.on_trust() };
+                let failure = Some(Fault::new(&self.path, expected, found));
+                return Again { failure, on_trust: self.on_trust(), ..Again::default() };
             }
         };
         let faults: Vec<Fault> = compared.into_iter().flatten().collect();
@@ -136,6 +139,6 @@ impl Earlier {
             equal,
             of,
         };
-        Again { executed: Some(executed), faults: reexecution::capped(faults), on_trust }
+        Again { executed: Some(executed), faults: reexecution::capped(faults), failure: None, on_trust }
     }
 }

@@ -388,6 +388,7 @@ impl Climb<'_> {
         for earlier in &earlier {
             let again = earlier.again(replanned.as_ref(), level, options);
             self.report.note(Level::Sampled, Severity::Error, again.faults);
+            self.report.note(Level::Sampled, Severity::Failure, again.failure);
             self.report.unchecked.extend(again.on_trust);
             self.report.earlier.extend(again.executed);
         }

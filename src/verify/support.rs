@@ -22,14 +22,14 @@ pub(super) fn other_engine(bundle: &Bundle, ours: &str) -> Fault {
     let version = bundle.circumstance().map(|told| told.version);
     match version {
         Some(version) => hint.push_str(&format!(
-            "`{}`, then its own `reenact verify`",
-            format::install_line(&version)
+            "{}, then its own `reenact verify`",
+            format::install_words(&version)
         )),
         None => hint.push_str("install the version of reenact that the bundle's README.md names"),
     }
     if let Some(capsule) = bundle.capsule() {
         hint.push_str(&format!(
-            ", or, where that can no longer be had, build the source sealed in {capsule} (read it first: it is a stranger's)"
+            ", or, where none can be had, build the source sealed in {capsule} (read it first: it is a stranger's)"
         ));
     }
     fault.hint(hint)

@@ -159,8 +159,8 @@ fn the_papers_own_tables_decide_these_claims() {
         verdicts.iter().map(|v| (v.id.as_str(), v.judgement)).collect();
     assert_eq!(found, expected);
     assert_eq!(
-        Score::of(&verdicts).to_string(),
-        "12 of 28 claims supported, 4 contradicted, 10 inconclusive, 2 cannot be tested"
+        Score::of(&verdicts).in_words("claims and checks"),
+        "12 of 28 claims and checks supported, 4 contradicted, 10 inconclusive, 2 cannot be tested"
     );
     let of = |id: &str| verdicts.iter().find(|v| v.id == id).unwrap();
     // The paper agrees with itself entirely, and no rounding carries that beyond one.
@@ -171,7 +171,7 @@ fn the_papers_own_tables_decide_these_claims() {
     assert_eq!((low.successes, low.trials), (Some(1308), 3000));
     // Supported in print means supported or too few trials; and nothing printed as supported is contradicted.
     for (claim, verdict) in claims().iter().zip(&verdicts) {
-        let opposite = match claim.paper_table {
+        let opposite = match claim.papers_table() {
             PaperTable::Supports => Contradicted,
             PaperTable::Contradicts => Supported,
             PaperTable::Silent => continue,

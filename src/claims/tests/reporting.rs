@@ -12,16 +12,48 @@ fn what_the_paper_says_shows_and_we_find_are_three_facts() {
         "{less: {metric: success, where: {start: C, strategy: random}, than: {where: {start: C, strategy: frontier}}}}",
     );
     let first = judge(&stated, &trials, &context).unwrap();
-    stated.paper_table = PaperTable::Contradicts;
-    stated.says = "the opposite".to_owned();
+    stated.paper_table = Some(PaperTable::Contradicts);
+    stated.says = Some("the opposite".to_owned());
     let second = judge(&stated, &trials, &context).unwrap();
     assert_eq!(first.judgement, second.judgement);
     assert_eq!(first.comparisons, second.comparisons);
     assert_eq!(Score::of(&[first]), Score::of(&[second]));
     assert_eq!(
-        Score { supported: 1, contradicted: 2, inconclusive: 3, cannot_be_tested: 4 }.to_string(),
-        "1 of 10 claims supported, 2 contradicted, 3 inconclusive, 4 cannot be tested"
+        Score { supported: 1, contradicted: 2, inconclusive: 3, cannot_be_tested: 4 }
+            .in_words("claims of the paper"),
+        "1 of 10 claims of the paper supported, 2 contradicted, 3 inconclusive, 4 cannot be tested"
     );
+}
+
+/// A check of our own needs no word on the paper's table, stands under its own key and counts apart.
+#[test]
+fn our_own_checks_are_told_and_counted_apart_from_the_papers_claims() {
+    let published = published();
+    let trials = as_printed();
+    let context = Context::new(&published, &[], 2019);
+    let said = claim(
+        "{less: {metric: success, where: {start: C, strategy: random}, than: {where: {start: C, strategy: frontier}}}}",
+    );
+    let own = Claim {
+        id: "own".to_owned(),
+        says: None,
+        ours: Some("ours alone".to_owned()),
+        paper_table: None,
+        ..said.clone()
+    };
+    let verdicts = [said, own].map(|claim| judge(&claim, &trials, &context).unwrap());
+    let json = verdicts.clone().map(|verdict| verdict.to_json());
+    assert_eq!((json[0]["says"].as_str(), json[0].get("ours")), (Some("something"), None));
+    assert_eq!((json[1]["ours"].as_str(), json[1].get("says")), (Some("ours alone"), None));
+    assert_eq!(json[1]["paper-table"], "silent");
+    assert_eq!(
+        Score::lines(&verdicts),
+        [
+            "1 of 1 claims of the paper supported, 0 contradicted, 0 inconclusive, 0 cannot be tested",
+            "1 of 1 checks of our own supported, 0 contradicted, 0 inconclusive, 0 cannot be tested",
+        ]
+    );
+    assert_eq!(Score::lines(&[]), Vec::<String>::new());
 }
 
 #[test]

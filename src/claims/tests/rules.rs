@@ -180,6 +180,46 @@ fn faults_are_named_with_their_place_and_the_nearest_name() {
 }
 
 #[test]
+fn a_claim_is_in_the_papers_words_or_in_ours() {
+    let (factors, metrics, published) = known();
+    let said = claim("{between: {metric: success, high: 0.5}}");
+    let faults = |claim: &Claim| claim.check(&factors, &metrics, &published);
+    assert_eq!(faults(&said), Vec::<String>::new());
+    let own = Claim {
+        says: None,
+        ours: Some("half at most".to_owned()),
+        paper_table: None,
+        ..said.clone()
+    };
+    assert_eq!((faults(&own), own.papers_table()), (Vec::new(), PaperTable::Silent));
+    let both = Claim { says: said.says.clone(), ..own.clone() };
+    assert_eq!(
+        faults(&both),
+        [
+            "claim `X`: expected `says` or `ours`, found both; keep `says` where the words are the paper's, `ours` where they \
+             are your own"
+        ]
+    );
+    assert_eq!(
+        faults(&Claim { ours: None, ..own.clone() }),
+        [
+            "claim `X`: expected `says` with the paper's words, or `ours` with a check of your own, found neither"
+        ]
+    );
+    assert_eq!(
+        faults(&Claim { paper_table: None, ..said }),
+        [
+            "claim `X`: paper-table: expected `supports`, `contradicts` or `silent` beside `says`, found nothing; say what \
+             the paper's own numbers show of its sentence"
+        ]
+    );
+    assert_eq!(
+        faults(&Claim { ours: Some(" ".to_owned()), ..own }),
+        ["claim `X`: ours: expected words, found none"]
+    );
+}
+
+#[test]
 fn wall_time_is_circumstance() {
     let (factors, _, published) = known();
     let metrics = ["wall-time-selection-ms".to_owned(), "success".to_owned()];

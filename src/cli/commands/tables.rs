@@ -1,7 +1,7 @@
 //! The paper's tables in as many columns as the terminal has, 80 in a pipe.
 
 use crate::cli::fold::{aligned, wrapped};
-use crate::report::{Agreement, Measured};
+use crate::stats::compatibility::Agreement;
 use crate::studies::deadline::ManeuverTable;
 use crate::studies::outcomes::OutcomeTable;
 use crate::studies::prior_map::CoverageTable;
@@ -47,7 +47,12 @@ pub(super) fn table(
         TableLayout::MeasuresTable(wanted) => {
             let (keys, table) = (wanted.rows.len(), findings.measures_table_in_print(wanted));
             aligned(&table, keys, &(0..keys).collect::<Vec<_>>(), width)
-                + &note("(mean ± standard deviation of trials; in parentheses: the paper's)")
+                + &note(&match findings.measures_rules(wanted) {
+                    Some(rules) => format!(
+                        "(mean ± standard deviation of trials; in parentheses: the paper's; {rules})"
+                    ),
+                    None => "(mean ± standard deviation of trials)".to_owned(),
+                })
         }
         TableLayout::OutcomeTable(wanted) => outcome_table(findings, wanted, width),
         TableLayout::ManeuverTable(wanted) => maneuver_table(findings, wanted, width),
@@ -71,20 +76,17 @@ fn outcome_table(findings: &Findings<'_>, wanted: &OutcomeTable, width: usize) -
                 return Value::from(number(ours));
             }
             let papers = cell.published.map(|(papers, _)| papers);
-            let measured = |mean: f64| Measured { mean, sd: None, n: None };
-            let mark = Agreement::between(ours.map(measured), papers.map(measured));
-            Value::from(format!("{} {} {:>2}", number(ours), mark_of(mark), number(papers)))
+            let mark = mark_of(cell.agreement);
+            Value::from(format!("{} {mark} {:>2}", number(ours), number(papers)))
         }));
         table.push(texts);
     }
     let keys = wanted.rows.len();
     let mut text = aligned(&table, keys, &[], width);
     if wanted.published.is_some() {
-        text.push_str(&wrapped(
-            "(ours, then the paper's: ✓ within 10 % of it, ≈ 20 %, ≠ farther off)",
-            2,
-            width,
-        ));
+        let rules = findings.outcome_rules(wanted).map(|rules| format!("; {rules}"));
+        let note = format!("(ours, then the paper's{})", rules.unwrap_or_default());
+        text.push_str(&wrapped(&note, 2, width));
     }
     text
 }
@@ -157,10 +159,8 @@ fn coverage_table(findings: &Findings<'_>, wanted: &CoverageTable, width: usize)
             difference(cell.difference_percent),
         ];
         if is_published {
-            let measured = |(mean, sd)| Measured { mean, sd, n: None };
-            let mark = Agreement::between(ours.map(measured), published.map(measured));
             row.extend([
-                mark.mark().to_owned(),
+                cell.agreement.mark().to_owned(),
                 published.map_or_else(String::new, mean_and_sd),
                 difference(cell.published_difference_percent),
             ]);
@@ -178,12 +178,7 @@ fn coverage_table(findings: &Findings<'_>, wanted: &CoverageTable, width: usize)
     if let Some(baseline) = wanted.baseline.as_ref().filter(|_| cells.iter().any(compared)) {
         notes.push(format!("%: of the mean against {}", baseline.0));
     }
-    if is_published {
-        notes.push(
-            "✓ ours lies within one standard deviation of the paper, ≈ within two, ≠ farther off"
-                .to_owned(),
-        );
-    }
+    notes.extend(findings.coverage_rules(wanted));
     if !notes.is_empty() {
         text.push_str(&wrapped(&format!("({})", notes.join("; ")), 2, width));
     }
@@ -260,6 +255,7 @@ mod tests {
             factors: &factors,
             records: &records,
             published: &published,
+            design: &[],
             calibration: None,
         };
         let request = TableRequest {
@@ -279,9 +275,10 @@ mod tests {
             "Table 1, success rate (%)
          deadline-                    normalized-  corridors-  complete-
   start          s  random  frontier     frontier       first   corridor
-      A        680  0 ·  -   25 ✓ 26      50 ≈ 59     75 ≠ 12  100 ✓ 100
+      A        680  0 ·  -   25 ✓ 26      50 ✓ 59     75 ≠ 12  100 ✓ 100
       A         68  0 ·  -   25 ·  -      50 ·  -     75 ·  -   100 ·  -
-  (ours, then the paper's: ✓ within 10 % of it, ≈ 20 %, ≠ farther off)
+  (ours, then the paper's; shares: ✓ compatible at 95 %, ≠ not, by Newcombe's
+  interval of the difference at both numbers of trials)
 "
         );
         let narrow = table(&findings, &request, &[], 40);

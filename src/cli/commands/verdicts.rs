@@ -1,24 +1,39 @@
 //! Verdicts in print: what the paper's table shows beside what we find, and the reproduction score.
 
 use crate::claims::verdict::agreement_in_words;
-use crate::claims::{Judgement, Score, Verdict};
+use crate::claims::{Judgement, Score, Verdict, Words};
 
 /// The verdicts on a study's claims with their score, and those on the machine, which count for nothing; empty
 /// where nothing is claimed. A function of the verdicts alone: no lock changes what is printed.
 pub(super) fn in_words(verdicts: &[Verdict], machine: &[Verdict]) -> String {
     let mut text = String::new();
     if !verdicts.is_empty() {
-        text.push_str(&list("Claims", verdicts));
-        text.push_str(&format!("reproduction: {}\n\n", Score::of(verdicts)));
+        text.push_str(&lists(["Claims of the paper", "Checks of our own"], verdicts));
+        for line in Score::lines(verdicts) {
+            text.push_str(&format!("reproduction: {line}\n"));
+        }
+        text.push('\n');
     }
     if !machine.is_empty() {
-        text.push_str(&list("Claims about the machine (not among the results)", machine));
+        let titles = [
+            "Claims of the paper about the machine (not among the results)",
+            "Checks of our own about the machine (not among the results)",
+        ];
+        text.push_str(&lists(titles, machine));
         text.push('\n');
     }
     text
 }
 
-fn list(title: &str, verdicts: &[Verdict]) -> String {
+/// What the paper says, and apart from it what we check besides; empty lists are left out.
+fn lists(titles: [&str; 2], verdicts: &[Verdict]) -> String {
+    let (papers, ours): (Vec<&Verdict>, Vec<&Verdict>) =
+        verdicts.iter().partition(|verdict| matches!(verdict.words, Words::Says(_)));
+    let lists = titles.into_iter().zip([papers, ours]).filter(|(_, list)| !list.is_empty());
+    lists.map(|(title, verdicts)| list(title, &verdicts)).collect()
+}
+
+fn list(title: &str, verdicts: &[&Verdict]) -> String {
     let width = |texts: &mut dyn Iterator<Item = String>| {
         texts.map(|text| text.chars().count()).max().unwrap_or(0)
     };

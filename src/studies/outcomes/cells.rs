@@ -1,9 +1,10 @@
 //! From records to the deadline study's Tables 1 and 2, and to whatever else is asked by condition.
 
 use super::{OutcomeTable, Percent, Quantity};
+use crate::stats::compatibility::{Agreement, Ours, Printed, printed_share, rules};
 use crate::stats::proportion::{Proportion, wilson};
 use crate::stats::summary::Summary;
-use crate::studies::findings::{Findings, rounded};
+use crate::studies::findings::{AGREEMENT, Findings, agreement_values, rounded};
 use crate::studies::{Outcome, TrialRecord};
 use crate::table::{Table, Value};
 
@@ -25,6 +26,8 @@ pub struct OutcomeCell {
     pub ours: Option<Estimate>,
     /// The paper's number, and the trials behind it where it says.
     pub published: Option<(f64, Option<u64>)>,
+    /// How the two agree, or why they cannot.
+    pub agreement: Agreement,
 }
 
 /// A quantity with its spread.
@@ -90,12 +93,16 @@ impl Findings<'_> {
             };
             Some((table.value(row, "value").as_f64()?, n))
         });
+        let found = compared(&request.show, &trials)
+            .ok_or_else(|| self.absence(fixed, self.matching(fixed).len() as u64));
+        let paper = published.map(|(value, n)| Printed { value, sd: None, n });
         OutcomeCell {
             rows,
             by,
             trials: trials.len() as u64,
             ours: estimate(&request.show, &trials),
             published,
+            agreement: Agreement::between(found, paper),
         }
     }
 
@@ -105,6 +112,7 @@ impl Findings<'_> {
         columns.push(request.by.clone());
         let numbers = ["value", "low", "high", "sd", "n", "trials", "published", "published-n"];
         columns.extend(numbers.map(str::to_owned));
+        columns.extend(AGREEMENT.map(str::to_owned));
         let mut table = Table::new(columns);
         let whole = |n: u64| i64::try_from(n).unwrap_or(i64::MAX);
         for cell in self.outcome_cells(request) {
@@ -119,9 +127,15 @@ impl Findings<'_> {
             row.push(whole(cell.trials).into());
             row.push(cell.published.map(|p| p.0).into());
             row.push(cell.published.and_then(|p| p.1).map(whole).into());
+            row.extend(agreement_values(cell.agreement));
             table.push(row);
         }
         table
+    }
+
+    /// What the marks of a table mean: the methods that occur in it.
+    pub fn outcome_rules(&self, request: &OutcomeTable) -> Option<String> {
+        rules(self.outcome_cells(request).into_iter().map(|cell| cell.agreement))
     }
 
     /// A requested table as people read it: the values side by side, ours and the paper's.
@@ -150,7 +164,12 @@ impl Findings<'_> {
 impl OutcomeCell {
     /// Ours as text: `54 [40, 67]` (percent and interval) or `12.3 ± 4.5` (mean and standard deviation).
     pub fn in_print(&self) -> String {
-        let Some(ours) = self.ours else { return format!("none of {}", self.trials) };
+        let Some(ours) = self.ours else {
+            return match self.agreement {
+                Agreement::Silent(silence) if self.trials == 0 => silence.words().to_owned(),
+                _ => format!("none of {}", self.trials),
+            };
+        };
         let mut text = match (ours.sd, ours.interval) {
             (Some(sd), _) => format!("{:.1} ± {sd:.1}", ours.value),
             (None, Some((low, high))) => format!("{:.1} [{low:.1}, {high:.1}]", ours.value),
@@ -162,10 +181,30 @@ impl OutcomeCell {
         text
     }
 
-    /// The paper's as text; empty where it prints none.
+    /// The paper's as text, after the mark of its agreement; empty where it prints none.
     pub fn published_in_print(&self) -> String {
-        self.published.map_or_else(String::new, |(value, _)| format!("{value}"))
+        let Some((value, _)) = self.published else { return String::new() };
+        match self.agreement.mark() {
+            "" => format!("{value}"),
+            mark => format!("{mark} {value}"),
+        }
     }
+}
+
+/// What of the trials is compared with the paper's number; `None` where none has the quantity.
+fn compared(quantity: &Quantity, trials: &[&TrialRecord]) -> Option<Ours> {
+    Some(match quantity {
+        Quantity::Share(outcomes) => {
+            let hits = trials.iter().filter(|r| outcomes.contains(&r.outcome)).count() as u64;
+            let all = trials.len() as u64;
+            (all > 0).then(|| Ours::Share(Proportion::new(hits, all)))?
+        }
+        Quantity::Mean(measure) => {
+            let values = measured(trials, measure);
+            (!values.is_empty()).then(|| Ours::Mean(Summary::of(&values)))?
+        }
+        Quantity::Percent(_) => Ours::Bare(estimate(quantity, trials)?.value),
+    })
 }
 
 fn estimate(quantity: &Quantity, trials: &[&TrialRecord]) -> Option<Estimate> {
@@ -213,9 +252,7 @@ pub(in crate::studies) fn published_share(percent: f64, n: u64) -> Option<(f64, 
     if n == 0 || !(0.0..=100.0).contains(&percent) {
         return None;
     }
-    let hits = (percent / 100.0 * crate::stats::real(n)).round();
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to n")]
-    let interval = wilson(Proportion::new(hits as u64, n), CONFIDENCE);
+    let interval = wilson(printed_share(percent, n), CONFIDENCE);
     Some((100.0 * interval.low, 100.0 * interval.high))
 }
 

@@ -252,6 +252,7 @@ mod tests {
             factors: &factors,
             records: &records,
             published: &published,
+            design: &[],
             calibration: None,
         })
     }

@@ -1,6 +1,7 @@
 //! What the columns of an outcome table hold.
 
 use super::{OutcomeTable, Percent, Quantity};
+use crate::studies::findings::agreement_column;
 use crate::table::{Column, unit_of};
 
 /// A column of an outcome table, factors aside.
@@ -37,7 +38,7 @@ pub(in crate::studies) fn of_outcome_table(wanted: &OutcomeTable, name: &str) ->
         }
         "published-n" => Column::count(name, "Trials behind the paper's number")
             .empty_where("the paper does not say"),
-        _ => return None,
+        _ => return agreement_column(name, unit),
     })
 }
 

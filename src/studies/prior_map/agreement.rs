@@ -5,9 +5,8 @@ use super::requests::{AgreementTable, CoverageTable};
 use super::results::CoverageCell;
 use crate::math::ln;
 use crate::stats::Interval;
-use crate::stats::agreement::{
-    Line, line, log_ratio_half_width, prediction_half_width, rmse, skill_over_constant,
-};
+use crate::stats::agreement::{Line, line, log_ratio_half_width, rmse, skill_over_constant};
+use crate::stats::compatibility::{Agreement, Method};
 use crate::stats::rank::{pearson, spearman};
 use crate::stats::summary::{Summary, mean};
 use crate::studies::findings::{Findings, rounded};
@@ -272,11 +271,9 @@ fn agreement(
     let points: Vec<(f64, f64)> = x.iter().copied().zip(y.iter().copied()).collect();
     let cells_inside: Vec<bool> = both
         .iter()
-        .filter(|both| both.spread)
-        .map(|both| {
-            let half = prediction_half_width(both.printed, both.ours.n, CONFIDENCE);
-            (both.ours.mean - both.printed.mean).abs() <= half
-        })
+        .map(|both| both.cell.agreement)
+        .filter(|agreement| agreement.method() == Some(Method::PredictionInterval))
+        .map(|agreement| matches!(agreement, Agreement::Compatible(_)))
         .collect();
     let ratios_inside: Vec<bool> = ratios.iter().filter_map(|ratio| ratio.inside).collect();
     let tally =
@@ -287,7 +284,7 @@ fn agreement(
         scope: scope.to_owned(),
         name: name.to_owned(),
         ratios: ratios.len() as u64,
-        missing: printed.filter(|cell| cell.ours.is_none()).count() as u64,
+        missing: printed.filter(|cell| cell.ours.is_none() && cell.trials > 0).count() as u64,
         censored: both.iter().filter(|both| both.ours.n < both.cell.trials).count() as u64,
         blocks: places.len() as u64,
         line: line(&points, &places, CONFIDENCE),

@@ -1,8 +1,9 @@
 //! From records to a table of whole trials' measures, as the numbers of section 4.5.
 
 use super::requests::MeasuresTable;
+use crate::stats::compatibility::{Agreement, Ours, Printed, rules};
 use crate::stats::summary::Summary;
-use crate::studies::findings::{Findings, rounded};
+use crate::studies::findings::{AGREEMENT, Findings, agreement_values, rounded};
 use crate::table::{Table, Value};
 
 /// Mean and spread of one measure in one cell of the design, beside the paper's.
@@ -16,8 +17,10 @@ pub struct MeasureCell {
     pub trials: u64,
     /// Those that have it; `None` where none does.
     pub ours: Option<Summary>,
-    /// The paper's mean and standard deviation.
-    pub published: Option<(f64, Option<f64>)>,
+    /// The paper's mean, with its standard deviation and runs where it prints them.
+    pub published: Option<Printed>,
+    /// How ours agrees with it, or why it cannot.
+    pub agreement: Agreement,
 }
 
 impl Findings<'_> {
@@ -32,13 +35,22 @@ impl Findings<'_> {
                 fixed.push(("measure".to_owned(), measure.clone()));
                 let (table, row) = self.published_row(name, &fixed)?;
                 let number = |column: &str| table.value(row, column).as_f64();
-                Some((number("value")?, number("sd")))
+                #[expect(
+                    clippy::cast_possible_truncation,
+                    clippy::cast_sign_loss,
+                    reason = "a count of runs"
+                )]
+                let n = number("n").map(|n| n.max(0.0) as u64);
+                Some(Printed { value: number("value")?, sd: number("sd"), n })
             });
+            let ours = (!values.is_empty()).then(|| Summary::of(&values));
+            let found = ours.map(Ours::Mean).ok_or_else(|| self.absence(rows, here.len() as u64));
             MeasureCell {
+                agreement: Agreement::between(found, published),
                 rows: rows.clone(),
                 measure: measure.clone(),
                 trials: here.len() as u64,
-                ours: (!values.is_empty()).then(|| Summary::of(&values)),
+                ours,
                 published,
             }
         };
@@ -49,8 +61,10 @@ impl Findings<'_> {
     /// A requested table, tidy: one row a cell.
     pub fn measures_table(&self, wanted: &MeasuresTable) -> Table {
         let mut columns = wanted.rows.clone();
-        let numbers = ["measure", "mean", "sd", "n", "trials", "published", "published-sd"];
+        let numbers =
+            ["measure", "mean", "sd", "n", "trials", "published", "published-sd", "published-n"];
         columns.extend(numbers.map(str::to_owned));
+        columns.extend(AGREEMENT.map(str::to_owned));
         let mut table = Table::new(columns);
         for cell in self.measure_cells(wanted) {
             let whole = |n: u64| i64::try_from(n).unwrap_or(i64::MAX);
@@ -60,11 +74,18 @@ impl Findings<'_> {
             row.push(cell.ours.filter(|s| s.n > 1).map(|s| rounded(s.sd)).into());
             row.push(cell.ours.map_or(0, |s| whole(s.n)).into());
             row.push(whole(cell.trials).into());
-            row.push(cell.published.map(|p| p.0).into());
-            row.push(cell.published.and_then(|p| p.1).into());
+            row.push(cell.published.map(|p| p.value).into());
+            row.push(cell.published.and_then(|p| p.sd).into());
+            row.push(cell.published.and_then(|p| p.n).map(whole).into());
+            row.extend(agreement_values(cell.agreement));
             table.push(row);
         }
         table
+    }
+
+    /// What the marks of a table mean: the methods that occur in it.
+    pub fn measures_rules(&self, wanted: &MeasuresTable) -> Option<String> {
+        rules(self.measure_cells(wanted).into_iter().map(|cell| cell.agreement))
     }
 
     /// A requested table as people read it: the measures side by side, the paper's in parentheses.
@@ -89,8 +110,10 @@ fn in_print(cell: &MeasureCell) -> String {
         || "-".to_owned(),
         |ours| measured(ours.mean, (ours.n > 1).then_some(ours.sd)),
     );
-    if let Some((mean, sd)) = cell.published {
-        text.push_str(&format!(" ({})", measured(mean, sd)));
+    if let Some(paper) = cell.published {
+        let mark = cell.agreement.mark();
+        let space = if mark.is_empty() { "" } else { " " };
+        text.push_str(&format!(" ({mark}{space}{})", measured(paper.value, paper.sd)));
     }
     if let Some(ours) = cell.ours.filter(|ours| ours.n < cell.trials) {
         text.push_str(&format!(" [{} of {}]", ours.n, cell.trials));
@@ -141,6 +164,7 @@ mod tests {
             factors: &factors,
             records: &records,
             published: &published,
+            design: &[],
             calibration: None,
         };
         let wanted = MeasuresTable {
@@ -151,9 +175,9 @@ mod tests {
         let print = findings.measures_table_in_print(&wanted).to_csv();
         assert_eq!(
             print,
-            "prior,noise,distance-m\nnone,0,400.0 [1 of 2]\ngraph,0,250.0 ± 14.1 (239.0)\ngraph,4,390.0\n"
+            "prior,noise,distance-m\nnone,0,400.0 [1 of 2]\ngraph,0,250.0 ± 14.1 (≈ 239.0)\ngraph,4,390.0\n"
         );
         let tidy = findings.measures_table(&wanted).to_csv();
-        assert!(tidy.contains("graph,0,distance-m,250,14.1421,2,2,239,\n"), "{tidy}");
+        assert!(tidy.contains("graph,0,distance-m,250,14.1421,2,2,239,,,within-10-percent,relative-difference,,,4.60251\n"), "{tidy}");
     }
 }

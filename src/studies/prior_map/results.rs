@@ -3,8 +3,9 @@
 use super::cell_tests::{self, CellTests, Difference};
 use super::requests::{CoverageCurve, CoverageTable, Metric};
 use crate::figure::{LineChart, PublishedPoint, Series};
+use crate::stats::compatibility::{Agreement, Ours, Printed, Silence, rules};
 use crate::stats::summary::{Summary, median, quantile};
-use crate::studies::findings::{Findings, rounded};
+use crate::studies::findings::{AGREEMENT, Findings, agreement_values, rounded};
 use crate::studies::{Outcome, SeriesPoint};
 use crate::table::{Table, Value};
 
@@ -27,6 +28,8 @@ pub struct CoverageCell {
     pub published: Option<(f64, Option<f64>, Option<f64>)>,
     /// Difference of the paper's mean to its baseline's (percent), recomputed from its printed means.
     pub published_difference_percent: Option<f64>,
+    /// How our mean agrees with the paper's, or why it cannot.
+    pub agreement: Agreement,
     /// Tests against the baseline, where the request asks for them.
     pub tests: Option<CellTests>,
 }
@@ -104,12 +107,15 @@ impl Findings<'_> {
             let number = |column: &str| table.value(row, column).as_f64();
             Some((number("value")?, number("sd"), number("n")))
         });
+        let ours = (!reached.is_empty()).then(|| Summary::of(&reached));
+        let found = ours.map(Ours::Mean).ok_or_else(|| self.absence(fixed, here.len() as u64));
         CoverageCell {
+            agreement: Agreement::between(found, published.map(printed)),
             rows,
             percent,
             by,
             trials: here.len() as u64,
-            ours: (!reached.is_empty()).then(|| Summary::of(&reached)),
+            ours,
             difference_percent: None,
             published,
             published_difference_percent: None,
@@ -135,6 +141,7 @@ impl Findings<'_> {
             ]
             .map(str::to_owned),
         );
+        columns.extend(AGREEMENT.map(str::to_owned));
         if wanted.tests {
             columns.extend(cell_tests::COLUMNS.map(str::to_owned));
         }
@@ -153,6 +160,7 @@ impl Findings<'_> {
             row.push(cell.published.and_then(|p| p.1).into());
             row.push(cell.published.and_then(|p| p.2).into());
             row.push(cell.published_difference_percent.map(rounded).into());
+            row.extend(agreement_values(cell.agreement));
             if wanted.tests {
                 row.extend(CellTests::values(cell.tests));
             }
@@ -183,6 +191,11 @@ impl Findings<'_> {
             table.push(row);
         }
         table
+    }
+
+    /// What the marks of a table mean: the methods that occur in it.
+    pub fn coverage_rules(&self, wanted: &CoverageTable) -> Option<String> {
+        rules(self.coverage_cells(wanted).into_iter().map(|cell| cell.agreement))
     }
 
     /// A requested figure: median coverage with a band from the 10th to the 90th percentile of trials, and the
@@ -260,6 +273,13 @@ impl Findings<'_> {
     }
 }
 
+/// What the paper prints, as it is compared.
+fn printed((value, sd, n): (f64, Option<f64>, Option<f64>)) -> Printed {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count of runs")]
+    let n = n.map(|n| n.max(0.0) as u64);
+    Printed { value, sd, n }
+}
+
 /// A curve is drawn through this many pieces.
 const SAMPLES: u32 = 120;
 
@@ -281,11 +301,12 @@ fn add_differences(line: &mut [CoverageCell], baseline: Option<&str>) {
 }
 
 fn ours_in_print(cell: &CoverageCell) -> String {
-    // No condition of the design.
-    if cell.trials == 0 {
-        return String::new();
-    }
-    let Some(ours) = &cell.ours else { return format!("not reached (0 of {})", cell.trials) };
+    let Some(ours) = &cell.ours else {
+        return match cell.agreement {
+            Agreement::Silent(silence) if silence != Silence::NotReached => silence.words().into(),
+            _ => format!("not reached (0 of {})", cell.trials),
+        };
+    };
     let mut text = if ours.n > 1 {
         format!("{:.2} ± {:.2}", ours.mean, ours.sd)
     } else {
@@ -313,7 +334,11 @@ fn tests_in_print(tests: &CellTests) -> String {
 
 fn published_in_print(cell: &CoverageCell) -> String {
     let Some((mean, sd, _)) = cell.published else { return String::new() };
-    let mut text = sd.map_or_else(|| format!("{mean:.2}"), |sd| format!("{mean:.2} ± {sd:.2}"));
+    let mut text = match cell.agreement.mark() {
+        "" => String::new(),
+        mark => format!("{mark} "),
+    };
+    text += &sd.map_or_else(|| format!("{mean:.2}"), |sd| format!("{mean:.2} ± {sd:.2}"));
     if let Some(difference) = cell.published_difference_percent {
         text.push_str(&format!(" ({difference:+.0} %)"));
     }

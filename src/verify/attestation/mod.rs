@@ -10,7 +10,7 @@ mod statement;
 pub use dsse::Envelope;
 pub use reading::Attestation;
 
-use super::{Report, Verdict};
+use super::{EarlierAgain, Report, Verdict};
 use crate::bundle::{Moment, format};
 use statement::{Digests, Note, Predicate, Replicated, Rung, Sampled, Statement, Subject};
 
@@ -75,6 +75,7 @@ impl Report {
                 bound: sample.bound(),
                 in_words: sample.in_words(),
             }),
+            earlier: self.earlier.iter().map(EarlierAgain::in_words).collect(),
             replication: self.replication.as_ref().map(|replication| Replicated {
                 seed: replication.seed.to_string(),
                 in_words: replication.in_words(),

@@ -51,7 +51,7 @@ impl Attestation {
         let others = self
             .others
             .iter()
-            .map(|key| format!("also signed with the key {key}, which you do not trust"));
+            .map(|key| format!("said to be signed with the key {key} too, which you do not trust"));
         let unchecked = self.not_checked.iter().map(|what| format!("not checked: {what}"));
         let all = self.executed.iter().cloned().chain(self.notes.iter().cloned());
         all.chain(unchecked).chain(others).map(|line| format!("attested: {line}")).collect()
@@ -142,7 +142,8 @@ impl Predicate {
             return fault(expected, format!("`{}`", self.date));
         }
         let told = self.sample.map(|sample| sample.in_words);
-        let told = told.into_iter().chain(self.replication.map(|replication| replication.in_words));
+        let told = told.into_iter().chain(self.earlier);
+        let told = told.chain(self.replication.map(|replication| replication.in_words));
         let executed = told.flat_map(|text| text.lines().map(one_line).collect::<Vec<_>>());
         Ok(Attestation {
             signed,

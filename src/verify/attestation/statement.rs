@@ -76,6 +76,8 @@ pub(super) struct Predicate {
     pub(super) level_name: String,
     pub(super) levels: Vec<Rung>,
     pub(super) sample: Option<Sampled>,
+    /// What runs before the study's own made and was executed again, in words.
+    pub(super) earlier: Vec<String>,
     pub(super) replication: Option<Replicated>,
     pub(super) signed: Option<Signed>,
     pub(super) notes: Vec<Note>,

@@ -133,12 +133,12 @@ fn a_newer_engine_says_what_it_can_judge_and_how_to_go_on() {
                     can be judged here; the rest only by the engine that ran the study: ";
     let version = crate::bundle::format::VERSION;
     let install = format!(
-        "`cargo install reenact --version {version} --locked`, then its own `reenact verify`"
+        "in a checkout of the source of reenact {version}, `cargo install --path . --locked`, then its own `reenact verify`"
     );
     let end = "reached level 2 (coherent) of level 5 (full): this program cannot judge further\n";
     assert_eq!(told(sample::sealed().tree), format!("{levels}{obstacle}{install})\n{end}"));
     let source = format!(
-        ", or, where that can no longer be had, build the source sealed in data/engine/reenact-{version}-source.zip (read it \
+        ", or, where none can be had, build the source sealed in data/engine/reenact-{version}-source.zip (read it \
          first: it is a stranger's)"
     );
     assert_eq!(told(with_capsule()), format!("{levels}{obstacle}{install}{source})\n{end}"));
@@ -171,6 +171,7 @@ fn a_capsule_is_data_beside_the_results_and_is_compared() {
     let path = format!("engine/reenact-{version}-source.zip");
     for says in [
         &format!("`{path}` holds its source"),
+        &format!("\nunzip {path}\ncargo install"),
         &format!("cargo install --path reenact-{version} --locked"),
     ] {
         assert!(readme.contains(says.as_str()), "{readme}");

@@ -56,7 +56,7 @@ fn in_words(planned: u64, found: &[(Claim, Result<Power, String>)]) -> String {
         "Share of {REPLICATES} made-up studies that support or contradict a claim, if what its `power` assumes is true\n"
     );
     for (claim, power) in found {
-        text.push_str(&format!("\n{}: {}\n", claim.id, claim.says));
+        text.push_str(&format!("\n{}: {}\n", claim.id, claim.words().text()));
         let power = match power {
             Ok(power) => power,
             Err(reason) => {

@@ -86,8 +86,13 @@ fn factors() -> Vec<(String, Vec<String>)> {
 
 fn found(records: &[TrialRecord], with_sd: impl Fn(&str) -> bool) -> Vec<TableAgreement> {
     let (factors, published) = (factors(), published(with_sd));
-    let findings =
-        Findings { factors: &factors, records, published: &published, calibration: None };
+    let findings = Findings {
+        factors: &factors,
+        records,
+        published: &published,
+        design: &[],
+        calibration: None,
+    };
     let wanted = AgreementTable { tables: vec!["distance".to_owned()] };
     let table = request(false);
     let tidy = findings.agreement_table(&wanted, &[("distance", &table), ("other", &table)]);
@@ -143,8 +148,13 @@ fn what_is_missing_or_censored_or_has_no_spread_is_counted() {
 #[test]
 fn cells_are_tested_at_all_runs_and_at_the_papers_number() {
     let (factors, published, records) = (factors(), published(|_| true), records(|x| x, 0..5));
-    let findings =
-        Findings { factors: &factors, records: &records, published: &published, calibration: None };
+    let findings = Findings {
+        factors: &factors,
+        records: &records,
+        published: &published,
+        design: &[],
+        calibration: None,
+    };
     let cells = findings.coverage_cells(&request(true));
     let cell = |by: &str, percent| {
         let wanted = ("environment".to_owned(), "office".to_owned());
@@ -166,7 +176,7 @@ fn cells_are_tested_at_all_runs_and_at_the_papers_number() {
     // A combination that the design leaves out is no row that was not reached.
     let print = findings.coverage_table_in_print(&request(true));
     let basic = &print.rows[0];
-    assert_eq!(*print.value(basic, "bounding-box"), Value::Text(String::new()));
+    assert_eq!(*print.value(basic, "bounding-box"), Value::from("not in the design"));
 }
 
 /// Two choices that the paper leaves open, one of which exists only under the other: three readings, each with its score.
@@ -188,8 +198,13 @@ fn every_reading_that_was_run_has_its_own_score() {
         }
     }
     let published = published(|_| true);
-    let findings =
-        Findings { factors: &factors, records: &all, published: &published, calibration: None };
+    let findings = Findings {
+        factors: &factors,
+        records: &all,
+        published: &published,
+        design: &[],
+        calibration: None,
+    };
     let mut table = request(false);
     table.rows.extend(["gain".to_owned(), "stop".to_owned()]);
     let wanted = AgreementTable { tables: vec!["distance".to_owned()] };

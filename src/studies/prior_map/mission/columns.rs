@@ -4,6 +4,7 @@
 use super::FURTHER_AT_MILESTONES;
 use super::pose_errors::POSE_ERRORS;
 use super::trace::{MILESTONES, coverage_at_distance};
+use crate::studies::findings::agreement_column;
 use crate::studies::prior_map::requests::{CoverageTable, EffectsTable, MeasuresTable, Metric};
 use crate::table::{Column, unit_of};
 
@@ -157,7 +158,7 @@ pub fn of_coverage_table(wanted: &CoverageTable, name: &str) -> Option<Column> {
             Column::probability(name, "p of Welch's test against the baseline from the paper's printed numbers")
                 .empty_where("the paper prints no pair of means with deviations")
         }
-        _ => return None,
+        _ => return agreement_column(name, unit),
     })
 }
 
@@ -183,7 +184,8 @@ pub fn of_measures_table(wanted: &MeasuresTable, name: &str) -> Option<Column> {
         "published-sd" => number("The standard deviation that the paper prints")
             .at_least(0.0)
             .empty_where(published),
-        _ => return None,
+        "published-n" => Column::count(name, "The paper's number of runs").empty_where(published),
+        _ => return agreement_column(name, unit),
     })
 }
 
