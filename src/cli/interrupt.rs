@@ -74,7 +74,7 @@ fn wait(terminal: Terminal) {
                 }
                 // Between two runs: while a manifest is read, or what was run is sealed.
                 None => {
-                    terminal.note("interrupted: the same command goes on with what the store has")
+                    terminal.note("interrupted: the same command goes on with what the store has");
                 }
             }
             let _ = emulate_default_handler(signal);

@@ -201,11 +201,11 @@ fn include(
         }
         let added =
             Condition(factors.iter().map(|f| (f.name.clone(), cell[&f.name].0.clone())).collect());
-        if !there.insert(added.clone()) {
+        if there.insert(added.clone()) {
+            cells.push(added);
+        } else {
             let fault = faults.fault(&pointer, "this condition is there already");
             faults.push(fault.label(format!("`{added}`")).warning());
-        } else {
-            cells.push(added);
         }
     }
 }

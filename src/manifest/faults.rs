@@ -7,13 +7,16 @@ use crate::studies::FactorValue;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+/// Where a fault is: the file, and the byte in it.
+type Site = Option<(Arc<str>, usize)>;
+
 /// Faults of one manifest.
 pub(super) struct Faults<'a> {
     /// The manifest's tree, overrides included.
     pub(super) tree: &'a Tree,
     list: FaultList,
     /// Where faults stand and what they say, so that each is told once.
-    known: BTreeSet<(Option<(Arc<str>, usize)>, String, String)>,
+    known: BTreeSet<(Site, String, String)>,
 }
 
 impl<'a> Faults<'a> {

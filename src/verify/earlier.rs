@@ -139,6 +139,11 @@ impl Earlier {
             equal,
             of,
         };
-        Again { executed: Some(executed), faults: reexecution::capped(faults), failure: None, on_trust }
+        Again {
+            executed: Some(executed),
+            faults: reexecution::capped(faults),
+            failure: None,
+            on_trust,
+        }
     }
 }

@@ -27,9 +27,7 @@ pub use attestation::{Attestation, Envelope, LONGEST as LONGEST_ATTESTATION};
 pub use closeness::{Apart, Closeness};
 pub use earlier::{Earlier, EarlierAgain, Made};
 pub use finding::{Finding, Level, Severity};
-pub use ladder::{
-    Options, Report, Reviewer, Rows, Verdict, climb, climb_and_keep, climb_for,
-};
+pub use ladder::{Options, Report, Reviewer, Rows, Verdict, climb, climb_and_keep, climb_for};
 pub use pipeline::{Pipeline, PlannedTrial, Replanned};
 pub use reexecution::Sample;
 pub use replan::{Reenactment, plan_of};

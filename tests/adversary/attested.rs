@@ -155,7 +155,7 @@ fn a_signed_attestation_is_read_back() {
     let two = [sign(2, "reenact", &to_sign), sign(1, "reenact", &to_sign)];
     let answer = read("namespaces=\"reenact\"", &HONEST.zip, &envelope(TYPE, &payload(), &two));
     assert_eq!(answer.code, Some(0), "{answer:?}");
-    let says = "\nattested: also signed with the key SHA256:";
+    let says = "\nattested: said to be signed with the key SHA256:";
     assert!(answer.stdout.contains(says), "{}", answer.stdout);
 }
 

@@ -1,14 +1,17 @@
 use super::super::assert_close;
 use super::*;
 
+#[expect(clippy::unnecessary_wraps, reason = "as `compare` takes it")]
 fn share(successes: u64, trials: u64) -> Result<Ours, Silence> {
     Ok(Ours::Share(Proportion::new(successes, trials)))
 }
 
+#[expect(clippy::unnecessary_wraps, reason = "as `compare` takes it")]
 fn mean(mean: f64, n: u64) -> Result<Ours, Silence> {
     Ok(Ours::Mean(Summary { n, mean, sd: 99.0 }))
 }
 
+#[expect(clippy::unnecessary_wraps, reason = "as `compare` takes it")]
 fn printed(value: f64, sd: Option<f64>, n: Option<u64>) -> Option<Printed> {
     Some(Printed { value, sd, n })
 }
