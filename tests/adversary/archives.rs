@@ -181,8 +181,8 @@ fn deflated(name: &'static str, change: impl FnOnce(Entry) -> Entry) -> Case {
 }
 
 /// The honest bag, with something else behind its entries.
-fn ended(name: &'static str, tail: Tail) -> Case {
-    file(name, zip_with(&entries(), &tail))
+fn ended(name: &'static str, tail: &Tail) -> Case {
+    file(name, zip_with(&entries(), tail))
 }
 
 /// The honest bag's files under another root.
@@ -229,17 +229,17 @@ pub(crate) fn bytes_of_nobody() -> Vec<Case> {
         }),
         ended(
             "bytes between the last entry and the directory",
-            Tail { gap: SCRIPT.into(), ..Tail::default() },
+            &Tail { gap: SCRIPT.into(), ..Tail::default() },
         ),
         ended(
             "a file before the directory that nothing lists",
-            Tail { gap: entry, ..Tail::default() },
+            &Tail { gap: entry, ..Tail::default() },
         ),
         ended(
             "bytes between the directory and the end",
-            Tail { behind: SCRIPT.into(), ..Tail::default() },
+            &Tail { behind: SCRIPT.into(), ..Tail::default() },
         ),
-        ended("64 KiB of comment", Tail { comment: vec![b'x'; 0xffff], ..Tail::default() }),
+        ended("64 KiB of comment", &Tail { comment: vec![b'x'; 0xffff], ..Tail::default() }),
         file("zeros behind the end", zeros),
         file("an entry within another entry's bytes", zip(&nested)),
         changed("an entry with a comment", |e| Entry { comment: SCRIPT.into(), ..e }),
@@ -247,9 +247,12 @@ pub(crate) fn bytes_of_nobody() -> Vec<Case> {
             let field = raw_zip::unicode(0x6375, b"", b"verified by the ACM");
             e.says(|header| header.extra = field)
         }),
-        ended("an end that counts one entry less", Tail { miscount: -1, ..Tail::default() }),
-        ended("an end that counts one entry more", Tail { miscount: 1, ..Tail::default() }),
-        ended("a zip64 end that counts one entry less", Tail { long: Some(-1), ..Tail::default() }),
+        ended("an end that counts one entry less", &Tail { miscount: -1, ..Tail::default() }),
+        ended("an end that counts one entry more", &Tail { miscount: 1, ..Tail::default() }),
+        ended(
+            "a zip64 end that counts one entry less",
+            &Tail { long: Some(-1), ..Tail::default() },
+        ),
         file("the second piece of an archive", pieces),
         deflated("junk behind a deflate stream", |mut entry| {
             entry.data.extend(SCRIPT.bytes());
