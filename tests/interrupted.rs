@@ -175,7 +175,7 @@ fn what_is_no_file_in_a_record_s_place_is_named_and_left_alone() {
         assert_eq!(results(&output), (undisturbed.clone(), 1));
         assert_eq!(output.status.code(), Some(0));
         let found = ["a pipe", "a folder", "a symbolic link that leads nowhere"];
-        let says: String = records
+        let says: Vec<String> = records
             .iter()
             .zip(found)
             .map(|(record, found)| {
@@ -186,6 +186,6 @@ fn what_is_no_file_in_a_record_s_place_is_named_and_left_alone() {
                 )
             })
             .collect();
-        assert_eq!(text(output.stderr), says);
+        assert_eq!(text(output.stderr), says.concat());
     }
 }

@@ -188,7 +188,7 @@ fn attacks() -> Vec<(&'static str, String, String)> {
             MADE.0.to_string(),
             format!("{by}none (sign it as docs/verification.md says; `reenact attest` puts the signature in)"),
         ),
-        ("a level raised after it was signed", envelope(TYPE, raised.as_bytes(), &[signature.clone()]), unfit.clone()),
+        ("a level raised after it was signed", envelope(TYPE, raised.as_bytes(), std::slice::from_ref(&signature)), unfit.clone()),
         (
             "a signature of the bundle's list of digests",
             envelope(TYPE, &honest, &[sign(1, "reenact", list)]),

@@ -83,7 +83,7 @@ fn what_is_wanted_unchecked_stands_under_a_banner() {
             let begin = told.lines().position(|line| line == first).unwrap();
             assert_eq!(begin, 0, "{words:?}: {told}");
         }
-        let expected = if is_diff { 1 } else { 0 };
+        let expected = i32::from(is_diff);
         assert_eq!(answer.code, Some(expected), "{words:?}: {answer:?}");
         if words.contains(&"page.html") {
             let page = fs::read_to_string(sandbox.path("page.html")).unwrap();

@@ -77,6 +77,7 @@ pub(super) struct Predicate {
     pub(super) levels: Vec<Rung>,
     pub(super) sample: Option<Sampled>,
     /// What runs before the study's own made and was executed again, in words.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(super) earlier: Vec<String>,
     pub(super) replication: Option<Replicated>,
     pub(super) signed: Option<Signed>,

@@ -49,8 +49,8 @@ fn a_sample_of_no_trial_passes_nothing() {
     assert_eq!((report.verdict(), report.reached), (Verdict::Unanswered, Some(Level::Derived)));
     let human = report.to_human();
     let says = "  4 sampled   not judged\nobstacle at level 4: data/trials/: expected trials to execute again, found none (a sample \
-                of no trial shows nothing: draw one at least with `--sample`)\nno trial was executed again\nreached level 3 \
-                (derived) of level 4 (sampled): this program cannot judge further\n";
+                of no trial shows nothing: draw one at least with `--sample`)\nno trial was executed again\nnot checked: time and host \
+                of the run\nreached level 3 (derived) of level 4 (sampled): this program cannot judge further\n";
     assert!(human.ends_with(says), "{human}");
     let why = report.attest(crate::bundle::Moment(0)).unwrap_err();
     assert_eq!(
@@ -72,7 +72,7 @@ fn a_program_that_executed_otherwise_than_asked_has_failed() {
             let human = report.to_human();
             let says = format!(
                 "failure at level 4: data/trials/: expected 6 trials executed again, found {found} (this is a bug in reenact, or \
-                 too little memory)\nreached level 3 (derived) of level {level}: this program failed, which says nothing of the \
+                 too little memory)\nnot checked: time and host of the run\nreached level 3 (derived) of level {level}: this program failed, which says nothing of the \
                  bundle\n"
             );
             assert!(human.ends_with(&says), "{human}");
