@@ -12,6 +12,8 @@ const MOST_NODES: usize = 250_000;
 const MOST_REPEATED: usize = 1 << 22;
 /// Deeper than any document we define; keeps every recursion over a tree shallow.
 const MOST_NESTING: usize = 48;
+/// How faults of the syntax begin.
+const INVALID: &str = "not valid YAML: ";
 
 /// The tree of `source`, or every fault in its text.
 ///
@@ -28,14 +30,19 @@ pub fn read(source: &Source) -> Result<Tree, Vec<Diagnostic>> {
         Ok(root) => Ok(Tree { sources: vec![source.clone()], root }),
         // Of what is no document of ours nothing is quoted: it may be a key or a list of passwords, named by a slip.
         Err((faults, false)) => {
-            let line = faults.iter().find_map(|fault| {
+            let why = faults.iter().find_map(|fault| {
                 let (source, span) = fault.place.as_ref()?;
-                Some(format!(" (line {})", source.line_and_column(span.start).0))
+                let (line, _) = source.line_and_column(span.start);
+                // The parser's own words quote nothing; all others do.
+                Some(match fault.message.strip_prefix(INVALID) {
+                    Some(info) => format!(" (line {line}: {info})"),
+                    None => format!(" (line {line})"),
+                })
             });
             Err(vec![Diagnostic::placeless(format!(
                 "`{}`: expected a YAML mapping, found text that is none{}",
                 source.name,
-                line.unwrap_or_default()
+                why.unwrap_or_default()
             ))])
         }
         Err((faults, true)) => Err(faults),
@@ -163,7 +170,7 @@ impl<'a> Reader<'a> {
                 let end = next.map_or(at, |c| at + c.len_utf8());
                 let place = Place { source: self.number, start: at, end };
                 let info = error.info();
-                Err(Box::new(self.fault(place, format!("not valid YAML: {info}"))))
+                Err(Box::new(self.fault(place, format!("{INVALID}{info}"))))
             }
         }
     }

@@ -29,18 +29,18 @@ pub fn check(schema: &Value, tree: &Tree) -> Vec<Diagnostic> {
             _ => "text",
         };
         let name = &tree.sources[0].name;
-        return vec![Diagnostic::placeless(format!(
-            "`{name}`: expected a YAML mapping, found {found}"
-        ))];
+        let wanted = expected(&[checker.resolve(schema)]);
+        let wanted = wanted.trim_start_matches("a ");
+        let message = format!("`{name}`: expected a YAML {wanted}, found {found}");
+        return vec![Diagnostic::placeless(message)];
     }
     let mut faults = Faults::default();
     checker.check(schema, Spot::root(&tree.root), &mut faults);
-    let all = faults.count();
+    let left = faults.count() - faults.list.len();
     let mut told = faults.list;
     told.sort_by_key(|fault| fault.place);
     // A key unknown to a flattened choice is unknown to the mapping around it, too.
     told.dedup_by(|b, a| a.place == b.place && a.message == b.message);
-    let left = all - told.len();
     let others = (left > 0).then(|| Diagnostic::others(Severity::Error, left));
     let told = told.into_iter().map(|fault| {
         let mut diagnostic = tree.fault(fault.place, fault.message).label(fault.label);

@@ -7,8 +7,8 @@ use crate::studies::FactorValue;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// Where a fault is: the file, and the byte in it.
-type Site = Option<(Arc<str>, usize)>;
+/// Where a fault stands, its message and its label.
+type Told = (Option<(Arc<str>, usize)>, String, String);
 
 /// Faults of one manifest.
 pub(super) struct Faults<'a> {
@@ -16,7 +16,7 @@ pub(super) struct Faults<'a> {
     pub(super) tree: &'a Tree,
     list: FaultList,
     /// Where faults stand and what they say, so that each is told once.
-    known: BTreeSet<(Site, String, String)>,
+    known: BTreeSet<Told>,
 }
 
 impl<'a> Faults<'a> {

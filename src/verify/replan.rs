@@ -4,7 +4,7 @@ use super::{Earlier, Made, Pipeline, PlannedTrial, Replanned};
 use crate::bundle::{Bundle, BundleContent, Fault, assemble, format};
 use crate::claims::sensitivity::{Run, in_words};
 use crate::digest::Sha256Digest;
-use crate::document::{Source, reports};
+use crate::document::{MOST_FAULTS, Source, reports};
 use crate::manifest::{self, Experiment, Inputs, Measured, WrittenIn};
 use crate::plan::{ENGINE_VERSION, Plan, Selection};
 use crate::rng::Seeds;
@@ -113,7 +113,15 @@ fn resolve(
 ) -> Result<Experiment, String> {
     match manifest::resolve(source, overrides, inputs) {
         Ok((experiment, _)) => Ok(experiment),
-        Err(faults) => Err(reports(&faults, false).concat()),
+        Err(faults) => {
+            let (reports, count) = (reports(&faults, false), faults.iter().map(|f| f.count).sum());
+            // A fault of a bundle is cut where it is long, so the count comes first.
+            let counted = match count {
+                0..=MOST_FAULTS => String::new(),
+                _ => format!("{count} faults; the first are\n"),
+            };
+            Err(counted + &reports.concat())
+        }
     }
 }
 

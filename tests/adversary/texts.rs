@@ -9,6 +9,15 @@ const WORLD: &str = "data/inputs/basic.yaml";
 /// How many of everything.
 const MANY: usize = 200_000;
 
+/// So many keys that begin like this.
+fn numbered(key: &str) -> String {
+    let mut text = String::new();
+    for i in 0..MANY {
+        text.push_str(&format!("{key}{i}: 1\n"));
+    }
+    text
+}
+
 /// The honest bag with `what` appended to its manifest, and every digest right.
 fn appended(name: &'static str, what: impl FnOnce() -> String) -> Case {
     Case::on_honest(name, 3, |tree| {
@@ -20,12 +29,8 @@ fn appended(name: &'static str, what: impl FnOnce() -> String) -> Case {
 /// Texts that a manifest or a world may be, at the cost of a second.
 pub(crate) fn bombs() -> Vec<Case> {
     vec![
-        appended("two hundred thousand unknown keys", || {
-            (0..MANY).map(|i| format!("k{i}: 1\n")).collect()
-        }),
-        appended("two hundred thousand keys that are nearly known", || {
-            (0..MANY).map(|i| format!("trial{i}: 1\n")).collect()
-        }),
+        appended("two hundred thousand unknown keys", || numbered("k")),
+        appended("two hundred thousand keys that are nearly known", || numbered("trial")),
         appended("one key two hundred thousand times", || "limits: []\n".repeat(MANY)),
         appended("two hundred thousand values of the wrong type", || {
             format!("limits: [{}]\n", "1,".repeat(MANY))
@@ -57,10 +62,7 @@ pub(crate) fn bombs() -> Vec<Case> {
             reseal(tree);
         }),
         Case::on_honest("a world of two hundred thousand unknown keys", 3, |tree| {
-            edit(tree, WORLD, |text| {
-                let keys: String = (0..MANY).map(|i| format!("k{i}: 1\n")).collect();
-                format!("{text}{keys}")
-            });
+            edit(tree, WORLD, |text| format!("{text}{}", numbered("k")));
             reseal(tree);
         }),
         Case::on_honest("a robot of twenty thousand links that are none", 3, |tree| {

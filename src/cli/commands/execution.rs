@@ -103,14 +103,21 @@ impl Execution {
             .labelled(&plan.experiment.name)
             .interruptible(store.is_some());
         let (cached, doubted) = (AtomicUsize::new(0), AtomicUsize::new(0));
+        let walls = Mutex::new(WallTimes::new());
         let observer = |event: &RunEvent<'_>| {
-            if let RunEvent::Started { cached: known, doubted: again, .. } = event {
-                cached.store(*known, Ordering::Relaxed);
-                doubted.store(*again, Ordering::Relaxed);
+            match event {
+                RunEvent::Started { cached: known, doubted: again, .. } => {
+                    cached.store(*known, Ordering::Relaxed);
+                    doubted.store(*again, Ordering::Relaxed);
+                }
+                // One that was only doubted is not measured: it stands for none of the others.
+                RunEvent::Finished { cached: true, record, .. } => {
+                    walls.lock().unwrap_or_else(PoisonError::into_inner).remove(&record.key);
+                }
+                RunEvent::Finished { .. } => {}
             }
             progress.notice(event);
         };
-        let walls = Mutex::new(WallTimes::new());
         let timed = |spec: &TrialSpec| {
             let mut watch = TrialWatch::start();
             let record = studies::execute_timed(spec, &mut watch);
