@@ -207,7 +207,6 @@ impl Done {
             "study_digest": format!("sha256:{}", self.sealed.study_digest),
             "trials": self.records.len(),
             "cached": self.cached,
-            "doubted": self.doubted,
             "failed": self.failed(),
             "sim_seconds": self.sim_seconds(),
             "wall_seconds": self.wall_seconds,
