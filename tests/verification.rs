@@ -341,7 +341,7 @@ fn every_command_that_a_bundle_and_its_page_print_works_as_printed() {
 
     let unpacked = desk.run(&["export", &bundle, "--dir", "--out", "tree"]);
     assert_eq!(unpacked.code, 0, "{}", unpacked.stderr);
-    let bag = desk.path(unpacked.stdout.trim());
+    let bag = desk.path(unpacked.stdout.lines().last().unwrap());
     let readme = std::fs::read_to_string(bag.join("data/README.md")).unwrap();
     let of_readme = printed(&readme, "reenact");
     assert!(of_readme.len() > 1, "{readme}");

@@ -110,7 +110,7 @@ pub(super) fn text_bytes(path: &Path) -> Result<Vec<u8>, Failure> {
 
 /// Reads what should be an attestation: none is longer than that.
 pub(super) fn attestation(path: &Path) -> Result<Vec<u8>, Failure> {
-    store::read(path, LONGEST_ATTESTATION + 1).map_err(|e| unreadable(path, &e))
+    store::read(path, LONGEST_ATTESTATION).map_err(|e| unreadable(path, &e))
 }
 
 /// Reads a file.
