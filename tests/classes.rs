@@ -2,7 +2,7 @@
 //! bundle of each manifest that we ship is changed, with every digest made right again, and refused where its class says.
 //!
 //! The bundles are of one trial of one condition. Calibrations are shortened to the ten passages a maneuver that they need, and
-//! trials to twenty seconds where the study lets them; tables of robustness have a test of their own (`robustness.rs`).
+//! trials to twenty seconds where the study lets them; tables of robustness have a test of their own (`derived_inputs.rs`).
 
 #[path = "adversary/forger.rs"]
 #[expect(dead_code, reason = "the adversary's table uses the rest")]
