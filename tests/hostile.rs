@@ -71,6 +71,37 @@ fn of_two_hundred_thousand_faults_a_hundred_are_told_and_the_others_counted() {
     );
 }
 
+/// What is nearly known, unused or crossed is looked for among everything else: with so many of each that must not be done.
+#[test]
+fn many_names_cost_no_more_than_they_are_long() {
+    let sandbox = with_study();
+    let check = |from: &str, to: String, ends: &str| {
+        fs::write(sandbox.path("tiny.yaml"), STUDY.replace(from, &to)).unwrap();
+        let answer = sandbox.reenact(&["check", "tiny.yaml"]);
+        let told = refused(&answer);
+        assert!(told.ends_with(ends), "{}", &told[told.len().saturating_sub(500)..]);
+    };
+    let numbered = |count: usize, line: &dyn Fn(usize) -> String| -> String {
+        (0..count).map(line).collect::<Vec<_>>().concat()
+    };
+    check(
+        "  floor-plan: {floor-plan-of: world}\n",
+        numbered(50_000, &|i| format!("  p{i}: {{floor-plan-of: world}}\n")),
+        "warning: 49901 more warnings like these\n |\n = help: mend those above first: many may have one cause\n\n\
+         error: tiny.yaml: 1 error, 50000 warnings\n",
+    );
+    check(
+        "[none, floor-plan]\n",
+        format!("[none, floor-plan]\n{}", numbered(50_000, &|i| format!("  f{i}: [a]\n"))),
+        "error: tiny.yaml: 1 error, 1 warning\n",
+    );
+    check(
+        "prior-maps:",
+        format!("exclude:\n{}prior-maps:", numbered(50_000, &|_| "  - {prior: none}\n".to_owned())),
+        "error: tiny.yaml: 1 error\n",
+    );
+}
+
 #[cfg(unix)]
 #[test]
 fn inputs_that_are_no_files_are_refused_before_they_are_opened() {

@@ -136,6 +136,15 @@ fn a_bundle_signed_with_openssh_verifies_by_its_allowed_signers() {
     let none = desk.run(&["verify", "--trust", "signers", &bundle]);
     assert_eq!(none.code, 1);
     assert!(none.stdout.contains("found no signature (if its author signed it"), "{none:?}");
+    // By SOURCE_DATE_EPOCH, which these commands are given, the key would still be trusted.
+    let line = desk.read("signers").replace(" namespaces", " valid-before=\"20210101\",namespaces");
+    std::fs::write(desk.path("expired"), line).unwrap();
+    let expired = desk.run(&["verify", "--trust", "expired", signed]);
+    assert_eq!(expired.code, 1);
+    assert!(
+        expired.stdout.contains(", which is trusted before 2021-01-01 and not on 2"),
+        "{expired:?}"
+    );
     let unchecked = desk.run(&["verify", "--level", "2", signed]);
     assert_eq!(unchecked.code, 0);
     assert!(unchecked.stdout.contains("name those you trust with `--trust FILE`"), "{unchecked:?}");
@@ -322,8 +331,8 @@ fn commands_are_found_in_fenced_blocks_alone() {
     assert_eq!(printed(text, "sha256sum"), ["sha256sum e"]);
 }
 
-/// Where they are said to work: those of the README and the page in the folder of the bundle, checksums in the folder above
-/// the README.
+/// Where they are said to work: those of the README and the page in the folder of the bundle, the study's own run in the
+/// README's folder, checksums in the folder above it.
 #[test]
 fn every_command_that_a_bundle_and_its_page_print_works_as_printed() {
     let desk = Desk::with_study();
@@ -343,14 +352,21 @@ fn every_command_that_a_bundle_and_its_page_print_works_as_printed() {
     assert_eq!(unpacked.code, 0, "{}", unpacked.stderr);
     let bag = desk.path(unpacked.stdout.lines().last().unwrap());
     let readme = std::fs::read_to_string(bag.join("data/README.md")).unwrap();
-    let of_readme = printed(&readme, "reenact");
-    assert!(of_readme.len() > 1, "{readme}");
+    let (again, of_readme): (Vec<_>, Vec<_>) =
+        printed(&readme, "reenact").into_iter().partition(|line| line.contains(" study.yaml"));
+    assert!(again.len() == 1 && of_readme.len() > 1, "{readme}");
     commands.extend(of_readme);
     for line in &commands {
         let words: Vec<&str> = line.split(' ').skip(1).collect();
         let answer = desk.run_in("bundles", &words);
         assert_eq!(answer.code, 0, "{line}\n{}{}", answer.stdout, answer.stderr);
     }
+    let words: Vec<&str> = again[0].split(' ').skip(1).collect();
+    let answer = desk.run_in(bag.join("data").to_str().unwrap(), &words);
+    assert_eq!(answer.code, 0, "{}\n{}{}", again[0], answer.stdout, answer.stderr);
+    let results =
+        |told: &str| told.lines().find(|line| line.starts_with("results ")).map(str::to_owned);
+    assert!(results(&run.stdout).is_some() && results(&answer.stdout) == results(&run.stdout));
     // The results digest without any program of ours.
     assert_eq!(by_hand.len(), 1, "{by_hand:?}");
     let shell = Command::new("sh").args(["-c", &by_hand[0]]).current_dir(bag.join("data")).output();

@@ -15,6 +15,8 @@ const MOST_EXCERPT: usize = 2000;
 const MOST_TEXT: usize = 4000;
 /// Longest name (characters) that a message quotes.
 const MOST_QUOTED: usize = 80;
+/// Of how many words the nearest is looked for.
+const MOST_CANDIDATES: usize = 2000;
 
 /// A text with the name people know it by.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -370,6 +372,7 @@ pub fn suggestion<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> O
     }
     known
         .into_iter()
+        .take(MOST_CANDIDATES)
         .filter(|candidate| candidate.len() <= 4 * MOST_QUOTED)
         .map(|candidate| (strsim::damerau_levenshtein(word, candidate), candidate))
         .filter(|(distance, candidate)| {

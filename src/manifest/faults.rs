@@ -57,6 +57,16 @@ impl<'a> Faults<'a> {
         self.push(fault);
     }
 
+    /// Collects a warning at a key.
+    pub(super) fn warn_at_key(&mut self, pointer: &str, message: impl Into<String>, label: &str) {
+        let fault = if self.list.is_full(Severity::Warning) {
+            Diagnostic::placeless(message)
+        } else {
+            self.key_fault(pointer, message).label(label)
+        };
+        self.push(fault.warning());
+    }
+
     /// Collects a fault; conditions that share one share its telling.
     pub(super) fn push(&mut self, fault: Diagnostic) {
         let place =
@@ -67,7 +77,7 @@ impl<'a> Faults<'a> {
     }
 
     /// Whether a further error is only counted: to look for its place and for what was meant takes longer than all the rest.
-    fn is_full(&self) -> bool {
+    pub(super) fn is_full(&self) -> bool {
         self.list.is_full(Severity::Error)
     }
 

@@ -1,7 +1,6 @@
 //! Prior knowledge PK_E: a map file aligned to the world, what is derived from a world, or a graph of places in it.
 
 use super::choice::Choice;
-use super::crossing::known_or_near;
 use super::document::{
     DerivedFrom, MapPrior, OwnWorld, PriorDoc, PriorFrame, TopoMetricPrior, UnknownAs,
 };
@@ -22,6 +21,7 @@ use crate::studies::prior_map::Parameters;
 use crate::studies::prior_map::tour::TopoMetricMap;
 use crate::world::{floor_plan::Plan, map_server};
 use serde_json::{Value, json};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// The factor that chooses among prior maps, and the choice of none.
@@ -122,27 +122,28 @@ impl<'a> Resolver<'a> {
         let then = previous::priors_then(doc);
         let then = then.iter().map(|(place, name)| (place.clone(), (*name).to_owned()));
         let named: Vec<_> = chosen.iter().cloned().chain(then).collect();
+        let there: BTreeSet<&str> = known.iter().copied().collect();
+        let mut meant = BTreeSet::new();
         for (pointer, name) in &named {
-            if !known.contains(&name.as_str()) {
-                let fault = self
-                    .faults
-                    .fault(pointer, format!("unknown prior map `{name}`"))
-                    .label("neither `none` nor a key of `prior-maps`");
-                self.faults.push(fault.help(known_or_near(name, &known)));
+            if there.contains(name.as_str()) {
+                meant.insert(name.as_str());
+                continue;
             }
-        }
-        // A misspelled name is one fault, not two.
-        let meant: Vec<&str> =
-            named.iter().filter_map(|(_, name)| suggestion(name, known.iter().copied())).collect();
-        for name in doc.prior_maps.keys().filter(|name| !meant.contains(&name.as_str())) {
+            if !self.faults.is_full() {
+                // A misspelled name is one fault, not two.
+                meant.extend(suggestion(name, known.iter().copied()));
+            }
+            let help = self.faults.near(name, &known);
             let fault = self
                 .faults
-                .key_fault(
-                    &step("/prior-maps", name),
-                    format!("the prior map `{name}` is not used"),
-                )
-                .label("not a value of the factor `prior`");
-            self.faults.push(fault.warning());
+                .fault(pointer, format!("unknown prior map `{name}`"))
+                .label("neither `none` nor a key of `prior-maps`");
+            self.faults.push(fault.help(help));
+        }
+        for name in doc.prior_maps.keys().filter(|name| !meant.contains(name.as_str())) {
+            let message = format!("the prior map `{name}` is not used");
+            let label = "not a value of the factor `prior`";
+            self.faults.warn_at_key(&step("/prior-maps", name), message, label);
         }
     }
 
