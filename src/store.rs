@@ -218,17 +218,36 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
         let problem = format!("expected a file, found {found}");
         return Err(io::Error::new(io::ErrorKind::InvalidInput, problem));
     }
-    let length = fs::metadata(path)?.len();
-    if length > most {
-        return Err(too_large(&length.to_string()));
+    content(path, most)?.map_err(|found| too_large(&found))
+}
+
+/// The bytes of the file at `path`, or what was found in place of at most `most` of them.
+fn content(path: &Path, most: u64) -> io::Result<Result<Vec<u8>, String>> {
+    let file = open(path)?;
+    let metadata = file.metadata()?;
+    if let Some(found) = odd(&metadata) {
+        let problem = format!("expected a file, found {found}");
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, problem));
+    }
+    if metadata.len() > most {
+        return Ok(Err(metadata.len().to_string()));
     }
     let mut bytes = Vec::new();
     // It may have grown meanwhile, and some files say nothing of their length.
-    fs::File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > most {
-        return Err(too_large("more"));
+    file.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
+    Ok(if bytes.len() as u64 > most { Err("more".into()) } else { Ok(bytes) })
+}
+
+/// Opens a file to read it. Should a pipe have taken its place meanwhile, that does not wait for whoever writes to it.
+fn open(path: &Path) -> io::Result<fs::File> {
+    let mut options = fs::OpenOptions::new();
+    options.read(true);
+    #[cfg(unix)]
+    {
+        use fs_err::os::unix::fs::OpenOptionsExt as _;
+        options.custom_flags(libc::O_NONBLOCK);
     }
-    Ok(bytes)
+    options.open(path)
 }
 
 /// What stands at `path`, where it is something that is no file.
@@ -274,9 +293,9 @@ pub fn open_bundle(
     path: &Path,
     limits: &archive::Limits,
 ) -> io::Result<Result<Archive, Vec<Fault>>> {
-    let too_big = |bytes: u64| {
+    let too_big = |found: &str| {
         let expected = format!("at most {} bytes", limits.bytes);
-        Ok(Err(vec![Fault::new("(archive)", expected, format!("{bytes} bytes"))]))
+        Err(vec![Fault::new("(archive)", expected, format!("{found} bytes"))])
     };
     let metadata = fs::metadata(path)?;
     if !metadata.is_dir() {
@@ -287,10 +306,10 @@ pub fn open_bundle(
                 "a device or a pipe",
             )]));
         }
-        if metadata.len() > limits.bytes {
-            return too_big(metadata.len());
-        }
-        return Ok(archive::read(&fs::read(path)?, limits));
+        return Ok(match content(path, limits.bytes)? {
+            Ok(bytes) => archive::read(&bytes, limits),
+            Err(found) => too_big(&found),
+        });
     }
     let (mut files, mut faults, mut total, mut entries) = (Vec::new(), Vec::new(), 0, 0);
     let mut folders = vec![(path.to_owned(), String::new())];
@@ -310,11 +329,13 @@ pub fn open_bundle(
                 files.push((format!("{name}/"), Vec::new()));
                 folders.push((entry.path(), format!("{name}/")));
             } else if kind.is_file() {
-                total += entry.metadata()?.len();
-                if total > limits.bytes {
-                    return too_big(total);
+                match content(&entry.path(), limits.bytes - total)? {
+                    Ok(bytes) => {
+                        total += bytes.len() as u64;
+                        files.push((name, bytes));
+                    }
+                    Err(_) => return Ok(too_big("more")),
                 }
-                files.push((name, fs::read(entry.path())?));
             } else {
                 let found = if kind.is_symlink() { "a symbolic link" } else { "a special file" };
                 faults.push(Fault::new(name, "a plain file", found));

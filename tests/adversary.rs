@@ -2,7 +2,7 @@
 //!
 //! Every attack is made here, from an honest bundle that the program under test has just run or from raw bytes, and goes
 //! through `reenact verify` as a process of its own, in a sandbox: it must end with the right exit code at the right rung,
-//! write nothing anywhere, and take no more than 300 MB. What is said is compared whole (`snapshots/adversary__*.snap`;
+//! write nothing anywhere, and take no more than 200 MB. What is said is compared whole (`snapshots/adversary__*.snap`;
 //! digests and measured numbers left out). `cargo test --test adversary -- --nocapture` prints the table.
 
 #[path = "adversary/archives.rs"]

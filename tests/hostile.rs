@@ -4,7 +4,7 @@
 #[path = "adversary/sandbox.rs"]
 mod sandbox;
 
-use sandbox::{Answer, Sandbox};
+use sandbox::{Answer, MOST_SECONDS, Sandbox};
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -28,9 +28,6 @@ prior-maps:
 parameters:
   mission: {time-limit-s: 20}
 ";
-
-/// The longest (s) that anything here may take, built without optimisation and on a machine that is busy.
-const MOST_SECONDS: f64 = 60.0;
 
 fn with_study() -> Sandbox {
     let sandbox = Sandbox::new();

@@ -116,7 +116,7 @@ fn again(content: &BundleContent) -> String {
         let told = if words.contains('`') {
             "`study.resolved.json` tells what was set and which part was run.".to_owned()
         } else {
-            format!("It was run with `{words}`.")
+            format!("How it was run: `{words}`.")
         };
         text.push_str(&format!("This is not `study.yaml` as it stands. {told}\n\n"));
     }

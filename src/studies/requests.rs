@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// One table to produce.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub struct TableRequest {
     /// Name of its file: lower-case letters, digits and hyphens, unique.
     pub id: String,
@@ -53,7 +53,7 @@ pub fn coverage_tables(tables: &[TableRequest]) -> Vec<(&str, &prior_map::Covera
 
 /// One figure to produce.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub struct FigureRequest {
     /// Name of its file: lower-case letters, digits and hyphens, unique.
     pub id: String,

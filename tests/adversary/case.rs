@@ -1,14 +1,10 @@
 //! One attack, and what the program must say to it.
 
-use super::sandbox::Sandbox;
+use super::sandbox::{MOST_SECONDS, Sandbox};
 use super::study::HONEST;
 use reenact::bundle::{Form, Tree, archive};
 use std::fs;
 use std::path::Path;
-
-/// The longest (s) that an attack may keep the program, built without optimisation and on a machine that is busy. What costs
-/// more than its length takes minutes then.
-const MOST_SECONDS: f64 = 60.0;
 
 /// How the attacker hands over a bundle.
 pub(crate) enum Made {

@@ -298,8 +298,8 @@ fn a_bundles_readme_gives_the_command_that_yields_it() {
         let data = author.join(exported).join("data");
         let readme = fs::read_to_string(data.join("README.md")).unwrap();
         assert!(readme.contains(&format!("\n```\n{command}\n```\n")), "{readme}");
-        let said = departs.map(|words| format!("It was run with `{words}`."));
-        assert_eq!(readme.contains("It was run with"), said.is_some(), "{readme}");
+        let said = departs.map(|words| format!("How it was run: `{words}`."));
+        assert_eq!(readme.contains("How it was run"), said.is_some(), "{readme}");
         assert!(said.is_none_or(|said| readme.contains(&said)), "{readme}");
 
         // As it stands there, by a shell, where nothing of the author's is.
