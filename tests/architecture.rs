@@ -45,6 +45,7 @@ const DOORS: &[(&str, &[&str])] = &[
     ("flate2", &["bundle/archive/unpack.rs"]),
     ("fs_err", &["store.rs", "store/"]),
     ("indicatif", &["cli/"]),
+    ("libc", &["store.rs"]),
     ("libm", &["math.rs"]),
     ("mcap", &["report/bag/writer.rs"]),
     ("mesh_loader", &["world/mesh/files.rs"]),
