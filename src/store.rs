@@ -209,20 +209,20 @@ fn sync_folder(directory: &Path) -> io::Result<()> {
 /// # Errors
 /// Where it cannot be read, is no such file or too large, naming it.
 pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
-    let too_large = |found: &str| {
-        let problem = format!("it is too large: expected at most {most} bytes, found {found}");
-        io::Error::new(io::ErrorKind::FileTooLarge, problem)
-    };
     // Asked before it is opened: to open a pipe waits for whoever writes to it.
     if let Some(found) = kind_of(path) {
         let problem = format!("expected a file, found {found}");
         return Err(io::Error::new(io::ErrorKind::InvalidInput, problem));
     }
-    content(path, most)?.map_err(|found| too_large(&found))
+    content(path, most)?.map_err(|length| {
+        let found = length.map_or_else(|| "more".to_owned(), |length| length.to_string());
+        let problem = format!("it is too large: expected at most {most} bytes, found {found}");
+        io::Error::new(io::ErrorKind::FileTooLarge, problem)
+    })
 }
 
-/// The bytes of the file at `path`, or what was found in place of at most `most` of them.
-fn content(path: &Path, most: u64) -> io::Result<Result<Vec<u8>, String>> {
+/// The bytes of the file at `path`; where they are more than `most`, how many, as far as it says.
+fn content(path: &Path, most: u64) -> io::Result<Result<Vec<u8>, Option<u64>>> {
     let file = open(path)?;
     let metadata = file.metadata()?;
     if let Some(found) = odd(&metadata) {
@@ -230,12 +230,12 @@ fn content(path: &Path, most: u64) -> io::Result<Result<Vec<u8>, String>> {
         return Err(io::Error::new(io::ErrorKind::InvalidInput, problem));
     }
     if metadata.len() > most {
-        return Ok(Err(metadata.len().to_string()));
+        return Ok(Err(Some(metadata.len())));
     }
     let mut bytes = Vec::new();
     // It may have grown meanwhile, and some files say nothing of their length.
     file.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
-    Ok(if bytes.len() as u64 > most { Err("more".into()) } else { Ok(bytes) })
+    Ok(if bytes.len() as u64 > most { Err(None) } else { Ok(bytes) })
 }
 
 /// Opens a file to read it. Should a pipe have taken its place meanwhile, that does not wait for whoever writes to it.
@@ -293,9 +293,10 @@ pub fn open_bundle(
     path: &Path,
     limits: &archive::Limits,
 ) -> io::Result<Result<Archive, Vec<Fault>>> {
-    let too_big = |found: &str| {
+    let too_big = |found: Option<u64>| {
         let expected = format!("at most {} bytes", limits.bytes);
-        Err(vec![Fault::new("(archive)", expected, format!("{found} bytes"))])
+        let found = found.map_or_else(|| "more".to_owned(), |bytes| format!("{bytes} bytes"));
+        Err(vec![Fault::new("(archive)", expected, found)])
     };
     let metadata = fs::metadata(path)?;
     if !metadata.is_dir() {
@@ -308,7 +309,7 @@ pub fn open_bundle(
         }
         return Ok(match content(path, limits.bytes)? {
             Ok(bytes) => archive::read(&bytes, limits),
-            Err(found) => too_big(&found),
+            Err(found) => too_big(found),
         });
     }
     let (mut files, mut faults, mut total, mut entries) = (Vec::new(), Vec::new(), 0, 0);
@@ -334,7 +335,9 @@ pub fn open_bundle(
                         total += bytes.len() as u64;
                         files.push((name, bytes));
                     }
-                    Err(_) => return Ok(too_big("more")),
+                    Err(found) => {
+                        return Ok(too_big(found.map(|bytes| total.saturating_add(bytes))));
+                    }
                 }
             } else {
                 let found = if kind.is_symlink() { "a symbolic link" } else { "a special file" };
