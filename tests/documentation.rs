@@ -47,7 +47,8 @@ fn links_are_found_outside_of_code() {
 
 #[test]
 fn every_relative_link_points_to_a_file() {
-    let mut pages = vec![root().join("README.md"), root().join("CHANGELOG.md")];
+    let mut pages: Vec<PathBuf> =
+        ["README.md", "CHANGELOG.md", "CONTRIBUTING.md"].map(|name| root().join(name)).into();
     pages.extend(markdown_in(&root().join("docs")));
     let mut dead = Vec::new();
     let mut followed = 0;
