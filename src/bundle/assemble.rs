@@ -3,7 +3,7 @@
 
 use super::content::{Author, BundleContent, Citation, SealedCondition, SealedInput};
 use super::{figures, format, wall_time};
-use crate::claims::{self, Claim, Verdict};
+use crate::claims::{self, Verdict};
 use crate::manifest::Input;
 use crate::plan::{ENGINE_VERSION, Plan, Selection};
 use crate::studies::{
@@ -83,17 +83,6 @@ pub fn assemble(
     })
 }
 
-/// The claims of `plan`'s manifest.
-///
-/// # Errors
-/// Where one is none, in words.
-pub fn claims(plan: &Plan) -> Result<Vec<Claim>, String> {
-    let read = |written: &Value| {
-        serde_json::from_value(written.clone()).map_err(|e| format!("claim: {e}"))
-    };
-    plan.experiment.claims.iter().map(read).collect()
-}
-
 /// The verdicts on the claims of `plan`'s manifest about the study, as `results/claims.json` holds them: none for
 /// partial runs. Claims about the machine are judged by [`super::wall_time`].
 ///
@@ -108,8 +97,8 @@ pub fn verdicts(plan: &Plan, records: &[TrialRecord]) -> Result<Vec<Verdict>, St
         claims::Context::new(&experiment.published, &experiment.shared_noise, experiment.seed);
     let factors = factors(plan);
     let trials = findings(plan, records, &factors).trials();
-    let about_the_study = claims(plan)?.into_iter().filter(|claim| !claim.circumstance);
-    about_the_study.map(|claim| claims::judge(&claim, &trials, &context)).collect()
+    let about_the_study = experiment.claims.iter().filter(|claim| !claim.circumstance);
+    about_the_study.map(|claim| claims::judge(claim, &trials, &context)).collect()
 }
 
 /// Factors with their values, as results name them.
@@ -168,7 +157,7 @@ fn results(plan: &Plan, records: &[TrialRecord]) -> Result<Results, String> {
             dictionary.of_trials(name)
         })
     }];
-    if measures_the_machine(plan)? {
+    if measures_the_machine(plan) {
         let path = format!("{}wall-times.csv", format::CIRCUMSTANCES);
         let words = ("Wall times", "one trial, in plan order");
         let columns = wall_time::columns(&factors);
@@ -250,8 +239,8 @@ fn method_note(rules: Option<String>) -> String {
 }
 
 /// Whether the run measures the machine.
-fn measures_the_machine(plan: &Plan) -> Result<bool, String> {
-    Ok(!plan.partial && claims(plan)?.iter().any(|claim| claim.circumstance))
+fn measures_the_machine(plan: &Plan) -> bool {
+    !plan.partial && plan.experiment.claims.iter().any(|claim| claim.circumstance)
 }
 
 /// What the columns of the inputs in CSV say: the paper's own numbers, the calibration of maneuvers, and what became of the

@@ -39,7 +39,7 @@ pub fn measured(
     records: &[TrialRecord],
     times: Result<&WallTimes, &str>,
 ) -> Result<Measured, String> {
-    let claims = assemble::claims(plan)?;
+    let claims = &plan.experiment.claims;
     let claims: Vec<_> = claims.iter().filter(|claim| claim.circumstance).collect();
     if plan.partial || claims.is_empty() {
         return Ok(Measured::default());

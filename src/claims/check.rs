@@ -8,48 +8,78 @@ use super::measuring::{Bound, That};
 use super::metric::{Metric, WALL_TIME};
 use super::power::Assume;
 use super::terms::{Censored, Order, Pairs, PerRun, Sides, Statistic, Test};
-use crate::document::suggestion;
+use crate::document::{listed, quoted, suggestion};
+use std::collections::BTreeSet;
 
-/// All faults of a manifest's claims: those of each ([`Claim::check`]) and ids used twice.
-pub fn check_all(
-    claims: &[Claim],
-    factors: &[(String, Vec<String>)],
-    metrics: &[String],
-    published: &[String],
-) -> Vec<String> {
-    let mut problems = Vec::new();
-    for (i, claim) in claims.iter().enumerate() {
-        if claims[..i].iter().any(|earlier| earlier.id == claim.id) {
-            problems.push(format!("claim `{}`: the id is used twice", claim.id));
-        }
-        problems.extend(claim.check(factors, metrics, published));
-    }
-    problems
+/// What there is to speak of in a study.
+#[derive(Debug, Clone, Copy)]
+pub struct Known<'a> {
+    /// The factors and their values.
+    pub factors: &'a [(String, Vec<String>)],
+    /// `success`, `outcome:NAME` and columns of the trials; `None` where they could not be found out.
+    pub metrics: Option<&'a [String]>,
+    /// Names of published tables.
+    pub published: &'a [String],
 }
 
-/// What there is, and the nearest name to what was asked for.
-fn unknown<'a>(kind: &str, name: &str, known: impl Iterator<Item = &'a String> + Clone) -> String {
-    let near = suggestion(name, known.clone().map(String::as_str))
-        .map(|near| format!("; did you mean `{near}`?"))
-        .unwrap_or_default();
-    let all: Vec<&str> = known.map(String::as_str).collect();
-    format!("unknown {kind} `{name}`{near} (known: {})", all.join(", "))
+/// What is wrong with a claim.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Fault {
+    /// JSON pointer of it in the claim: `/expect/less/where/start/1`, the second value where a list of them is written. Empty
+    /// where it is the claim itself.
+    pub pointer: String,
+    /// Whether it is the key there and not its value.
+    pub at_key: bool,
+    /// What is wrong.
+    pub message: String,
+    /// What may have been meant.
+    pub help: Option<String>,
+}
+
+impl Fault {
+    fn new(pointer: impl Into<String>, message: impl Into<String>) -> Self {
+        Self { pointer: pointer.into(), at_key: false, message: message.into(), help: None }
+    }
+
+    /// With what may have been meant by `name`.
+    fn near<'a>(mut self, name: &str, known: impl Iterator<Item = &'a String> + Clone) -> Self {
+        let near = suggestion(name, known.clone().map(String::as_str));
+        let all: Vec<&str> = known.map(String::as_str).collect();
+        let all = if all.is_empty() {
+            "there is none".to_owned()
+        } else {
+            format!("known: {}", listed(&all))
+        };
+        self.help = Some(match near {
+            Some(near) => format!("did you mean `{}`? ({all})", quoted(near)),
+            None => all,
+        });
+        self
+    }
+}
+
+/// The faults of a manifest's claims, by the claim's number: those of each ([`Claim::check`]) and ids used twice.
+pub fn check_all<'a>(
+    claims: &'a [Claim],
+    known: Known<'a>,
+) -> impl Iterator<Item = (usize, Fault)> + 'a {
+    let mut ids = BTreeSet::new();
+    claims.iter().enumerate().flat_map(move |(i, claim)| {
+        let twice = (!ids.insert(claim.id.as_str()))
+            .then(|| Fault::new("/id", format!("the id `{}` is used twice", quoted(&claim.id))));
+        twice.into_iter().chain(claim.check(known)).map(move |fault| (i, fault))
+    })
 }
 
 impl Claim {
-    /// The faults of this claim in a study with these factors (and their values), metrics (`success`,
-    /// `outcome:NAME`, columns) and published tables. Empty where it can be judged.
-    pub fn check(
-        &self,
-        factors: &[(String, Vec<String>)],
-        metrics: &[String],
-        published: &[String],
-    ) -> Vec<String> {
-        let mut faults = Faults { factors, metrics, published, found: Vec::new() };
+    /// The faults of this claim in a study where this is `known`. Empty where it can be judged.
+    pub fn check(&self, known: Known<'_>) -> Vec<Fault> {
+        let mut faults = Faults { known, form: String::new(), found: Vec::new() };
         if self.id.is_empty() {
-            faults.add("id", "expected a name, found nothing".to_owned());
+            faults.add("/id", "expected a name, found nothing".to_owned());
         }
         self.check_words(&mut faults);
+        faults.form = format!("/expect/{}", self.expect.form());
         self.check_circumstance(&mut faults);
         for (path, selection) in self.expect.selections() {
             faults.selection(&path, selection);
@@ -57,22 +87,9 @@ impl Claim {
         faults.metrics(&self.expect);
         faults.terms(&self.expect);
         faults.form(&self.expect);
+        faults.form = String::new();
         faults.assumption(self.power.as_ref());
-        let head = format!("claim `{}`: expect.{}", self.id, self.expect.form());
-        faults
-            .found
-            .into_iter()
-            .map(|(path, fault)| match path.as_str() {
-                "" => format!("claim `{}`: {fault}", self.id),
-                "id" | "circumstance" | "says" | "ours" | "paper-table" => {
-                    format!("claim `{}`: {path}: {fault}", self.id)
-                }
-                path if path.starts_with("power") => {
-                    format!("claim `{}`: {path}: {fault}", self.id)
-                }
-                path => format!("{head}.{path}: {fault}"),
-            })
-            .collect()
+        faults.found
     }
 
     /// The paper's words or ours: one of them, and said.
@@ -89,79 +106,99 @@ impl Claim {
                 "expected `says` with the paper's words, or `ours` with a check of your own, found neither".to_owned(),
             ),
             (Some(_), None) if self.paper_table.is_none() => faults.add(
-                "paper-table",
-                "expected `supports`, `contradicts` or `silent` beside `says`, found nothing; say what the paper's own numbers \
+                "",
+                "expected `paper-table:` with `supports`, `contradicts` or `silent` beside `says`, found nothing; say what the paper's own numbers \
                  show of its sentence"
                     .to_owned(),
             ),
             _ => {}
         }
-        for (key, words) in [("says", &self.says), ("ours", &self.ours)] {
+        for (key, words) in [("/says", &self.says), ("/ours", &self.ours)] {
             let said = words.as_ref().is_none_or(|words| !words.trim().is_empty());
             faults.unless(said, key, || "expected words, found none".to_owned());
         }
     }
 
     fn check_circumstance(&self, faults: &mut Faults<'_>) {
-        for metric in self.expect.metrics() {
+        let form = faults.form.clone();
+        let told = self.expect.measured().into_iter().find_map(|(path, metric)| {
             let wall = metric.starts_with(WALL_TIME);
             if wall && !self.circumstance {
-                faults.add(
-                    "metric",
-                    format!(
-                        "`{metric}` depends on the machine and belongs to the circumstance half of a bundle; \
-                         mark the claim `circumstance: true` or measure simulated time"
-                    ),
+                let message = format!(
+                    "`{}` depends on the machine and belongs to the circumstance half of a bundle; mark the claim \
+                     `circumstance: true` or measure simulated time",
+                    quoted(metric)
                 );
-            } else if !wall && self.circumstance {
-                faults.add(
-                    "circumstance",
-                    format!("`{metric}` is a result of the study; only claims on {WALL_TIME} metrics are circumstance"),
-                );
+                return Some(Fault::new(form.clone() + &path, message));
             }
-        }
+            (!wall && self.circumstance).then(|| {
+                let message = format!(
+                    "`{}` is a result of the study; only claims on {WALL_TIME} metrics are circumstance",
+                    quoted(metric)
+                );
+                Fault::new("/circumstance", message)
+            })
+        });
+        faults.found.extend(told);
     }
 }
 
 struct Faults<'a> {
-    factors: &'a [(String, Vec<String>)],
-    metrics: &'a [String],
-    published: &'a [String],
-    found: Vec<(String, String)>,
+    known: Known<'a>,
+    /// Pointer of what paths are relative to.
+    form: String,
+    found: Vec<Fault>,
 }
 
 impl Faults<'_> {
-    fn add(&mut self, path: &str, fault: String) {
-        self.found.push((path.to_owned(), fault));
+    fn add(&mut self, path: &str, message: String) {
+        self.found.push(Fault::new(format!("{}{path}", self.form), message));
     }
 
-    fn unless(&mut self, holds: bool, path: &str, fault: impl FnOnce() -> String) {
+    fn unless(&mut self, holds: bool, path: &str, message: impl FnOnce() -> String) {
         if !holds {
-            self.add(path, fault());
+            self.add(path, message());
         }
     }
 
+    /// A name that is none of `known`.
+    fn unknown<'k>(
+        &mut self,
+        path: &str,
+        message: &str,
+        name: &str,
+        known: impl Iterator<Item = &'k String> + Clone,
+    ) {
+        let fault = Fault::new(format!("{}{path}", self.form), message);
+        self.found.push(fault.near(name, known));
+    }
+
     fn factor(&mut self, path: &str, name: &str) {
-        if !self.factors.iter().any(|(f, _)| f == name) {
-            let fault = unknown("factor", name, self.factors.iter().map(|(f, _)| f));
-            self.add(path, fault);
+        let factors = self.known.factors;
+        if !factors.iter().any(|(f, _)| f == name) {
+            let message = format!("unknown factor `{}`", quoted(name));
+            self.unknown(path, &message, name, factors.iter().map(|(f, _)| f));
         }
     }
 
     fn selection(&mut self, path: &str, selection: &Where) {
         for (factor, values) in &selection.0 {
-            let path = format!("{path}.{factor}");
-            let Some((_, known)) = self.factors.iter().find(|(f, _)| f == factor) else {
+            let path = format!("{path}/{}", factor.replace('~', "~0").replace('/', "~1"));
+            let Some((_, known)) = self.known.factors.iter().find(|(f, _)| f == factor) else {
                 self.factor(&path, factor);
+                self.found.iter_mut().rev().take(1).for_each(|fault| fault.at_key = true);
                 continue;
             };
             self.unless(!values.0.is_empty(), &path, || "expected a value, found none".to_owned());
             for (i, value) in values.0.iter().enumerate() {
+                let path = format!("{path}/{i}");
                 if !known.contains(value) {
-                    self.add(&path, unknown("value", value, known.iter()));
+                    let message =
+                        format!("`{}` is not a value of the factor `{factor}`", quoted(value));
+                    self.unknown(&path, &message, value, known.iter());
                 }
                 if values.0[..i].contains(value) {
-                    self.add(&path, format!("the value `{value}` is listed twice"));
+                    self.add(&path, format!("the value `{}` is listed twice", quoted(value)));
                 }
             }
         }
@@ -171,34 +208,43 @@ impl Faults<'_> {
         if matches!(expect, Expect::Untestable(_)) {
             return;
         }
-        let named = expect.metrics();
-        self.unless(!named.is_empty(), "metric", || "expected a metric, found none".to_owned());
-        for metric in named {
+        let named = expect.measured();
+        self.unless(!named.is_empty(), "/metric", || "expected a metric, found none".to_owned());
+        for (path, metric) in named {
             // Outcomes that count together are known where each of them is.
-            let parts: Vec<String> = match Metric::named(&metric) {
+            let parts: Vec<String> = match Metric::named(metric) {
                 Metric::Outcome(names) => names.iter().map(|n| format!("outcome:{n}")).collect(),
-                _ => vec![metric],
+                _ => vec![metric.to_owned()],
             };
-            for part in parts.iter().filter(|part| !self.metrics.contains(part)) {
-                let fault = unknown("metric", part, self.metrics.iter());
-                self.add("metric", fault);
+            let Some(known) = self.known.metrics else { continue };
+            for part in parts.iter().filter(|part| !known.contains(part)) {
+                let message = format!("unknown metric `{}`", quoted(part));
+                self.unknown(&path, &message, part, known.iter());
             }
         }
-        if let Some(table) = expect.published()
-            && !self.published.iter().any(|p| p == table)
-        {
-            let fault = unknown("published table", table, self.published.iter());
-            self.add("published", fault);
+        if let Some(table) = expect.published() {
+            self.table("/published", table);
+        }
+    }
+
+    /// A published table that is named.
+    fn table(&mut self, path: &str, name: &str) {
+        let known = self.known.published;
+        if !known.iter().any(|table| table == name) {
+            let message = format!("unknown published table `{}`", quoted(name));
+            self.unknown(path, &message, name, known.iter());
         }
     }
 
     fn terms(&mut self, expect: &Expect) {
         let terms = expect.terms();
-        self.unless(terms.alpha > 0.0 && terms.alpha < 0.5, "alpha", || {
+        self.unless(terms.alpha > 0.0 && terms.alpha < 0.5, "/alpha", || {
             format!("expected a level between 0 and 0.5, found {}", terms.alpha)
         });
-        self.unless(terms.minimum_n > 0, "minimum-n", || "expected at least 1, found 0".to_owned());
-        self.unless(terms.at_least != Some(0), "at-least", || {
+        self.unless(terms.minimum_n > 0, "/minimum-n", || {
+            "expected at least 1, found 0".to_owned()
+        });
+        self.unless(terms.at_least != Some(0), "/at-least", || {
             "expected at least 1, found 0: every verdict would be supported".to_owned()
         });
         let shares: Vec<bool> =
@@ -215,13 +261,13 @@ impl Faults<'_> {
                     (true, false)
                 }
             };
-            self.unless(allowed, "test", || format!("{} is no test of this form", test.name()));
+            self.unless(allowed, "/test", || format!("{} is no test of this form", test.name()));
             let kind = if for_shares { "shares (success, outcome:...)" } else { "measures" };
-            self.unless(!allowed || shares.iter().all(|s| *s == for_shares), "test", || {
+            self.unless(!allowed || shares.iter().all(|s| *s == for_shares), "/test", || {
                 format!("{} is a test of {kind}", test.name())
             });
             let both = matches!(test, Test::Anova | Test::ChiSquare);
-            self.unless(!both || terms.sides == Sides::Two, "sides", || {
+            self.unless(!both || terms.sides == Sides::Two, "/sides", || {
                 format!("{} has two sides; say `sides: two`", test.name())
             });
         }
@@ -234,7 +280,7 @@ impl Faults<'_> {
             Expect::SignTest(form) => form.pairs == Pairs::Trials,
             _ => false,
         };
-        self.unless(ranks || terms.censored != Censored::Worst, "censored", || {
+        self.unless(ranks || terms.censored != Censored::Worst, "/censored", || {
             "`worst` has a rank and no value: it needs mann-whitney, spearman, median, p95 or pairs of trials".to_owned()
         });
     }
@@ -246,13 +292,13 @@ impl Faults<'_> {
     }
 
     fn bounds(&mut self, low: Option<f64>, high: Option<f64>, open_unit: bool) {
-        self.unless(low.is_some() || high.is_some(), "low", || {
+        self.unless(low.is_some() || high.is_some(), "/low", || {
             "expected `low`, `high` or both".to_owned()
         });
         if let (Some(low), Some(high)) = (low, high) {
-            self.unless(low < high, "low", || format!("{low} is not below high, {high}"));
+            self.unless(low < high, "/low", || format!("{low} is not below high, {high}"));
         }
-        for (path, bound) in [("low", low), ("high", high)] {
+        for (path, bound) in [("/low", low), ("/high", high)] {
             if let Some(bound) = bound {
                 let inside = !open_unit || (bound > 0.0 && bound < 1.0);
                 self.unless(bound.is_finite() && inside, path, || {
@@ -264,33 +310,33 @@ impl Faults<'_> {
 
     fn across(&mut self, across: &Where) {
         let cells = across.combinations().len();
-        self.unless(cells >= 2, "across", || format!("expected two cells or more, found {cells}"));
+        self.unless(cells >= 2, "/across", || format!("expected two cells or more, found {cells}"));
     }
 
     fn form(&mut self, expect: &Expect) {
         match expect {
             Expect::Less(f) | Expect::Greater(f) => {
-                self.each("than.each", &f.than.each, &f.than.r#where);
+                self.each("/than/each", &f.than.each, &f.than.r#where);
                 self.per_run(f);
             }
             Expect::Equivalent(f) => {
-                self.each("to.each", &f.to.each, &f.to.r#where);
-                self.margin("margin", f.margin);
+                self.each("/to/each", &f.to.each, &f.to.r#where);
+                self.margin("/margin", f.margin);
             }
             Expect::Homogeneous(f) => {
                 self.across(&f.across);
-                self.margin("margin", f.margin);
+                self.margin("/margin", f.margin);
             }
             Expect::Between(f) => {
                 let share = f.metric.0.iter().any(|m| Metric::named(m).is_share());
                 self.bounds(f.low, f.high, share && f.relative_to.is_none());
                 let mean = f.statistic == Statistic::Mean;
-                self.unless(mean || !share, "statistic", || "a share has a mean only".to_owned());
-                self.unless(mean || f.relative_to.is_none(), "statistic", || {
+                self.unless(mean || !share, "/statistic", || "a share has a mean only".to_owned());
+                self.unless(mean || f.relative_to.is_none(), "/statistic", || {
                     "relative differences are of means".to_owned()
                 });
                 let low = f.low.into_iter().chain(f.high).fold(0.0, f64::min);
-                self.unless(f.relative_to.is_none() || low > -1.0, "low", || {
+                self.unless(f.relative_to.is_none() || low > -1.0, "/low", || {
                     format!("a relative difference is above -1, found {low}")
                 });
             }
@@ -300,7 +346,7 @@ impl Faults<'_> {
             }
             Expect::Every(f) => self.that(&f.that),
             Expect::Rate(f) => {
-                for (path, quantity) in [("of.per", &f.of), ("than.per", &f.than)] {
+                for (path, quantity) in [("/of/per", &f.of), ("/than/per", &f.than)] {
                     let share = quantity.per.as_ref().is_some_and(|m| Metric::named(m).is_share());
                     self.unless(!share, path, || {
                         "expected a measure; a share is counted per trial anyway".to_owned()
@@ -311,13 +357,13 @@ impl Faults<'_> {
                 let scores: Vec<f64> = f.along.iter().map(|s| s.score).collect();
                 let apart = (1..scores.len()).all(|i| !scores[..i].contains(&scores[i]));
                 let finite = scores.iter().all(|s| s.is_finite());
-                self.unless(scores.len() >= 2 && apart && finite, "along", || {
+                self.unless(scores.len() >= 2 && apart && finite, "/along", || {
                     format!("expected two or more different scores, found {scores:?}")
                 });
             }
             Expect::Rank(f) => {
                 self.across(&f.across);
-                self.unless(f.across.0.len() == 1, "across", || {
+                self.unless(f.across.0.len() == 1, "/across", || {
                     format!("expected one factor, found {}", f.across.0.len())
                 });
                 let ranked: Vec<String> = f.across.0.values().flat_map(|v| v.0.clone()).collect();
@@ -325,47 +371,48 @@ impl Faults<'_> {
                     Order::First(value) | Order::Last(value) => (std::slice::from_ref(value), true),
                     Order::Descending(values) => (&values[..], values.len() >= 2),
                 };
-                self.unless(enough, "order", || "expected two values or more".to_owned());
+                self.unless(enough, "/order", || "expected two values or more".to_owned());
                 for value in named {
                     if !ranked.contains(value) {
-                        self.add("order", unknown("value", value, ranked.iter()));
+                        let message = format!("`{}` is not among those ranked", quoted(value));
+                        self.unknown("/order", &message, value, ranked.iter());
                     }
                 }
             }
             Expect::SignTest(_) => {}
-            Expect::Untestable(f) => self.unless(!f.because.trim().is_empty(), "because", || {
+            Expect::Untestable(f) => self.unless(!f.because.trim().is_empty(), "/because", || {
                 "expected the reason".to_owned()
             }),
             Expect::Spread(f) => {
                 self.across(&f.across);
-                self.unless(f.than.is_some() != f.at_most.is_some(), "than", || {
+                self.unless(f.than.is_some() != f.at_most.is_some(), "/than", || {
                     "expected either `than` or `at-most`".to_owned()
                 });
-                f.at_most.iter().for_each(|bound| self.margin("at-most", *bound));
+                f.at_most.iter().for_each(|bound| self.margin("/at-most", *bound));
             }
             Expect::CorrelationWithPublished(f) => {
-                self.margin("scale", f.scale);
-                self.unless(f.at_least > -1.0 && f.at_least < 1.0, "at-least", || {
+                self.margin("/scale", f.scale);
+                self.unless(f.at_least > -1.0 && f.at_least < 1.0, "/at-least", || {
                     format!("a correlation lies between -1 and 1, found {}", f.at_least)
                 });
                 self.base(f.ratio_to.as_ref());
             }
             Expect::RmseWithPublished(f) => {
-                self.margin("scale", f.scale);
-                self.margin("at-most", f.at_most);
+                self.margin("/scale", f.scale);
+                self.margin("/at-most", f.at_most);
                 self.base(f.ratio_to.as_ref());
-                self.unless(f.ratio_to.is_none() || f.baseline.is_empty(), "baseline", || {
+                self.unless(f.ratio_to.is_none() || f.baseline.is_empty(), "/baseline", || {
                     "skill over log ratios is counted over their mean; leave `baseline` out"
                         .to_owned()
                 });
-                f.baseline.iter().for_each(|factor| self.factor("baseline", factor));
+                f.baseline.iter().for_each(|factor| self.factor("/baseline", factor));
             }
         }
     }
 
     fn base(&mut self, ratio_to: Option<&Where>) {
         let single = |w: &Where| !w.0.is_empty() && w.0.values().all(|Values(v)| v.len() == 1);
-        self.unless(ratio_to.is_none_or(single), "ratio-to", || {
+        self.unless(ratio_to.is_none_or(single), "/ratio-to", || {
             "expected one value per factor: the base of a ratio is one cell".to_owned()
         });
     }
@@ -373,7 +420,7 @@ impl Faults<'_> {
     fn per_run(&mut self, form: &Comparison) {
         if let Some(per_run) = form.per_run {
             let share = form.metric.0.iter().find(|name| Metric::named(name).is_share());
-            self.unless(share.is_none(), "per-run", || {
+            self.unless(share.is_none(), "/per-run", || {
                 let share = share.map_or("", String::as_str);
                 format!("`{share}` is a share of runs; only measures have logarithms")
             });
@@ -382,23 +429,23 @@ impl Faults<'_> {
                 PerRun::MeanLog => (found >= 2, "two metrics or more"),
                 PerRun::LogRatio => (found == 2, "two metrics"),
             };
-            self.unless(fits, "per-run", || format!("expected {expected}, found {found}"));
+            self.unless(fits, "/per-run", || format!("expected {expected}, found {found}"));
         }
-        self.unless(form.also_at_n.is_none_or(|n| n >= 2), "also-at-n", || {
+        self.unless(form.also_at_n.is_none_or(|n| n >= 2), "/also-at-n", || {
             "expected at least 2: fewer trials have no spread".to_owned()
         });
     }
 
     fn that(&mut self, that: &That) {
-        let bounds = [("that.at-least", &that.at_least), ("that.at-most", &that.at_most)];
+        let bounds = [("/that/at-least", &that.at_least), ("/that/at-most", &that.at_most)];
         let bounded = bounds.iter().any(|(_, bound)| bound.is_some());
         let share = Metric::named(&that.metric).is_share();
-        self.unless(bounded != share, "that", || {
+        self.unless(bounded != share, "/that", || {
             "a measure needs `at-least` or `at-most`, a share neither".to_owned()
         });
         for (path, bound) in bounds {
             let Some(Bound::Factor(name)) = bound else { continue };
-            match self.factors.iter().find(|(factor, _)| factor == name) {
+            match self.known.factors.iter().find(|(factor, _)| factor == name) {
                 None => self.factor(path, name),
                 Some((_, values)) => {
                     let word = values.iter().find(|value| value.parse::<f64>().is_err());
@@ -423,15 +470,12 @@ impl Faults<'_> {
         match power {
             None => {}
             Some(Assume::Published { table, scale }) => {
-                if !self.published.contains(table) {
-                    let fault = unknown("published table", table, self.published.iter());
-                    self.add("power.published.table", fault);
-                }
-                self.margin("power.published.scale", *scale);
+                self.table("/power/published/table", table);
+                self.margin("/power/published/scale", *scale);
             }
             Some(Assume::Cells(cells)) => {
-                for cell in cells {
-                    self.selection("power.cells.where", &cell.r#where);
+                for (i, cell) in cells.iter().enumerate() {
+                    self.selection(&format!("/power/cells/{i}/where"), &cell.r#where);
                 }
             }
         }

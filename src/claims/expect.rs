@@ -209,7 +209,7 @@
 //! expect: {untestable: {because: there is no real world in a simulation}}
 //! ```
 
-use super::cells::{ForEach, Where};
+use super::cells::{ForEach, Values, Where};
 use super::comparing::{Comparison, Equivalence, Homogeneity, Ranking, Trend};
 use super::measuring::{
     Correlation, Every, Level, Rate, Rmse, Share, SignTest, Spread, Untestable,
@@ -311,25 +311,38 @@ impl Expect {
 
     /// The names of the metrics measured.
     pub fn metrics(&self) -> Vec<String> {
+        self.measured().into_iter().map(|(_, name)| name.to_owned()).collect()
+    }
+
+    /// The metrics measured, each with the pointer from the form to where it is named.
+    pub(crate) fn measured(&self) -> Vec<(String, &str)> {
+        fn listed(metric: &Values) -> Vec<(String, &str)> {
+            let names = metric.0.iter().enumerate();
+            names.map(|(i, name)| (format!("/metric/{i}"), name.as_str())).collect()
+        }
         match self {
-            Self::Less(f) | Self::Greater(f) => f.metric.0.clone(),
-            Self::Equivalent(f) => f.metric.0.clone(),
-            Self::Between(f) => f.metric.0.clone(),
-            Self::Trend(f) => f.metric.0.clone(),
-            Self::Homogeneous(f) => f.metric.0.clone(),
-            Self::Rank(f) => f.metric.0.clone(),
-            Self::SignTest(f) => f.metric.0.clone(),
-            Self::Spread(f) => f.metric.0.clone(),
-            Self::Share(f) => vec![f.that.metric.clone()],
-            Self::Every(f) => vec![f.that.metric.clone()],
-            Self::Rate(f) => [&f.of, &f.than]
-                .into_iter()
-                .flat_map(|quantity| [Some(&quantity.metric), quantity.per.as_ref()])
-                .flatten()
-                .cloned()
-                .collect(),
-            Self::CorrelationWithPublished(f) => f.metric.0.clone(),
-            Self::RmseWithPublished(f) => f.metric.0.clone(),
+            Self::Less(f) | Self::Greater(f) => listed(&f.metric),
+            Self::Equivalent(f) => listed(&f.metric),
+            Self::Between(f) => listed(&f.metric),
+            Self::Trend(f) => listed(&f.metric),
+            Self::Homogeneous(f) => listed(&f.metric),
+            Self::Rank(f) => listed(&f.metric),
+            Self::SignTest(f) => listed(&f.metric),
+            Self::Spread(f) => listed(&f.metric),
+            Self::Share(f) => vec![("/that/metric".to_owned(), &f.that.metric)],
+            Self::Every(f) => vec![("/that/metric".to_owned(), &f.that.metric)],
+            Self::Rate(f) => {
+                let named = [
+                    ("/of/metric", Some(&f.of.metric)),
+                    ("/of/per", f.of.per.as_ref()),
+                    ("/than/metric", Some(&f.than.metric)),
+                    ("/than/per", f.than.per.as_ref()),
+                ];
+                let there = named.into_iter().filter_map(|(path, name)| Some((path, name?)));
+                there.map(|(path, name)| (path.to_owned(), name.as_str())).collect()
+            }
+            Self::CorrelationWithPublished(f) => listed(&f.metric),
+            Self::RmseWithPublished(f) => listed(&f.metric),
             Self::Untestable(_) => Vec::new(),
         }
     }
@@ -437,77 +450,79 @@ impl Expect {
         }
     }
 
-    /// Every selection of trials the form names, with the path of its key.
+    /// Every selection of trials the form names, with the pointer to it from the form.
     pub(crate) fn selections(&self) -> Vec<(String, &Where)> {
         let mut all: Vec<(String, &Where)> = Vec::new();
         let mut add = |path: &str, cell| all.push((path.to_owned(), cell));
         let mut repeated = None;
         match self {
             Self::Less(f) | Self::Greater(f) => {
-                add("where", &f.r#where);
-                add("than.where", &f.than.r#where);
+                add("/where", &f.r#where);
+                add("/than/where", &f.than.r#where);
                 repeated = Some(&f.for_each);
             }
             Self::Equivalent(f) => {
-                add("where", &f.r#where);
-                add("to.where", &f.to.r#where);
+                add("/where", &f.r#where);
+                add("/to/where", &f.to.r#where);
                 repeated = Some(&f.for_each);
             }
             Self::Between(f) => {
-                add("where", &f.r#where);
-                f.relative_to.iter().for_each(|cell| add("relative-to", cell));
+                add("/where", &f.r#where);
+                f.relative_to.iter().for_each(|cell| add("/relative-to", cell));
                 repeated = Some(&f.for_each);
             }
             Self::Trend(f) => {
-                add("where", &f.r#where);
-                f.along.iter().for_each(|step| add("along.where", &step.r#where));
+                add("/where", &f.r#where);
+                for (i, step) in f.along.iter().enumerate() {
+                    add(&format!("/along/{i}/where"), &step.r#where);
+                }
                 repeated = Some(&f.for_each);
             }
             Self::Homogeneous(f) => {
-                add("where", &f.r#where);
-                add("across", &f.across);
+                add("/where", &f.r#where);
+                add("/across", &f.across);
                 repeated = Some(&f.for_each);
             }
             Self::Rank(f) => {
-                add("where", &f.r#where);
-                add("across", &f.across);
+                add("/where", &f.r#where);
+                add("/across", &f.across);
                 repeated = Some(&f.for_each);
             }
             Self::SignTest(f) => {
-                add("where", &f.r#where);
-                add("than", &f.than);
+                add("/where", &f.r#where);
+                add("/than", &f.than);
                 repeated = Some(&f.for_each);
             }
             Self::Spread(f) => {
-                add("where", &f.r#where);
-                add("across", &f.across);
-                f.than.iter().for_each(|cell| add("than", cell));
+                add("/where", &f.r#where);
+                add("/across", &f.across);
+                f.than.iter().for_each(|cell| add("/than", cell));
                 repeated = Some(&f.for_each);
             }
             Self::Share(f) => {
-                add("where", &f.r#where);
+                add("/where", &f.r#where);
                 repeated = Some(&f.for_each);
             }
             Self::Every(f) => {
-                add("where", &f.r#where);
+                add("/where", &f.r#where);
                 repeated = Some(&f.for_each);
             }
             Self::Rate(f) => {
-                add("where", &f.r#where);
+                add("/where", &f.r#where);
                 repeated = Some(&f.for_each);
             }
             Self::CorrelationWithPublished(f) => {
-                add("where", &f.r#where);
-                f.ratio_to.iter().for_each(|cell| add("ratio-to", cell));
+                add("/where", &f.r#where);
+                f.ratio_to.iter().for_each(|cell| add("/ratio-to", cell));
             }
             Self::RmseWithPublished(f) => {
-                add("where", &f.r#where);
-                f.ratio_to.iter().for_each(|cell| add("ratio-to", cell));
+                add("/where", &f.r#where);
+                f.ratio_to.iter().for_each(|cell| add("/ratio-to", cell));
             }
             Self::Untestable(_) => {}
         }
-        for cell in repeated.iter().flat_map(|each| &each.0) {
-            all.push(("for-each".to_owned(), cell));
+        for (i, cell) in repeated.iter().flat_map(|each| &each.0).enumerate() {
+            all.push((format!("/for-each/{i}"), cell));
         }
         all
     }

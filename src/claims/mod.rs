@@ -34,7 +34,7 @@ mod spread;
 pub mod terms;
 pub mod verdict;
 
-pub use check::check_all;
+pub use check::{Fault, Known, check_all};
 pub use expect::Expect;
 pub use judge::{Context, judge, judge_observations, not_measured};
 pub use observations::Observations;

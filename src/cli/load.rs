@@ -49,11 +49,7 @@ pub(super) fn manifest(
         set,
         &Folder { path: folder, sealed, calibrator, terminal },
     ) {
-        Ok((experiment, warnings)) => {
-            let mut faults = warnings;
-            faults.extend(manifest::check_claims(&experiment));
-            (Some(experiment), faults)
-        }
+        Ok((experiment, warnings)) => (Some(experiment), warnings),
         Err(faults) => (None, faults),
     };
     faults.sort_by_key(|f| std::cmp::Reverse(f.severity));

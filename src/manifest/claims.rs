@@ -1,45 +1,56 @@
 //! The claims of a manifest, held against its factors, measures and published tables.
 
-use super::Experiment;
+use super::resolve::{Resolved, Resolver};
 use crate::claims::metric::WALL_TIME_COLUMNS;
-use crate::claims::{self, Claim};
-use crate::document::{Diagnostic, FaultList, Severity};
+use crate::claims::{self, Fault, Known};
+use crate::document::{Content, Tree};
 use crate::studies::prior_map::coverage_at_distance;
 use crate::studies::{Setup, StudyKind};
 
-/// Every fault of the experiment's claims.
-pub fn check_claims(experiment: &Experiment) -> Vec<Diagnostic> {
-    let tree = &experiment.document;
-    let mut faults = FaultList::default();
-    let mut claims: Vec<Claim> = Vec::new();
-    for (i, written) in experiment.claims.iter().enumerate() {
-        match serde_json::from_value(written.clone()) {
-            Ok(claim) => claims.push(claim),
-            Err(_) if faults.is_full(Severity::Error) => faults.count_error(),
-            Err(e) => faults.push(
-                tree.fault(tree.place(&format!("/claims/{i}")), format!("claim: {e}"))
-                    .help("docs/claims.md shows every form with an example"),
-            ),
-        }
-    }
-    if !faults.is_empty() {
-        return faults.finish();
-    }
+/// Collects every fault of the claims. Where a condition could not be resolved, which has been told, nobody knows what its
+/// trials measure.
+pub(super) fn check(resolver: &mut Resolver<'_>, published: &[String], conditions: &[Resolved]) {
+    let doc = resolver.doc;
     let factors: Vec<_> =
-        experiment.factors.iter().map(|f| (f.name.clone(), f.values.clone())).collect();
-    let published: Vec<String> = experiment.published.keys().cloned().collect();
-    let mut measures = measures(experiment.kind);
-    for (_, setup) in &experiment.conditions {
+        resolver.factors.iter().map(|f| (f.name.clone(), f.values.clone())).collect();
+    let mut metrics = measures(doc.study);
+    for (_, setup, ..) in conditions {
         if let Setup::PriorMap(setup) = setup {
             let asked_for = &setup.parameters.measurement.coverage_at_distance_m;
-            measures.extend(asked_for.iter().map(|&distance| coverage_at_distance(distance)));
+            metrics.extend(asked_for.iter().map(|&distance| coverage_at_distance(distance)));
         }
     }
-    measures.sort();
-    measures.dedup();
-    let problems = claims::check_all(&claims, &factors, &measures, &published);
-    faults.extend(problems.into_iter().map(|problem| tree.fault(tree.place("/claims"), problem)));
-    faults.finish()
+    metrics.sort();
+    metrics.dedup();
+    let metrics = (!resolver.faults.any_error()).then_some(&metrics[..]);
+    let known = Known { factors: &factors, metrics, published };
+    for (i, fault) in claims::check_all(&doc.claims, known) {
+        let Fault { pointer, at_key, message, help } = fault;
+        let claim = format!("claim `{}`: {message}", crate::document::quoted(&doc.claims[i].id));
+        let faults = &mut resolver.faults;
+        let place = as_written(faults.tree, &format!("/claims/{i}{pointer}"));
+        let told =
+            if at_key { faults.key_fault(&place, claim) } else { faults.fault(&place, claim) };
+        faults.push(match help {
+            Some(help) => told.help(help),
+            None => told,
+        });
+    }
+}
+
+/// `pointer` without the numbers of items where one thing is written and no list of them.
+fn as_written(tree: &Tree, pointer: &str) -> String {
+    let mut found = String::new();
+    for part in pointer.split('/').skip(1) {
+        let is_list = || match tree.node(&found) {
+            Some(node) => matches!(node.content, Content::List(_)),
+            None => true,
+        };
+        if part.parse::<usize>().is_err() || is_list() {
+            found = format!("{found}/{part}");
+        }
+    }
+    found
 }
 
 /// What a claim or table of a study may speak of: success, outcomes and the columns of `results/trials.csv`.

@@ -3,6 +3,7 @@
 use super::choice::{Choice, FactorDoc, Ordered};
 use super::parameters::ParametersDoc;
 use super::pinned::PinnedDoc;
+use crate::claims::Claim;
 use crate::studies::StudyKind;
 use crate::studies::{FactorValue, FigureRequest, TableRequest};
 use crate::world::document::LayerDoc;
@@ -99,7 +100,7 @@ pub struct ManifestDoc {
     pub figures: Vec<FigureRequest>,
     /// Claims to judge.
     #[serde(default)]
-    pub claims: Vec<serde_json::Value>,
+    pub claims: Vec<Claim>,
 }
 
 /// The publication that is re-enacted.

@@ -3,9 +3,9 @@
 use super::crossing::Factor;
 use super::document::{Author, Cite};
 use super::inputs::Input;
-use crate::claims::Sensitivity;
+use crate::claims::{Claim, Sensitivity};
 use crate::digest::MeaningDigest;
-use crate::document::Tree;
+use crate::document::{Node, Tree};
 use crate::json;
 use crate::studies::deadline::Passages;
 use crate::studies::{Condition, Setup, StudyKind};
@@ -55,8 +55,8 @@ pub struct Experiment {
     pub tables: Vec<TableRequest>,
     /// Figures to produce.
     pub figures: Vec<FigureRequest>,
-    /// Claims as written; `/claims/N` in `document` says where.
-    pub claims: Vec<Value>,
+    /// Claims; `/claims/N` in `document` says where, and how they are written.
+    pub claims: Vec<Claim>,
     /// Values that the paper leaves open, with the reasons for them.
     pub assumptions: Vec<Assumption>,
     /// What the claims' verdicts were at other values of the assumptions, where that was tried.
@@ -174,7 +174,7 @@ impl Experiment {
             "published": self.published_files,
             "tables": self.tables,
             "figures": self.figures,
-            "claims": self.claims,
+            "claims": self.document.node("/claims").map_or_else(|| json!([]), Node::to_json),
             "assumptions": self.assumptions,
             "overrides": self.overrides,
             "inputs": inputs,

@@ -28,7 +28,6 @@ mod settings;
 mod worlds;
 
 pub use choice::{By, Choice, DependentFactor, FactorDoc, Levels, Ordered};
-pub use claims::check_claims;
 pub use crossing::Factor;
 pub use document::{
     Alpha, Author, BoundingBoxOf, Cite, DerivedFrom, FactorRef, FloorPlanOf, FootprintOf,

@@ -143,6 +143,8 @@ impl Resolver<'_> {
             self.check_licenses();
             self.check_pins();
         }
+        let named: Vec<String> = published.keys().cloned().collect();
+        super::claims::check(self, &named, &resolved);
         let (mut cells, mut meanings, mut described) = (Vec::new(), Vec::new(), Vec::new());
         for (condition, setup, meaning, description) in resolved {
             cells.push((condition, setup));

@@ -38,8 +38,7 @@ pub(super) fn read(resolver: &mut Resolver<'_>, assumptions: &[Assumption]) -> O
             });
         }
     }
-    let claims: Vec<&str> =
-        resolver.doc.claims.iter().filter_map(|claim| claim["id"].as_str()).collect();
+    let claims: Vec<&str> = resolver.doc.claims.iter().map(|claim| claim.id.as_str()).collect();
     let gone = sensitivity.claims().into_iter().filter(|id| !claims.contains(id));
     stale.extend(gone.map(|id| format!("it judges `{id}`, which is no claim of this manifest")));
     if let Some(first) = stale.first() {

@@ -1,6 +1,7 @@
 //! A claim as the page shows it: verdict, finding in human words, and every comparison behind it.
 
 use super::template::{fixed, percent};
+use crate::claims::Claim;
 use crate::claims::verdict::agreement_in_words;
 use crate::math::exp;
 use serde::Serialize;
@@ -59,13 +60,13 @@ pub struct ComparisonRow {
 pub(super) fn rows(
     path: &str,
     bytes: Option<&[u8]>,
-    claims: &[Value],
+    claims: &[Claim],
 ) -> Result<Vec<ClaimRow>, String> {
     let Some(bytes) = bytes else { return Ok(Vec::new()) };
     let verdicts: Vec<Value> = serde_json::from_slice(bytes).map_err(|e| format!("{path}: {e}"))?;
     let why = |id: &str| {
-        let claim = claims.iter().find(|claim| claim["id"] == *id);
-        claim.map(|claim| text(claim, "why")).unwrap_or_default()
+        let claim = claims.iter().find(|claim| claim.id == id);
+        claim.and_then(|claim| claim.why.clone()).unwrap_or_default()
     };
     Ok(verdicts.iter().map(|v| ClaimRow { why: why(&text(v, "id")), ..row(v) }).collect())
 }
@@ -301,7 +302,10 @@ mod tests {
             "reason": "for a reason", "alpha": 0.05, "required": comparisons.len(), "correction": "holm",
             "minimum-n": 3, "comparisons": comparisons,
         }]);
-        let claims = [json!({"id": "D1", "why": "the claim's own words"})];
+        let claim = json!({
+            "id": "D1", "ours": "it is so", "why": "the claim's own words", "expect": {"untestable": {"because": "so"}},
+        });
+        let claims = [serde_json::from_value(claim).unwrap()];
         rows("claims.json", Some(verdict.to_string().as_bytes()), &claims).unwrap().remove(0)
     }
 

@@ -190,7 +190,11 @@ fn log_ratios_agree_where_gains_do_whatever_the_levels() {
 fn faults_of_the_new_options_are_told() {
     let factors = [("prior".to_owned(), PRIORS.map(str::to_owned).to_vec())];
     let metrics = ["success", "distance-m-at-80", "distance-m-at-95"].map(str::to_owned);
-    let faults = |expect: &str| claim(expect).check(&factors, &metrics, &["t".to_owned()]);
+    let published = ["t".to_owned()];
+    let known = Known { factors: &factors, metrics: Some(&metrics), published: &published };
+    let faults = |expect: &str| -> Vec<String> {
+        claim(expect).check(known).iter().map(rules::told).collect()
+    };
     let less = |what: &str| {
         faults(&format!(
             "{{less: {{{what}, where: {{prior: none}}, than: {{where: {{prior: footprint}}}}}}}}"
@@ -198,21 +202,19 @@ fn faults_of_the_new_options_are_told() {
     };
     assert_eq!(
         less("metric: distance-m-at-80, per-run: mean-log"),
-        ["claim `X`: expect.less.per-run: expected two metrics or more, found 1"]
+        ["expect.less.per-run: expected two metrics or more, found 1"]
     );
     assert_eq!(
         less("metric: distance-m-at-80, per-run: log-ratio"),
-        ["claim `X`: expect.less.per-run: expected two metrics, found 1"]
+        ["expect.less.per-run: expected two metrics, found 1"]
     );
     assert_eq!(
         less("metric: [distance-m-at-80, success], per-run: mean-log"),
-        [
-            "claim `X`: expect.less.per-run: `success` is a share of runs; only measures have logarithms"
-        ]
+        ["expect.less.per-run: `success` is a share of runs; only measures have logarithms"]
     );
     assert_eq!(
         less("metric: distance-m-at-80, also-at-n: 1"),
-        ["claim `X`: expect.less.also-at-n: expected at least 2: fewer trials have no spread"]
+        ["expect.less.also-at-n: expected at least 2: fewer trials have no spread"]
     );
     assert_eq!(
         faults(
@@ -220,8 +222,8 @@ fn faults_of_the_new_options_are_told() {
              ratio-to: {prior: [none, footprint]}}}"
         ),
         [
-            "claim `X`: expect.rmse-with-published.ratio-to: expected one value per factor: the base of a ratio is one cell",
-            "claim `X`: expect.rmse-with-published.baseline: skill over log ratios is counted over their mean; leave \
+            "expect.rmse-with-published.ratio-to: expected one value per factor: the base of a ratio is one cell",
+            "expect.rmse-with-published.baseline: skill over log ratios is counted over their mean; leave \
              `baseline` out"
         ]
     );

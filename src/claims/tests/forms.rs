@@ -234,28 +234,28 @@ fn faults_of_bounds_and_pools_of_outcomes_are_named() {
     assert_eq!(
         faults("{every: {that: {metric: time-s, at-most: deadline}}}"),
         [
-            "claim `X`: expect.every.that.at-most: unknown factor `deadline`; did you mean `deadline-s`? (known: \
+            "expect.every.that.at-most: unknown factor `deadline`; did you mean `deadline-s`? (known: \
              start, strategy, deadline-s, prior, furnished, environment)"
         ]
     );
     assert_eq!(
         faults("{share: {that: {metric: time-s, at-most: start}, low: 0.5}}"),
-        ["claim `X`: expect.share.that.at-most: `start` has the value `A`, which is no number"]
+        ["expect.share.that.at-most: `start` has the value `A`, which is no number"]
     );
     assert_eq!(
         faults("{every: {that: {metric: time-s}}}"),
-        ["claim `X`: expect.every.that: a measure needs `at-least` or `at-most`, a share neither"]
+        ["expect.every.that: a measure needs `at-least` or `at-most`, a share neither"]
     );
     assert_eq!(
         faults(
             "{rate: {of: {metric: time-s, per: success}, direction: less, than: {metric: success}}}"
         ),
-        ["claim `X`: expect.rate.of.per: expected a measure; a share is counted per trial anyway"]
+        ["expect.rate.of.per: expected a measure; a share is counted per trial anyway"]
     );
     let unknown = faults("{between: {metric: \"outcome:late|stuck\", high: 0.5}}");
     assert_eq!(unknown.len(), 1);
     assert!(
-        unknown[0].starts_with("claim `X`: expect.between.metric: unknown metric `outcome:stuck`"),
+        unknown[0].starts_with("expect.between.metric: unknown metric `outcome:stuck`"),
         "{}",
         unknown[0]
     );

@@ -3,10 +3,25 @@
 use super::*;
 
 /// Factors with their values, metrics, published tables.
-type Known = (Vec<(String, Vec<String>)>, Vec<String>, Vec<String>);
+type Things = (Vec<(String, Vec<String>)>, Vec<String>, Vec<String>);
+
+/// A fault on one line: where, numbers of items left out, what, and what may have been meant.
+pub(super) fn told(fault: &Fault) -> String {
+    let steps = fault.pointer.split('/').skip(1).filter(|step| step.parse::<usize>().is_err());
+    let place = steps.collect::<Vec<_>>().join(".");
+    let colon = if place.is_empty() { "" } else { ": " };
+    let help = fault.help.as_ref().map(|help| format!("; {help}")).unwrap_or_default();
+    format!("{place}{colon}{}{help}", fault.message)
+}
+
+/// The faults of one claim among `things`.
+fn faults_among(claim: &Claim, (factors, metrics, published): &Things) -> Vec<String> {
+    let known = Known { factors, metrics: Some(metrics), published };
+    claim.check(known).iter().map(told).collect()
+}
 
 /// What the examples speak of.
-fn known() -> Known {
+fn known() -> Things {
     let owned = |names: &[&str]| names.iter().map(|s| (*s).to_owned()).collect::<Vec<_>>();
     let factors = vec![
         ("start".to_owned(), owned(&["A", "B", "C"])),
@@ -35,8 +50,7 @@ fn known() -> Known {
 }
 
 pub(super) fn faults(expect: &str) -> Vec<String> {
-    let (factors, metrics, published) = known();
-    claim(expect).check(&factors, &metrics, &published)
+    faults_among(&claim(expect), &known())
 }
 
 /// The fenced YAML of a text, each line without `prefix`.
@@ -63,11 +77,11 @@ pub(super) fn examples(text: &str, prefix: &str) -> Vec<String> {
 
 #[test]
 fn every_form_has_an_example_that_parses_and_checks() {
-    let (factors, metrics, published) = known();
+    let things = known();
     let mut forms = std::collections::BTreeSet::new();
     for text in examples(include_str!("../expect.rs"), "//!") {
         let claim: Claim = serde_yaml::from_str(&text).unwrap_or_else(|e| panic!("{text}\n{e}"));
-        assert_eq!(claim.check(&factors, &metrics, &published), Vec::<String>::new(), "{text}");
+        assert_eq!(faults_among(&claim, &things), Vec::<String>::new(), "{text}");
         forms.insert(claim.expect.form());
         let back: Claim = serde_json::from_value(serde_json::to_value(&claim).unwrap()).unwrap();
         assert_eq!(back, claim);
@@ -103,11 +117,9 @@ fn the_examples_of_the_page_parse_and_check() {
     for text in found {
         let claims: Vec<Claim> =
             serde_yaml::from_str(&text).unwrap_or_else(|e| panic!("{text}\n{e}"));
-        assert_eq!(
-            check_all(&claims, &factors, &metrics, &published),
-            Vec::<String>::new(),
-            "{text}"
-        );
+        let known = Known { factors: &factors, metrics: Some(&metrics), published: &published };
+        let found: Vec<_> = check_all(&claims, known).collect();
+        assert_eq!(found, [], "{text}");
     }
 }
 
@@ -116,10 +128,10 @@ fn faults_are_named_with_their_place_and_the_nearest_name() {
     assert_eq!(
         faults("{less: {metric: sucess, where: {strat: random}, than: {where: {start: D}}}}"),
         [
-            "claim `X`: expect.less.where.strat: unknown factor `strat`; did you mean `start`? (known: start, \
+            "expect.less.where.strat: unknown factor `strat`; did you mean `start`? (known: start, \
              strategy, deadline-s, prior, furnished, environment)",
-            "claim `X`: expect.less.than.where.start: unknown value `D` (known: A, B, C)",
-            "claim `X`: expect.less.metric: unknown metric `sucess`; did you mean `success`? (known: success, \
+            "expect.less.than.where.start: `D` is not a value of the factor `start`; known: A, B, C",
+            "expect.less.metric: unknown metric `sucess`; did you mean `success`? (known: success, \
              outcome:late, time-s, fast-collisions, fast-maneuvers, slow-collisions, slow-maneuvers, time-s-at-70, distance-m-at-70, distance-m-at-80, distance-m-at-90, distance-m-at-95, wall-time-s-per-selection)",
         ]
     );
@@ -128,10 +140,10 @@ fn faults_are_named_with_their_place_and_the_nearest_name() {
             "{less: {metric: success, than: {where: {start: A}}, test: welch, alpha: 0.7, at-least: 0, censored: worst}}"
         ),
         [
-            "claim `X`: expect.less.alpha: expected a level between 0 and 0.5, found 0.7",
-            "claim `X`: expect.less.at-least: expected at least 1, found 0: every verdict would be supported",
-            "claim `X`: expect.less.test: welch is a test of measures",
-            "claim `X`: expect.less.censored: `worst` has a rank and no value: it needs mann-whitney, spearman, \
+            "expect.less.alpha: expected a level between 0 and 0.5, found 0.7",
+            "expect.less.at-least: expected at least 1, found 0: every verdict would be supported",
+            "expect.less.test: welch is a test of measures",
+            "expect.less.censored: `worst` has a rank and no value: it needs mann-whitney, spearman, \
              median, p95 or pairs of trials",
         ]
     );
@@ -139,28 +151,28 @@ fn faults_are_named_with_their_place_and_the_nearest_name() {
         faults(
             "{trend: {metric: success, direction: rising, along: [{score: 1, where: {}}, {score: 1, where: {}}]}}"
         ),
-        ["claim `X`: expect.trend.along: expected two or more different scores, found [1.0, 1.0]"]
+        ["expect.trend.along: expected two or more different scores, found [1.0, 1.0]"]
     );
     assert_eq!(
         faults("{less: {metric: time-s, than: {where: {start: A}}, test: anova}}"),
-        ["claim `X`: expect.less.sides: anova has two sides; say `sides: two`"]
+        ["expect.less.sides: anova has two sides; say `sides: two`"]
     );
     assert_eq!(
         faults(
             "{rmse-with-published: {metric: success, published: succes, at-most: 0, baseline: [x]}}"
         ),
         [
-            "claim `X`: expect.rmse-with-published.published: unknown published table `succes`; did you mean \
+            "expect.rmse-with-published.published: unknown published table `succes`; did you mean \
              `success-percent`? (known: success-percent, distance-m)",
-            "claim `X`: expect.rmse-with-published.at-most: expected a positive number, found 0",
-            "claim `X`: expect.rmse-with-published.baseline: unknown factor `x` (known: start, strategy, \
-             deadline-s, prior, furnished, environment)",
+            "expect.rmse-with-published.at-most: expected a positive number, found 0",
+            "expect.rmse-with-published.baseline: unknown factor `x`; known: start, strategy, \
+             deadline-s, prior, furnished, environment",
         ]
     );
     assert_eq!(
         faults("{between: {metric: success, low: 0, high: 0.5}}"),
         [
-            "claim `X`: expect.between.low: a share is bounded strictly between 0 and 1, found 0; leave out what \
+            "expect.between.low: a share is bounded strictly between 0 and 1, found 0; leave out what \
           always holds"
         ]
     );
@@ -169,10 +181,9 @@ fn faults_are_named_with_their_place_and_the_nearest_name() {
         claim("{between: {metric: success, high: 0.5}}"),
     ];
     let (factors, metrics, published) = known();
-    assert_eq!(
-        check_all(&twice, &factors, &metrics, &published),
-        ["claim `X`: the id is used twice"]
-    );
+    let known = Known { factors: &factors, metrics: Some(&metrics), published: &published };
+    let found: Vec<_> = check_all(&twice, known).map(|(i, fault)| (i, told(&fault))).collect();
+    assert_eq!(found, [(1, "id: the id `X` is used twice".to_owned())]);
     let unknown = serde_yaml::from_str::<Claim>(
         "id: X\nsays: s\npaper-table: silent\nexpect: {less: {metrik: a}}\n",
     );
@@ -181,9 +192,9 @@ fn faults_are_named_with_their_place_and_the_nearest_name() {
 
 #[test]
 fn a_claim_is_in_the_papers_words_or_in_ours() {
-    let (factors, metrics, published) = known();
+    let things = known();
     let said = claim("{between: {metric: success, high: 0.5}}");
-    let faults = |claim: &Claim| claim.check(&factors, &metrics, &published);
+    let faults = |claim: &Claim| faults_among(claim, &things);
     assert_eq!(faults(&said), Vec::<String>::new());
     let own = Claim {
         says: None,
@@ -196,39 +207,40 @@ fn a_claim_is_in_the_papers_words_or_in_ours() {
     assert_eq!(
         faults(&both),
         [
-            "claim `X`: expected `says` or `ours`, found both; keep `says` where the words are the paper's, `ours` where they \
+            "expected `says` or `ours`, found both; keep `says` where the words are the paper's, `ours` where they \
              are your own"
         ]
     );
     assert_eq!(
         faults(&Claim { ours: None, ..own.clone() }),
         [
-            "claim `X`: expected `says` with the paper's words, or `ours` with a check of your own, found neither"
+            "expected `says` with the paper's words, or `ours` with a check of your own, found neither"
         ]
     );
     assert_eq!(
         faults(&Claim { paper_table: None, ..said }),
         [
-            "claim `X`: paper-table: expected `supports`, `contradicts` or `silent` beside `says`, found nothing; say what \
+            "expected `paper-table:` with `supports`, `contradicts` or `silent` beside `says`, found nothing; say what \
              the paper's own numbers show of its sentence"
         ]
     );
     assert_eq!(
         faults(&Claim { ours: Some(" ".to_owned()), ..own }),
-        ["claim `X`: ours: expected words, found none"]
+        ["ours: expected words, found none"]
     );
 }
 
 #[test]
 fn wall_time_is_circumstance() {
     let (factors, _, published) = known();
-    let metrics = ["wall-time-selection-ms".to_owned(), "success".to_owned()];
+    let metrics = vec!["wall-time-selection-ms".to_owned(), "success".to_owned()];
+    let things = (factors, metrics, published);
     let expect = "{between: {metric: wall-time-selection-ms, statistic: p95, high: 50}}";
     let mut about_speed = claim(expect);
     assert_eq!(
-        about_speed.check(&factors, &metrics, &published),
+        faults_among(&about_speed, &things),
         [
-            "claim `X`: expect.between.metric: `wall-time-selection-ms` depends on the machine and belongs to the \
+            "expect.between.metric: `wall-time-selection-ms` depends on the machine and belongs to the \
           circumstance half of a bundle; mark the claim `circumstance: true` or measure simulated time"
         ]
     );
@@ -241,15 +253,13 @@ fn wall_time_is_circumstance() {
          apart from the results"
     );
     about_speed.circumstance = true;
-    assert!(about_speed.check(&factors, &metrics, &published).is_empty());
+    assert_eq!(faults_among(&about_speed, &things), Vec::<String>::new());
     let mut about_success = claim("{between: {metric: success, high: 0.5}}");
     about_success.circumstance = true;
     assert_eq!(
-        about_success.check(&factors, &metrics, &published),
-        [
-            "claim `X`: circumstance: `success` is a result of the study; only claims on wall-time metrics are \
-          circumstance"
-        ]
+        faults_among(&about_success, &things),
+        ["circumstance: `success` is a result of the study; only claims on wall-time metrics are \
+          circumstance"]
     );
 }
 

@@ -27,7 +27,7 @@ pub(in crate::cli) fn run(
         return Ok(Exit::Yes);
     }
     if args.power {
-        terminal.result(&power::power(&plan, args.format)?);
+        terminal.result(&power::power(&plan, args.format));
         return Ok(Exit::Yes);
     }
     let mut text = String::new();

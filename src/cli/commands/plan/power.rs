@@ -1,15 +1,13 @@
 //! `reenact plan --power`: what numbers of trials would decide, said before any is run.
 
-use crate::bundle::assemble;
 use crate::claims::power::{Chance, Power, REPLICATES, power as power_of};
 use crate::claims::{Claim, Context};
 use crate::cli::args::Format;
-use crate::cli::exit::Failure;
 use crate::plan::Plan;
 use serde_json::{Value, json};
 
 /// The power of `plan` for every claim that assumes a truth, and why the others have none.
-pub(super) fn power(plan: &Plan, format: Format) -> Result<String, Failure> {
+pub(super) fn power(plan: &Plan, format: Format) -> String {
     let experiment = &plan.experiment;
     let context = Context::new(&experiment.published, &experiment.shared_noise, experiment.seed);
     let mut conditions: Vec<Vec<(String, String)>> = Vec::new();
@@ -23,22 +21,21 @@ pub(super) fn power(plan: &Plan, format: Format) -> Result<String, Failure> {
         trials.iter_mut().last().into_iter().for_each(|n| *n += 1);
     }
     let planned = trials.into_iter().max().unwrap_or(0);
-    let claims = assemble::claims(plan).map_err(Failure::not_understood)?;
+    let claims = plan.experiment.claims.iter();
     let found: Vec<(Claim, Result<Power, String>)> = claims
-        .into_iter()
         .map(|claim| {
-            let power = power_of(&claim, &conditions, planned, &context, REPLICATES);
-            (claim, power)
+            let power = power_of(claim, &conditions, planned, &context, REPLICATES);
+            (claim.clone(), power)
         })
         .collect();
-    Ok(match format {
+    match format {
         Format::Human => in_words(planned, &found),
         Format::Json | Format::Junit => {
             let claims: Vec<Value> =
                 found.iter().map(|(claim, power)| line(claim, power)).collect();
             json!({"planned": planned, "studies": REPLICATES, "claims": claims}).to_string()
         }
-    })
+    }
 }
 
 fn line(claim: &Claim, power: &Result<Power, String>) -> Value {
