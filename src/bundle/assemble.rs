@@ -3,7 +3,7 @@
 
 use super::content::{Author, BundleContent, Citation, SealedCondition, SealedInput};
 use super::{figures, format, wall_time};
-use crate::claims::{self, Verdict};
+use crate::claims::{self, Observations, Verdict};
 use crate::manifest::Input;
 use crate::plan::{ENGINE_VERSION, Plan, Selection};
 use crate::studies::{
@@ -97,8 +97,17 @@ pub fn verdicts(plan: &Plan, records: &[TrialRecord]) -> Result<Vec<Verdict>, St
         claims::Context::new(&experiment.published, &experiment.shared_noise, experiment.seed);
     let factors = factors(plan);
     let trials = findings(plan, records, &factors).trials();
-    let about_the_study = experiment.claims.iter().filter(|claim| !claim.circumstance);
-    about_the_study.map(|claim| claims::judge(claim, &trials, &context)).collect()
+    let about_the_study: Vec<_> =
+        experiment.claims.iter().filter(|claim| !claim.circumstance).collect();
+    if about_the_study.is_empty() {
+        return Ok(Vec::new());
+    }
+    // Read once: to read thousands of trials takes longer than to judge a claim by them.
+    let observations = Observations::read(&trials)?;
+    let judged = about_the_study
+        .into_iter()
+        .map(|claim| claims::judge_observations(claim, &observations, &context));
+    Ok(judged.collect())
 }
 
 /// Factors with their values, as results name them.
