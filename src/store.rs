@@ -209,10 +209,9 @@ fn sync_folder(directory: &Path) -> io::Result<()> {
 /// # Errors
 /// Where it cannot be read, is no such file or too large, naming it.
 pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
-    // Asked before it is opened: to open a pipe waits for whoever writes to it.
+    // Asked before it is opened: a socket cannot be, and a device may do something.
     if let Some(found) = kind_of(path) {
-        let problem = format!("expected a file, found {found}");
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, problem));
+        return Err(no_file(found));
     }
     content(path, most)?.map_err(|length| {
         let found = length.map_or_else(|| "more".to_owned(), |length| length.to_string());
@@ -221,18 +220,22 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     })
 }
 
+fn no_file(found: &str) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidInput, format!("expected a file, found {found}"))
+}
+
 /// The bytes of the file at `path`; where they are more than `most`, how many, as far as it says.
 fn content(path: &Path, most: u64) -> io::Result<Result<Vec<u8>, Option<u64>>> {
     let file = open(path)?;
     let metadata = file.metadata()?;
+    // Or it is another thing by now.
     if let Some(found) = odd(&metadata) {
-        let problem = format!("expected a file, found {found}");
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, problem));
+        return Err(no_file(found));
     }
     if metadata.len() > most {
         return Ok(Err(Some(metadata.len())));
     }
-    let mut bytes = Vec::new();
+    let mut bytes = Vec::with_capacity(usize::try_from(metadata.len()).unwrap_or(0));
     // It may have grown meanwhile, and some files say nothing of their length.
     file.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
     Ok(if bytes.len() as u64 > most { Err(None) } else { Ok(bytes) })

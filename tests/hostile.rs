@@ -92,6 +92,17 @@ fn many_names_cost_no_more_than_they_are_long() {
         format!("[none, floor-plan]\n{}", numbered(50_000, &|i| format!("  f{i}: [a]\n"))),
         "error: tiny.yaml: 1 error, 1 warning\n",
     );
+    let claim = |i: usize| {
+        format!(
+            "  - {{id: c{i}, ours: x, expect: {{between: {{metric: m{i}, where: {{f: a}}, high: 1}}}}}}\n"
+        )
+    };
+    check(
+        "parameters:",
+        format!("claims:\n{}parameters:", numbered(20_000, &claim)),
+        "error: 39900 more errors like these\n |\n = help: mend those above first: many may have one cause\n\n\
+         error: tiny.yaml: 40000 errors\n",
+    );
     check(
         "prior-maps:",
         format!("exclude:\n{}prior-maps:", numbered(50_000, &|_| "  - {prior: none}\n".to_owned())),

@@ -115,6 +115,11 @@ impl Where {
         all
     }
 
+    /// How many combinations there are, counted without making them.
+    pub fn count(&self) -> usize {
+        self.0.values().map(|values| values.0.len()).fold(1, usize::saturating_mul)
+    }
+
     /// Whether a condition with these factor values is selected.
     pub fn admits<'a>(&self, value_of: impl Fn(&str) -> Option<&'a str>) -> bool {
         self.0.iter().all(|(factor, values)| {

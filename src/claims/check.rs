@@ -8,7 +8,7 @@ use super::measuring::{Bound, That};
 use super::metric::{Metric, WALL_TIME};
 use super::power::Assume;
 use super::terms::{Censored, Order, Pairs, PerRun, Sides, Statistic, Test};
-use crate::document::{listed, quoted, suggestion};
+use crate::document::{known_or_near, quoted};
 use std::collections::BTreeSet;
 
 /// What there is to speak of in a study.
@@ -16,15 +16,15 @@ use std::collections::BTreeSet;
 pub struct Known<'a> {
     /// The factors and their values.
     pub factors: &'a [(String, Vec<String>)],
-    /// `success`, `outcome:NAME` and columns of the trials; `None` where they could not be found out.
-    pub metrics: Option<&'a [String]>,
+    /// `success`, `outcome:NAME` and columns of the trials.
+    pub metrics: &'a [String],
     /// Names of published tables.
     pub published: &'a [String],
 }
 
 /// What is wrong with a claim.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Fault {
+pub struct Fault<'a> {
     /// JSON pointer of it in the claim: `/expect/less/where/start/1`, the second value where a list of them is written. Empty
     /// where it is the claim itself.
     pub pointer: String,
@@ -32,29 +32,18 @@ pub struct Fault {
     pub at_key: bool,
     /// What is wrong.
     pub message: String,
-    /// What may have been meant.
-    pub help: Option<String>,
+    /// The name that is unknown, and those that are known.
+    pub unknown: Option<(String, Vec<&'a str>)>,
 }
 
-impl Fault {
+impl Fault<'_> {
     fn new(pointer: impl Into<String>, message: impl Into<String>) -> Self {
-        Self { pointer: pointer.into(), at_key: false, message: message.into(), help: None }
+        Self { pointer: pointer.into(), at_key: false, message: message.into(), unknown: None }
     }
 
-    /// With what may have been meant by `name`.
-    fn near<'a>(mut self, name: &str, known: impl Iterator<Item = &'a String> + Clone) -> Self {
-        let near = suggestion(name, known.clone().map(String::as_str));
-        let all: Vec<&str> = known.map(String::as_str).collect();
-        let all = if all.is_empty() {
-            "there is none".to_owned()
-        } else {
-            format!("known: {}", listed(&all))
-        };
-        self.help = Some(match near {
-            Some(near) => format!("did you mean `{}`? ({all})", quoted(near)),
-            None => all,
-        });
-        self
+    /// What may have been meant, where a name is unknown.
+    pub fn help(&self) -> Option<String> {
+        self.unknown.as_ref().map(|(name, known)| known_or_near(name, known))
     }
 }
 
@@ -62,7 +51,7 @@ impl Fault {
 pub fn check_all<'a>(
     claims: &'a [Claim],
     known: Known<'a>,
-) -> impl Iterator<Item = (usize, Fault)> + 'a {
+) -> impl Iterator<Item = (usize, Fault<'a>)> + 'a {
     let mut ids = BTreeSet::new();
     claims.iter().enumerate().flat_map(move |(i, claim)| {
         let twice = (!ids.insert(claim.id.as_str()))
@@ -73,7 +62,7 @@ pub fn check_all<'a>(
 
 impl Claim {
     /// The faults of this claim in a study where this is `known`. Empty where it can be judged.
-    pub fn check(&self, known: Known<'_>) -> Vec<Fault> {
+    pub fn check<'a>(&'a self, known: Known<'a>) -> Vec<Fault<'a>> {
         let mut faults = Faults { known, form: String::new(), found: Vec::new() };
         if self.id.is_empty() {
             faults.add("/id", "expected a name, found nothing".to_owned());
@@ -107,8 +96,8 @@ impl Claim {
             ),
             (Some(_), None) if self.paper_table.is_none() => faults.add(
                 "",
-                "expected `paper-table:` with `supports`, `contradicts` or `silent` beside `says`, found nothing; say what the paper's own numbers \
-                 show of its sentence"
+                "expected `paper-table:` with `supports`, `contradicts` or `silent` beside `says`, found nothing; say what the \
+                 paper's own numbers show of its sentence"
                     .to_owned(),
             ),
             _ => {}
@@ -120,26 +109,24 @@ impl Claim {
     }
 
     fn check_circumstance(&self, faults: &mut Faults<'_>) {
-        let form = faults.form.clone();
-        let told = self.expect.measured().into_iter().find_map(|(path, metric)| {
+        for (path, metric) in self.expect.measured() {
             let wall = metric.starts_with(WALL_TIME);
+            let metric = quoted(metric);
             if wall && !self.circumstance {
-                let message = format!(
-                    "`{}` depends on the machine and belongs to the circumstance half of a bundle; mark the claim \
-                     `circumstance: true` or measure simulated time",
-                    quoted(metric)
+                faults.add(
+                    &path,
+                    format!(
+                        "`{metric}` depends on the machine and belongs to the circumstance half of a bundle; mark the claim \
+                         `circumstance: true` or measure simulated time"
+                    ),
                 );
-                return Some(Fault::new(form.clone() + &path, message));
+            } else if !wall && self.circumstance {
+                let message = format!(
+                    "`{metric}` is a result of the study; only claims on {WALL_TIME} metrics are circumstance"
+                );
+                faults.found.push(Fault::new("/circumstance", message));
             }
-            (!wall && self.circumstance).then(|| {
-                let message = format!(
-                    "`{}` is a result of the study; only claims on {WALL_TIME} metrics are circumstance",
-                    quoted(metric)
-                );
-                Fault::new("/circumstance", message)
-            })
-        });
-        faults.found.extend(told);
+        }
     }
 }
 
@@ -147,10 +134,10 @@ struct Faults<'a> {
     known: Known<'a>,
     /// Pointer of what paths are relative to.
     form: String,
-    found: Vec<Fault>,
+    found: Vec<Fault<'a>>,
 }
 
-impl Faults<'_> {
+impl<'a> Faults<'a> {
     fn add(&mut self, path: &str, message: String) {
         self.found.push(Fault::new(format!("{}{path}", self.form), message));
     }
@@ -162,43 +149,49 @@ impl Faults<'_> {
     }
 
     /// A name that is none of `known`.
-    fn unknown<'k>(
+    fn unknown(
         &mut self,
         path: &str,
-        message: &str,
+        message: String,
         name: &str,
-        known: impl Iterator<Item = &'k String> + Clone,
+        known: impl Iterator<Item = &'a String>,
     ) {
+        let unknown = Some((name.to_owned(), known.map(String::as_str).collect()));
         let fault = Fault::new(format!("{}{path}", self.form), message);
-        self.found.push(fault.near(name, known));
+        self.found.push(Fault { unknown, ..fault });
     }
 
-    fn factor(&mut self, path: &str, name: &str) {
-        let factors = self.known.factors;
-        if !factors.iter().any(|(f, _)| f == name) {
-            let message = format!("unknown factor `{}`", quoted(name));
-            self.unknown(path, &message, name, factors.iter().map(|(f, _)| f));
-        }
+    /// A factor that there is not, named by a value or by a key.
+    fn unknown_factor(&mut self, path: &str, name: &str, at_key: bool) {
+        let known = self.known.factors.iter().map(|(factor, _)| factor.as_str()).collect();
+        let unknown = Some((name.to_owned(), known));
+        let message = format!("unknown factor `{}`", quoted(name));
+        let fault = Fault::new(format!("{}{path}", self.form), message);
+        self.found.push(Fault { at_key, unknown, ..fault });
+    }
+
+    fn values_of(&self, factor: &str) -> Option<&'a [String]> {
+        let found = self.known.factors.iter().find(|(known, _)| known == factor);
+        found.map(|(_, values)| &values[..])
     }
 
     fn selection(&mut self, path: &str, selection: &Where) {
         for (factor, values) in &selection.0 {
             let path = format!("{path}/{}", factor.replace('~', "~0").replace('/', "~1"));
-            let Some((_, known)) = self.known.factors.iter().find(|(f, _)| f == factor) else {
-                self.factor(&path, factor);
-                self.found.iter_mut().rev().take(1).for_each(|fault| fault.at_key = true);
+            let Some(known) = self.values_of(factor) else {
+                self.unknown_factor(&path, factor, true);
                 continue;
             };
             self.unless(!values.0.is_empty(), &path, || "expected a value, found none".to_owned());
+            let mut listed = BTreeSet::new();
             for (i, value) in values.0.iter().enumerate() {
                 let path = format!("{path}/{i}");
-                if !known.contains(value) {
+                if !listed.insert(value) {
+                    self.add(&path, format!("the value `{}` is listed twice", quoted(value)));
+                } else if !known.contains(value) {
                     let message =
                         format!("`{}` is not a value of the factor `{factor}`", quoted(value));
-                    self.unknown(&path, &message, value, known.iter());
-                }
-                if values.0[..i].contains(value) {
-                    self.add(&path, format!("the value `{}` is listed twice", quoted(value)));
+                    self.unknown(&path, message, value, known.iter());
                 }
             }
         }
@@ -216,10 +209,10 @@ impl Faults<'_> {
                 Metric::Outcome(names) => names.iter().map(|n| format!("outcome:{n}")).collect(),
                 _ => vec![metric.to_owned()],
             };
-            let Some(known) = self.known.metrics else { continue };
+            let known = self.known.metrics;
             for part in parts.iter().filter(|part| !known.contains(part)) {
                 let message = format!("unknown metric `{}`", quoted(part));
-                self.unknown(&path, &message, part, known.iter());
+                self.unknown(&path, message, part, known.iter());
             }
         }
         if let Some(table) = expect.published() {
@@ -232,7 +225,7 @@ impl Faults<'_> {
         let known = self.known.published;
         if !known.iter().any(|table| table == name) {
             let message = format!("unknown published table `{}`", quoted(name));
-            self.unknown(path, &message, name, known.iter());
+            self.unknown(path, message, name, known.iter());
         }
     }
 
@@ -309,11 +302,11 @@ impl Faults<'_> {
     }
 
     fn across(&mut self, across: &Where) {
-        let cells = across.combinations().len();
+        let cells = across.count();
         self.unless(cells >= 2, "/across", || format!("expected two cells or more, found {cells}"));
     }
 
-    fn form(&mut self, expect: &Expect) {
+    fn form(&mut self, expect: &'a Expect) {
         match expect {
             Expect::Less(f) | Expect::Greater(f) => {
                 self.each("/than/each", &f.than.each, &f.than.r#where);
@@ -366,16 +359,16 @@ impl Faults<'_> {
                 self.unless(f.across.0.len() == 1, "/across", || {
                     format!("expected one factor, found {}", f.across.0.len())
                 });
-                let ranked: Vec<String> = f.across.0.values().flat_map(|v| v.0.clone()).collect();
+                let ranked: Vec<&String> = f.across.0.values().flat_map(|v| &v.0).collect();
                 let (named, enough) = match &f.order {
                     Order::First(value) | Order::Last(value) => (std::slice::from_ref(value), true),
                     Order::Descending(values) => (&values[..], values.len() >= 2),
                 };
                 self.unless(enough, "/order", || "expected two values or more".to_owned());
                 for value in named {
-                    if !ranked.contains(value) {
+                    if !ranked.contains(&value) {
                         let message = format!("`{}` is not among those ranked", quoted(value));
-                        self.unknown("/order", &message, value, ranked.iter());
+                        self.unknown("/order", message, value, ranked.iter().copied());
                     }
                 }
             }
@@ -405,7 +398,11 @@ impl Faults<'_> {
                     "skill over log ratios is counted over their mean; leave `baseline` out"
                         .to_owned()
                 });
-                f.baseline.iter().for_each(|factor| self.factor("/baseline", factor));
+                for (i, factor) in f.baseline.iter().enumerate() {
+                    if self.values_of(factor).is_none() {
+                        self.unknown_factor(&format!("/baseline/{i}"), factor, false);
+                    }
+                }
             }
         }
     }
@@ -445,9 +442,9 @@ impl Faults<'_> {
         });
         for (path, bound) in bounds {
             let Some(Bound::Factor(name)) = bound else { continue };
-            match self.known.factors.iter().find(|(factor, _)| factor == name) {
-                None => self.factor(path, name),
-                Some((_, values)) => {
+            match self.values_of(name) {
+                None => self.unknown_factor(path, name, false),
+                Some(values) => {
                     let word = values.iter().find(|value| value.parse::<f64>().is_err());
                     self.unless(word.is_none(), path, || {
                         let word = word.map_or("", String::as_str);

@@ -28,6 +28,7 @@ mod pairing;
 pub mod power;
 pub mod published;
 mod rate;
+mod scope;
 pub mod sensitivity;
 mod sign;
 mod spread;

@@ -384,6 +384,15 @@ pub fn suggestion<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> O
         .map(|(_, candidate)| candidate)
 }
 
+/// What may have been meant by `word`, which is none of `known`, and what is known.
+pub fn known_or_near(word: &str, known: &[&str]) -> String {
+    match suggestion(word, known.iter().copied()) {
+        Some(near) => format!("did you mean `{}`? (known: {})", quoted(near), listed(known)),
+        None if known.is_empty() => "there is none".to_owned(),
+        None => format!("known: {}", listed(known)),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -15,8 +15,8 @@ mod secret;
 pub mod xml;
 
 pub use diagnostic::{
-    Diagnostic, FaultList, MOST_FAULTS, Severity, Source, listed, quoted, reports, steers,
-    suggestion,
+    Diagnostic, FaultList, MOST_FAULTS, Severity, Source, known_or_near, listed, quoted, reports,
+    steers, suggestion,
 };
 pub use node::{Content, Entry, Node, Place, Tree};
 pub use reader::read;

@@ -2,17 +2,18 @@
 
 use super::resolve::{Resolved, Resolver};
 use crate::claims::metric::WALL_TIME_COLUMNS;
-use crate::claims::{self, Fault, Known};
-use crate::document::{Content, Tree};
-use crate::studies::prior_map::coverage_at_distance;
+use crate::claims::{self, Known};
+use crate::document::{Content, Diagnostic, Tree, quoted};
+use crate::studies::prior_map::{coverage_at_distance, is_coverage_at_distance};
 use crate::studies::{Setup, StudyKind};
 
-/// Collects every fault of the claims. Where a condition could not be resolved, which has been told, nobody knows what its
-/// trials measure.
-pub(super) fn check(resolver: &mut Resolver<'_>, published: &[String], conditions: &[Resolved]) {
+/// Collects every fault of the claims.
+pub(super) fn check(resolver: &mut Resolver<'_>, conditions: &[Resolved]) {
     let doc = resolver.doc;
     let factors: Vec<_> =
         resolver.factors.iter().map(|f| (f.name.clone(), f.values.clone())).collect();
+    // Those that cannot be read have been told.
+    let published: Vec<String> = doc.published.keys().cloned().collect();
     let mut metrics = measures(doc.study);
     for (_, setup, ..) in conditions {
         if let Setup::PriorMap(setup) = setup {
@@ -20,18 +21,25 @@ pub(super) fn check(resolver: &mut Resolver<'_>, published: &[String], condition
             metrics.extend(asked_for.iter().map(|&distance| coverage_at_distance(distance)));
         }
     }
+    if resolver.faults.any_error() {
+        // A condition that could not be resolved may ask for it.
+        let named = doc.claims.iter().flat_map(|claim| claim.expect.metrics());
+        metrics.extend(named.filter(|name| is_coverage_at_distance(name)));
+    }
     metrics.sort();
     metrics.dedup();
-    let metrics = (!resolver.faults.any_error()).then_some(&metrics[..]);
-    let known = Known { factors: &factors, metrics, published };
+    let known = Known { factors: &factors, metrics: &metrics, published: &published };
     for (i, fault) in claims::check_all(&doc.claims, known) {
-        let Fault { pointer, at_key, message, help } = fault;
-        let claim = format!("claim `{}`: {message}", crate::document::quoted(&doc.claims[i].id));
+        let told = format!("claim `{}`: {}", quoted(&doc.claims[i].id), fault.message);
         let faults = &mut resolver.faults;
-        let place = as_written(faults.tree, &format!("/claims/{i}{pointer}"));
+        if faults.is_full() {
+            faults.push(Diagnostic::placeless(told));
+            continue;
+        }
+        let place = as_written(faults.tree, &format!("/claims/{i}{}", fault.pointer));
         let told =
-            if at_key { faults.key_fault(&place, claim) } else { faults.fault(&place, claim) };
-        faults.push(match help {
+            if fault.at_key { faults.key_fault(&place, told) } else { faults.fault(&place, told) };
+        faults.push(match fault.help() {
             Some(help) => told.help(help),
             None => told,
         });

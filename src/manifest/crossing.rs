@@ -3,7 +3,7 @@
 use super::choice::FactorDoc;
 use super::document::ManifestDoc;
 use super::faults::{Faults, step};
-use crate::document::{listed, quoted, suggestion};
+use crate::document::known_or_near;
 use crate::studies::Condition;
 use crate::studies::FactorValue;
 use std::collections::{BTreeMap, BTreeSet};
@@ -223,13 +223,4 @@ pub(super) fn is_kebab(name: &str) -> bool {
     name.split('-').all(|part| {
         !part.is_empty() && part.bytes().all(|b| b.is_ascii_lowercase() || b.is_ascii_digit())
     })
-}
-
-/// A suggestion, or the list of what is known.
-pub(super) fn known_or_near(word: &str, known: &[&str]) -> String {
-    match suggestion(word, known.iter().copied()) {
-        Some(near) => format!("did you mean `{}`? (known: {})", quoted(near), listed(known)),
-        None if known.is_empty() => "there is none".to_owned(),
-        None => format!("known: {}", listed(known)),
-    }
 }

@@ -1,8 +1,8 @@
 //! Collects what is wrong with a manifest, each fault once, at the place it is written.
 
-use super::crossing::{Factor, known_or_near};
+use super::crossing::Factor;
 use super::inputs::WrittenIn;
-use crate::document::{Diagnostic, FaultList, Severity, Tree, quoted};
+use crate::document::{Diagnostic, FaultList, Severity, Tree, known_or_near, quoted};
 use crate::studies::FactorValue;
 use std::collections::BTreeSet;
 use std::sync::Arc;

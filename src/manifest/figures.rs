@@ -1,9 +1,10 @@
 //! What figures ask for, held against factors, tables and published numbers.
 
-use super::crossing::{Factor, known_or_near};
+use super::crossing::Factor;
 use super::document::ManifestDoc;
 use super::faults::Faults;
 use super::published::{check_columns, check_only, check_outcomes, check_published, foreign};
+use crate::document::known_or_near;
 use crate::studies::outcomes::OutcomeShares;
 use crate::studies::{FigureLayout, Outcome, PublishedScatter, StudyKind, TableLayout};
 use crate::table::Table;

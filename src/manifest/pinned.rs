@@ -1,10 +1,10 @@
 //! Inputs that somebody else published: where each is to be had, and what it must hold.
 
-use super::crossing::known_or_near;
 use super::faults::{Faults, step};
 use super::inputs::{WrittenIn, normalised};
 use super::resolve::{Resolver, relative_to};
 use crate::digest::Sha256Digest;
+use crate::document::known_or_near;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::collections::BTreeMap;

@@ -1,12 +1,12 @@
 //! The paper's own numbers, and the tables and figures that ask for them.
 
 use super::claims::measures;
-use super::crossing::{Factor, is_kebab, kebab, known_or_near};
+use super::crossing::{Factor, is_kebab, kebab};
 use super::document::ManifestDoc;
 use super::faults::{Faults, step};
 use super::figures::check_figures;
 use super::resolve::Resolved;
-use crate::document::{Diagnostic, Source, listed, suggestion};
+use crate::document::{Diagnostic, Source, known_or_near, listed, suggestion};
 use crate::studies::outcomes::OutcomeTable;
 use crate::studies::prior_map::{
     AgreementTable, CoverageTable, EffectsTable, MILESTONES, MeasuresTable, coverage_at_distance,

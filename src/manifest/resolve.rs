@@ -1,7 +1,8 @@
 //! From a manifest as written to an experiment: every name looked up, every file read, every fault collected.
 
 use super::choice::{By, Choice};
-use super::crossing::{Factor, cross, is_kebab, kebab, known_or_near};
+use super::claims;
+use super::crossing::{Factor, cross, is_kebab, kebab};
 use super::document::{FactorRef, ManifestDoc, StartDoc};
 use super::experiment::{Assumption, CalibrationRun, Experiment, Meanings};
 use super::faults::{Faults, step};
@@ -12,7 +13,7 @@ use super::priors::Knowledge;
 use super::worlds::UsedWorld;
 use super::{lint, overrides, previous, published, schema, sensitivity, settings};
 use crate::digest::MeaningDigest;
-use crate::document::{Diagnostic, Node, Parsed, Source, parse_tree_by, read};
+use crate::document::{Diagnostic, Node, Parsed, Source, known_or_near, parse_tree_by, read};
 use crate::geometry::Pose;
 use crate::grid::OccupancyGrid;
 use crate::robot::{Robot, urdf};
@@ -143,8 +144,7 @@ impl Resolver<'_> {
             self.check_licenses();
             self.check_pins();
         }
-        let named: Vec<String> = published.keys().cloned().collect();
-        super::claims::check(self, &named, &resolved);
+        claims::check(self, &resolved);
         let (mut cells, mut meanings, mut described) = (Vec::new(), Vec::new(), Vec::new());
         for (condition, setup, meaning, description) in resolved {
             cells.push((condition, setup));

@@ -1,13 +1,12 @@
 //! The worlds of a manifest's conditions: which file, which layers; or which building of a family.
 
-use super::crossing::known_or_near;
 use super::document::{FactorRef, GenerateDoc, SeedDoc, WorldDoc, WorldFile};
 use super::inputs::normalised;
 use super::models::Shelf;
 use super::readers;
 use super::resolve::{Known, Resolver};
 use crate::digest::MeaningDigest;
-use crate::document::Source;
+use crate::document::{Source, known_or_near};
 use crate::studies::Condition;
 use crate::world::sdf::NoModels;
 use crate::world::{World, generate};

@@ -191,7 +191,7 @@ fn faults_of_the_new_options_are_told() {
     let factors = [("prior".to_owned(), PRIORS.map(str::to_owned).to_vec())];
     let metrics = ["success", "distance-m-at-80", "distance-m-at-95"].map(str::to_owned);
     let published = ["t".to_owned()];
-    let known = Known { factors: &factors, metrics: Some(&metrics), published: &published };
+    let known = Known { factors: &factors, metrics: &metrics, published: &published };
     let faults = |expect: &str| -> Vec<String> {
         claim(expect).check(known).iter().map(rules::told).collect()
     };

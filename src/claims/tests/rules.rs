@@ -6,17 +6,17 @@ use super::*;
 type Things = (Vec<(String, Vec<String>)>, Vec<String>, Vec<String>);
 
 /// A fault on one line: where, numbers of items left out, what, and what may have been meant.
-pub(super) fn told(fault: &Fault) -> String {
+pub(super) fn told(fault: &Fault<'_>) -> String {
     let steps = fault.pointer.split('/').skip(1).filter(|step| step.parse::<usize>().is_err());
     let place = steps.collect::<Vec<_>>().join(".");
     let colon = if place.is_empty() { "" } else { ": " };
-    let help = fault.help.as_ref().map(|help| format!("; {help}")).unwrap_or_default();
+    let help = fault.help().map(|help| format!("; {help}")).unwrap_or_default();
     format!("{place}{colon}{}{help}", fault.message)
 }
 
 /// The faults of one claim among `things`.
 fn faults_among(claim: &Claim, (factors, metrics, published): &Things) -> Vec<String> {
-    let known = Known { factors, metrics: Some(metrics), published };
+    let known = Known { factors, metrics, published };
     claim.check(known).iter().map(told).collect()
 }
 
@@ -117,7 +117,7 @@ fn the_examples_of_the_page_parse_and_check() {
     for text in found {
         let claims: Vec<Claim> =
             serde_yaml::from_str(&text).unwrap_or_else(|e| panic!("{text}\n{e}"));
-        let known = Known { factors: &factors, metrics: Some(&metrics), published: &published };
+        let known = Known { factors: &factors, metrics: &metrics, published: &published };
         let found: Vec<_> = check_all(&claims, known).collect();
         assert_eq!(found, [], "{text}");
     }
@@ -181,13 +181,26 @@ fn faults_are_named_with_their_place_and_the_nearest_name() {
         claim("{between: {metric: success, high: 0.5}}"),
     ];
     let (factors, metrics, published) = known();
-    let known = Known { factors: &factors, metrics: Some(&metrics), published: &published };
+    let known = Known { factors: &factors, metrics: &metrics, published: &published };
     let found: Vec<_> = check_all(&twice, known).map(|(i, fault)| (i, told(&fault))).collect();
     assert_eq!(found, [(1, "id: the id `X` is used twice".to_owned())]);
     let unknown = serde_yaml::from_str::<Claim>(
         "id: X\nsays: s\npaper-table: silent\nexpect: {less: {metrik: a}}\n",
     );
     assert!(unknown.unwrap_err().to_string().contains("metrik"));
+}
+
+/// They are counted, and never made.
+#[test]
+fn cells_without_number_are_refused_at_once() {
+    let values: Vec<String> = (0..1000).map(|i| i.to_string()).collect();
+    let across: Vec<String> = (0..8).map(|i| format!("f{i}: [{}]", values.join(", "))).collect();
+    let found = faults(&format!(
+        "{{homogeneous: {{metric: success, across: {{{}}}, margin: 0}}}}",
+        across.join(", ")
+    ));
+    assert_eq!(found.len(), 9, "{found:?}");
+    assert_eq!(found[8], "expect.homogeneous.margin: expected a positive number, found 0");
 }
 
 #[test]

@@ -13,7 +13,7 @@ mod trace;
 pub use plan_figure::plan_figure;
 pub use pose_errors::POSE_ERRORS;
 pub use reference::SharedReference;
-pub use trace::{MILESTONES, coverage_at_distance};
+pub use trace::{MILESTONES, coverage_at_distance, is_coverage_at_distance};
 
 use super::explorer::{CONTROL_PERIOD, Ending, Explorer};
 use super::information_gain::AlignedPrior;

@@ -15,6 +15,12 @@ pub fn coverage_at_distance(distance_m: u32) -> String {
     format!("coverage-percent-at-{distance_m}-m")
 }
 
+/// Whether `name` is that of coverage after some distance.
+pub fn is_coverage_at_distance(name: &str) -> bool {
+    let distance = name.strip_prefix("coverage-percent-at-").and_then(|n| n.strip_suffix("-m"));
+    distance.is_some_and(|distance| distance.parse::<u32>().is_ok())
+}
+
 /// The running record of a trial.
 #[derive(Debug)]
 pub(super) struct Trace {
