@@ -123,7 +123,7 @@ fn write(value: &Value, out: &mut String) {
                 if i > 0 {
                     out.push(',');
                 }
-                out.push_str(&Value::String(key.clone()).to_string());
+                write_text(key, out);
                 out.push(':');
                 write(item, out);
             }
@@ -154,7 +154,19 @@ fn write(value: &Value, out: &mut String) {
             Some(x) if number.is_f64() => out.push_str(&x.to_string()),
             _ => out.push_str(&number.to_string()),
         },
+        Value::String(text) => write_text(text, out),
         other => out.push_str(&other.to_string()),
+    }
+}
+
+fn write_text(text: &str, out: &mut String) {
+    // Nearly all of it: names, words and digests, of which a record has hundreds.
+    if text.bytes().all(|byte| byte >= b' ' && byte != b'"' && byte != b'\\') {
+        out.push('"');
+        out.push_str(text);
+        out.push('"');
+    } else {
+        out.push_str(&Value::from(text).to_string());
     }
 }
 
@@ -169,6 +181,14 @@ mod tests {
             canonical(&json!({"b": 1.0, "a": [-0.0, 0.1, 1e300, 1e-7, null, "x\n"], "é": true})),
             r#"{"a":[0,0.1,1e300,1e-7,null,"x\n"],"b":1,"é":true}"#
         );
+    }
+
+    #[test]
+    fn texts_are_escaped_as_serde_json_does() {
+        let text: String = ('\0'..='\u{a0}').chain("é\u{2028}\u{1f916}".chars()).collect();
+        let each = text.chars().map(String::from).chain([text.clone()]);
+        let texts: Vec<String> = each.collect();
+        assert_eq!(canonical(&json!(texts)), serde_json::to_string(&texts).unwrap());
     }
 
     #[test]

@@ -123,8 +123,9 @@ pub fn findings<'a>(
 ) -> Findings<'a> {
     let experiment = &plan.experiment;
     let calibration = experiment.conditions.iter().find_map(|(_, setup)| setup.calibration());
-    let design = &experiment.conditions;
-    Findings { factors, design, records, published: &experiment.published, calibration }
+    Findings::new(factors, records, &experiment.published)
+        .designed(&experiment.conditions)
+        .calibrated(calibration)
 }
 
 fn sealed_conditions(plan: &Plan, records: &[TrialRecord]) -> Vec<SealedCondition> {

@@ -7,7 +7,7 @@ use crate::table::{Column, Table, Value};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What the tables and figures of one experiment are made from.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Findings<'a> {
     /// Factors and their values, in the manifest's order.
     pub factors: &'a [(String, Vec<String>)],
@@ -19,9 +19,35 @@ pub struct Findings<'a> {
     pub published: &'a BTreeMap<String, Table>,
     /// Deadline study: what the planner expected of its maneuvers.
     pub calibration: Option<&'a Calibration>,
+    /// The records again, by condition: a table asks for each of its cells, and conditions are far fewer than trials.
+    by_condition: Vec<&'a [TrialRecord]>,
 }
 
 impl<'a> Findings<'a> {
+    /// The findings of `records`, which stand in plan order.
+    pub fn new(
+        factors: &'a [(String, Vec<String>)],
+        records: &'a [TrialRecord],
+        published: &'a BTreeMap<String, Table>,
+    ) -> Self {
+        let by_condition = records.chunk_by(|a, b| a.condition == b.condition).collect();
+        Self { factors, design: &[], records, published, calibration: None, by_condition }
+    }
+
+    /// The same with the conditions of the whole `design`.
+    #[must_use]
+    pub fn designed(mut self, design: &'a [(Condition, Setup)]) -> Self {
+        self.design = design;
+        self
+    }
+
+    /// The same with what the planner expected of its maneuvers.
+    #[must_use]
+    pub fn calibrated(mut self, calibration: Option<&'a Calibration>) -> Self {
+        self.calibration = calibration;
+        self
+    }
+
     /// One row a trial: key, factors, number, outcome, then every measure.
     pub fn trials(&self) -> Table {
         let measures: BTreeSet<&str> =
@@ -49,7 +75,7 @@ impl<'a> Findings<'a> {
     pub(super) fn values_of(&self, factor: &str) -> Vec<String> {
         let values = self.factors.iter().find(|(name, _)| name == factor).map(|(_, v)| v.clone());
         let ran = |value: &String| {
-            self.records.iter().any(|r| r.condition.iter().any(|(f, v)| f == factor && v == value))
+            self.conditions().any(|c| c.iter().any(|(f, v)| f == factor && v == value))
         };
         // Partial runs leave values out.
         values.unwrap_or_default().into_iter().filter(ran).collect()
@@ -77,17 +103,23 @@ impl<'a> Findings<'a> {
     pub(super) fn ran(&self, factors: &[String]) -> Vec<Vec<(String, String)>> {
         let mut crossed = self.crossed(factors);
         crossed.retain(|cell| {
-            self.records.iter().any(|r| cell.iter().all(|value| r.condition.contains(value)))
+            self.conditions().any(|condition| cell.iter().all(|value| condition.contains(value)))
         });
         crossed
     }
 
     /// The records whose condition has all values of `fixed`.
     pub(super) fn matching(&self, fixed: &[(String, String)]) -> Vec<&'a TrialRecord> {
-        self.records
+        self.by_condition
             .iter()
-            .filter(|record| fixed.iter().all(|f| record.condition.contains(f)))
+            .filter(|records| fixed.iter().all(|f| records[0].condition.contains(f)))
+            .flat_map(|records| records.iter())
             .collect()
+    }
+
+    /// The conditions that were run, each as often as it begins anew in plan order.
+    fn conditions(&self) -> impl Iterator<Item = &'a [(String, String)]> {
+        self.by_condition.iter().map(|records| records[0].condition.as_slice())
     }
 
     /// Why a cell of these factor values has no number of ours, where `trials` of it were run.

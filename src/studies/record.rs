@@ -4,8 +4,10 @@ use super::Condition;
 use crate::digest::{Hasher, Sha256Digest, TrialKey};
 use crate::json;
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::de::{Error, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
 use std::collections::BTreeMap;
+use std::fmt;
 
 /// Why a trial ended.
 #[derive(
@@ -62,6 +64,33 @@ pub struct SeriesPoint {
 /// Bytes of the longest line that is read as a record: a day of simulated time takes half of that.
 const LONGEST_LINE: usize = 4 << 20;
 
+/// Measures that are read of one record: ten times what any study of ours has.
+const MOST_MEASURES: usize = 4096;
+
+/// Reads measures, and no more of them than a record has: a map takes many times what its text does.
+fn measures<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<BTreeMap<String, Option<f64>>, D::Error> {
+    struct Few;
+    impl<'de> Visitor<'de> for Few {
+        type Value = BTreeMap<String, Option<f64>>;
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            f.write_str("measures by name")
+        }
+        fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+            let mut measures = BTreeMap::new();
+            while let Some((name, value)) = map.next_entry()? {
+                measures.insert(name, value);
+                if measures.len() > MOST_MEASURES {
+                    return Err(Error::custom(format!("more than {MOST_MEASURES} measures")));
+                }
+            }
+            Ok(measures)
+        }
+    }
+    deserializer.deserialize_map(Few)
+}
+
 /// Digest of records in plan order: of their lines, each ended by a line feed.
 pub fn records_digest(records: &[TrialRecord]) -> Sha256Digest {
     let mut hasher = Hasher::new();
@@ -87,6 +116,7 @@ pub struct TrialRecord {
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub cause: String,
     /// Named measures with their unit in the name; `null` where a trial never got there.
+    #[serde(deserialize_with = "measures")]
     pub measures: BTreeMap<String, Option<f64>>,
     /// The trial's curve, at the first crossing of every whole percent and at every 10 s.
     pub series: Vec<SeriesPoint>,
@@ -202,6 +232,10 @@ mod tests {
             refusal(line("\"0123456789abcdef\",\"\"", "")),
             "no state hash of 16 hex digits at /chain/1"
         );
+        let many: Vec<String> = (0..5000).map(|i| format!("\"m-{i}\":1")).collect();
+        let record = line("", "").replace("{}", &format!("{{{}}}", many.join(",")));
+        let said = refusal(record);
+        assert!(said.starts_with("more than 4096 measures at line 1 column "), "{said}");
         let long = line("", &"x".repeat(LONGEST_LINE));
         assert_eq!(
             refusal(long.clone()),

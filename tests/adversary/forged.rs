@@ -112,7 +112,7 @@ pub(crate) fn results() -> Vec<Case> {
         resealed("verdicts of four million objects", |tree| {
             tree.insert(CLAIMS.into(), format!("[{}0]", "{\"\":0},".repeat(4_000_000)).into());
         }),
-        resealed("a million measures", |tree| {
+        Case::on_honest("a million measures", 2, |tree| {
             let measures: String = (0..360_000)
                 .flat_map(|i| format!("\"{i:06}\":1,").into_bytes())
                 .map(char::from)
@@ -123,6 +123,13 @@ pub(crate) fn results() -> Vec<Case> {
                 "\"measures\":{",
                 &format!("\"measures\":{{{measures}"),
             );
+            reseal(tree);
+        }),
+        resealed("state hashes that fill the memory", |tree| {
+            let hashes = format!("\"{}\",", "0".repeat(16)).repeat(219_000);
+            for path in ["data/trials/none.jsonl", "data/trials/floor-plan.jsonl"] {
+                replace(tree, path, "{\"chain\":[", &format!("{{\"chain\":[{hashes}"));
+            }
         }),
         resealed("half a million state hashes", |tree| {
             let hashes = format!("\"{}\",", "0".repeat(16)).repeat(180_000);

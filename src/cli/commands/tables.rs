@@ -251,13 +251,7 @@ mod tests {
         let csv = "start,deadline-s,strategy,value,n\nA,680,frontier,26,50\nA,680,normalized-frontier,59,50\n\
                    A,680,corridors-first,12,50\nA,680,complete-corridor,100,50\n";
         let published = BTreeMap::from([("success".to_owned(), Table::from_csv(csv).unwrap())]);
-        let findings = Findings {
-            factors: &factors,
-            records: &records,
-            published: &published,
-            design: &[],
-            calibration: None,
-        };
+        let findings = Findings::new(&factors, &records, &published);
         let request = TableRequest {
             id: "table-1".to_owned(),
             title: "Table 1, success rate (%)".to_owned(),

@@ -84,6 +84,7 @@ impl Findings<'_> {
         fixed: &[(String, String)],
     ) -> OutcomeCell {
         let mut trials = self.matching(fixed);
+        let ran = trials.len() as u64;
         trials.retain(|record| record.outcome != Outcome::Panicked);
         let published = request.published.as_ref().and_then(|name| {
             let (table, row) = self.published_row(name, fixed)?;
@@ -93,8 +94,7 @@ impl Findings<'_> {
             };
             Some((table.value(row, "value").as_f64()?, n))
         });
-        let found = compared(&request.show, &trials)
-            .ok_or_else(|| self.absence(fixed, self.matching(fixed).len() as u64));
+        let found = compared(&request.show, &trials).ok_or_else(|| self.absence(fixed, ran));
         let paper = published.map(|(value, n)| Printed { value, sd: None, n });
         OutcomeCell {
             rows,

@@ -248,13 +248,7 @@ mod tests {
             ("late".to_owned(), csv("deadline-s,strategy,value\n90,quick,20\n90,slow,70\n")),
         ]);
         let records = records();
-        ask(&Findings {
-            factors: &factors,
-            records: &records,
-            published: &published,
-            design: &[],
-            calibration: None,
-        })
+        ask(&Findings::new(&factors, &records, &published))
     }
 
     fn table(show: Quantity, published: Option<&str>) -> OutcomeTable {

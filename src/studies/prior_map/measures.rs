@@ -160,13 +160,7 @@ mod tests {
         ];
         let csv = "prior,noise,measure,value,sd\ngraph,0,distance-m,239,\ngraph,0,time-s,1,\n";
         let published = BTreeMap::from([("section".to_owned(), Table::from_csv(csv).unwrap())]);
-        let findings = Findings {
-            factors: &factors,
-            records: &records,
-            published: &published,
-            design: &[],
-            calibration: None,
-        };
+        let findings = Findings::new(&factors, &records, &published);
         let wanted = MeasuresTable {
             measures: vec!["distance-m".to_owned()],
             rows: vec!["prior".to_owned(), "noise".to_owned()],

@@ -86,13 +86,7 @@ fn factors() -> Vec<(String, Vec<String>)> {
 
 fn found(records: &[TrialRecord], with_sd: impl Fn(&str) -> bool) -> Vec<TableAgreement> {
     let (factors, published) = (factors(), published(with_sd));
-    let findings = Findings {
-        factors: &factors,
-        records,
-        published: &published,
-        design: &[],
-        calibration: None,
-    };
+    let findings = Findings::new(&factors, records, &published);
     let wanted = AgreementTable { tables: vec!["distance".to_owned()] };
     let table = request(false);
     let tidy = findings.agreement_table(&wanted, &[("distance", &table), ("other", &table)]);
@@ -148,13 +142,7 @@ fn what_is_missing_or_censored_or_has_no_spread_is_counted() {
 #[test]
 fn cells_are_tested_at_all_runs_and_at_the_papers_number() {
     let (factors, published, records) = (factors(), published(|_| true), records(|x| x, 0..5));
-    let findings = Findings {
-        factors: &factors,
-        records: &records,
-        published: &published,
-        design: &[],
-        calibration: None,
-    };
+    let findings = Findings::new(&factors, &records, &published);
     let cells = findings.coverage_cells(&request(true));
     let cell = |by: &str, percent| {
         let wanted = ("environment".to_owned(), "office".to_owned());
@@ -198,13 +186,7 @@ fn every_reading_that_was_run_has_its_own_score() {
         }
     }
     let published = published(|_| true);
-    let findings = Findings {
-        factors: &factors,
-        records: &all,
-        published: &published,
-        design: &[],
-        calibration: None,
-    };
+    let findings = Findings::new(&factors, &all, &published);
     let mut table = request(false);
     table.rows.extend(["gain".to_owned(), "stop".to_owned()]);
     let wanted = AgreementTable { tables: vec!["distance".to_owned()] };

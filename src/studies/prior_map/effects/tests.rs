@@ -75,13 +75,7 @@ fn request(factors: &[&str], within: &[&str], at: &[u32]) -> EffectsTable {
 /// `check` sees the findings of [`records`].
 fn with_findings(check: impl Fn(&Findings<'_>)) {
     let (factors, records, published) = (factors(), records(), published());
-    let findings = Findings {
-        factors: &factors,
-        records: &records,
-        published: &published,
-        design: &[],
-        calibration: None,
-    };
+    let findings = Findings::new(&factors, &records, &published);
     check(&findings);
 }
 
