@@ -107,7 +107,7 @@ def main():
         assert "real time" in written or columns < 80, "the bar tells the rate"
         screen = seen(written, columns)
         # Addresses of bundles and digests cannot be folded.
-        wraps = [line for line in screen.wraps if "sha256:" not in line and ".zip" not in line]
+        wraps = [line for line in screen.wraps if "sha256:" not in line and not line.startswith("/")]
         assert not wraps, f"wraps at {columns} columns: {wraps[:3]}"
         left = [line for line in screen.lines if "━" in line or " left" in line or "real time" in line]
         assert not left, f"left of the bar: {left}"
