@@ -56,7 +56,7 @@ impl Shipped {
         let beside = Beside(manifest.parent().unwrap().to_owned());
         let (experiment, _) = manifest::resolve(&source, &[], &beside).unwrap();
         // One that starts from what an earlier exploration mapped, where there is one.
-        let levels = experiment.conditions.iter().map(|(condition, _)| &condition.0);
+        let levels = experiment.design().map(|(condition, _)| &condition.0);
         let from_a_map = |levels: &&Vec<(String, String)>| {
             levels.iter().any(|(factor, value)| factor == "prior" && value.starts_with("previous"))
         };

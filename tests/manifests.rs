@@ -198,7 +198,7 @@ fn what_a_manifest_states_of_its_limits_is_sealed_and_nothing_where_it_states_no
 #[test]
 fn the_quickstart_is_twenty_trials_in_two_conditions() {
     let plan = Plan::of(quickstart());
-    let names: Vec<String> = plan.experiment.conditions.iter().map(|(c, _)| c.slug()).collect();
+    let names: Vec<String> = plan.experiment.design().map(|(c, _)| c.slug()).collect();
     assert_eq!((names.join(" "), plan.trials.len()), ("none floor-plan".to_owned(), 20));
     let inputs: Vec<&str> = plan.experiment.inputs.iter().map(|i| i.as_written.as_str()).collect();
     assert_eq!(
@@ -315,8 +315,7 @@ parameters:
     let (experiment, warnings) = resolve_text(text, &[]).map_err(|f| told(&f)).unwrap();
     assert_eq!(told(&warnings), "");
     let seen: Vec<String> = experiment
-        .conditions
-        .iter()
+        .design()
         .map(|(condition, setup)| {
             format!(
                 "{} x={} {} {}",
@@ -346,7 +345,8 @@ fn generated_buildings_are_named_by_seeds_and_told_apart() {
     assert_eq!(told(&warnings), "");
     let inputs: Vec<&str> = experiment.inputs.iter().map(|i| i.as_written.as_str()).collect();
     assert_eq!(inputs, ["kobuki.urdf"], "a building that is made is no file");
-    let meanings: Vec<String> = experiment.meanings.iter().map(|m| m.world.hex()).collect();
+    let meanings: Vec<String> =
+        experiment.conditions.iter().map(|c| c.meanings.world.hex()).collect();
     let own = |seed: u64| {
         reenact::world::generate::generate(reenact::world::generate::Family::OfficeFloor, seed)
             .unwrap()
@@ -361,7 +361,7 @@ fn generated_buildings_are_named_by_seeds_and_told_apart() {
     // A number and a factor's value are the same seed, so the building is the same.
     let fixed = text.replace("{factor: building}", "1");
     let (experiment, _) = resolve_text(&fixed, &[]).map_err(|f| told(&f)).unwrap();
-    assert!(experiment.meanings.iter().all(|m| m.world.hex() == own(1)));
+    assert!(experiment.conditions.iter().all(|c| c.meanings.world.hex() == own(1)));
 }
 
 fn resolve_text(text: &str, overrides: &[String]) -> Resolved {

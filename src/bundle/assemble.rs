@@ -122,9 +122,9 @@ pub fn findings<'a>(
     factors: &'a [(String, Vec<String>)],
 ) -> Findings<'a> {
     let experiment = &plan.experiment;
-    let calibration = experiment.conditions.iter().find_map(|(_, setup)| setup.calibration());
+    let calibration = experiment.design().find_map(|(_, setup)| setup.calibration());
     Findings::new(factors, records, &experiment.published)
-        .designed(&experiment.conditions)
+        .designed(experiment.design().map(|(condition, _)| condition))
         .calibrated(calibration)
 }
 

@@ -121,8 +121,7 @@ fn first<'p>(
     let admits = |condition: &Condition| {
         only.iter().all(|(factor, value)| condition.value(factor) == Some(&value.0))
     };
-    let found = plan.experiment.conditions.iter().find(|(condition, _)| admits(condition));
-    found.map(|(condition, setup)| (condition, setup))
+    plan.experiment.design().find(|(condition, _)| admits(condition))
 }
 
 /// The floor plan of the first condition that a figure speaks of; words where the design leaves that combination out.

@@ -49,7 +49,7 @@ impl Calibrator<'_> {
                 records.map_err(|e| e.to_string())?
             }
         };
-        let planned = PlannedPassages::of(&plan.experiment.conditions, plan.experiment.trials);
+        let planned = PlannedPassages::of(plan.experiment.design(), plan.experiment.trials);
         let showed = planned.and_then(|planned| planned.showed(&records));
         showed
             .map(|passages| Measured::Passages(passages.to_csv().into_bytes()))

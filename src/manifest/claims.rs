@@ -1,6 +1,7 @@
 //! The claims of a manifest, held against its factors, measures and published tables.
 
-use super::resolve::{Resolved, Resolver};
+use super::experiment::ResolvedCondition;
+use super::resolve::Resolver;
 use crate::claims::metric::WALL_TIME_COLUMNS;
 use crate::claims::{self, Known};
 use crate::document::{Content, Diagnostic, Tree, quoted};
@@ -8,14 +9,14 @@ use crate::studies::prior_map::{coverage_at_distance, is_coverage_at_distance};
 use crate::studies::{Setup, StudyKind};
 
 /// Collects every fault of the claims.
-pub(super) fn check(resolver: &mut Resolver<'_>, conditions: &[Resolved]) {
+pub(super) fn check(resolver: &mut Resolver<'_>, conditions: &[ResolvedCondition]) {
     let doc = resolver.doc;
     let factors: Vec<_> =
         resolver.factors.iter().map(|f| (f.name.clone(), f.values.clone())).collect();
     // Those that cannot be read have been told.
     let published: Vec<String> = doc.published.keys().cloned().collect();
     let mut metrics = measures(doc.study);
-    for (_, setup, ..) in conditions {
+    for ResolvedCondition { setup, .. } in conditions {
         if let Setup::PriorMap(setup) = setup {
             let asked_for = &setup.parameters.measurement.coverage_at_distance_m;
             metrics.extend(asked_for.iter().map(|&distance| coverage_at_distance(distance)));

@@ -1,9 +1,9 @@
 //! What is particular to manifests of the deadline study: keys it has and has not, its calibration, its conditions.
 
-use super::experiment::{CalibrationRun, Experiment, Meanings};
+use super::experiment::{CalibrationRun, Experiment, Meanings, ResolvedCondition};
 use super::inputs::{Measured, OfCalibration, WrittenIn, normalised};
 use super::lint;
-use super::resolve::{Calibrated, Parts, Resolved, Resolver, resolve};
+use super::resolve::{Calibrated, Parts, Resolver, resolve};
 use crate::studies::deadline::{self, Calibration, Parameters, PlannedPassages, Task};
 use crate::studies::{Condition, Setup, StudyKind};
 use serde_json::json;
@@ -32,7 +32,7 @@ impl Resolver<'_> {
         &mut self,
         condition: Condition,
         parts: Option<Parts>,
-    ) -> Option<Resolved> {
+    ) -> Option<ResolvedCondition> {
         let parameters = self.parameters::<Parameters>(&condition)?;
         let calibration = match parameters.mission.task {
             Task::Exploration => Some(self.calibration()),
@@ -48,7 +48,8 @@ impl Resolver<'_> {
         lint::check_deadline(&setup, &mut self.faults);
         let meanings = Meanings { robot: robot_meaning, world: world.meaning, prior: None };
         let described = json!({ "robot": robot_file, "world": world.described });
-        Some((condition, Setup::Deadline(Arc::new(setup)), meanings, described))
+        let setup = Setup::Deadline(Arc::new(setup));
+        Some(ResolvedCondition { condition, setup, meanings, described })
     }
 
     /// The planner's expectations, measured by the calibration manifest or read from the bundle that holds them.
@@ -131,7 +132,7 @@ impl Resolver<'_> {
         experiment: Experiment,
         sealed_as: String,
     ) -> Result<(CalibrationRun, Calibration), String> {
-        let passages = PlannedPassages::of(&experiment.conditions, experiment.trials)
+        let passages = PlannedPassages::of(experiment.design(), experiment.trials)
             .map_err(|e| e.to_string())?;
         let measured = match self.files.calibrate(&experiment, &sealed_as)? {
             Measured::StandIn => None,

@@ -41,12 +41,8 @@ pub struct Experiment {
     pub shared_noise: Vec<String>,
     /// The factors, in order.
     pub factors: Vec<Factor>,
-    /// The cells of the design and what their trials need, in crossed order.
-    pub conditions: Vec<(Condition, Setup)>,
-    /// What the things of each condition mean; as long as `conditions`.
-    pub meanings: Vec<Meanings>,
-    /// What each condition was resolved from, for people; as long as `conditions`.
-    pub(super) described: Vec<Value>,
+    /// The cells of the design, in crossed order.
+    pub conditions: Vec<ResolvedCondition>,
     /// The paper's own numbers, by name.
     pub published: BTreeMap<String, Table>,
     /// The file each of them comes from, as written.
@@ -69,6 +65,19 @@ pub struct Experiment {
     pub inputs: Vec<Input>,
     /// The manifest's tree, to point at in later faults.
     pub document: Tree,
+}
+
+/// A cell of the design with everything settled.
+#[derive(Debug, Clone)]
+pub struct ResolvedCondition {
+    /// The value of every factor.
+    pub condition: Condition,
+    /// What its trials need.
+    pub setup: Setup,
+    /// What its things mean.
+    pub meanings: Meanings,
+    /// What it was resolved from, for people.
+    pub(super) described: Value,
 }
 
 /// What `reenact vary` found, and where it is written.
@@ -117,14 +126,17 @@ pub struct Meanings {
 }
 
 impl Experiment {
+    /// The cells of the design and what their trials need, in crossed order.
+    pub fn design(&self) -> impl Iterator<Item = (&Condition, &Setup)> + Clone {
+        self.conditions.iter().map(|resolved| (&resolved.condition, &resolved.setup))
+    }
+
     /// Everything as resolved, the content of `study.resolved.json`: nothing of this machine is in it.
     pub fn resolved_json(&self, engine_version: &str) -> Value {
         let conditions: Vec<Value> = self
             .conditions
             .iter()
-            .zip(&self.meanings)
-            .zip(&self.described)
-            .map(|(((condition, setup), meanings), described)| {
+            .map(|ResolvedCondition { condition, setup, meanings, described }| {
                 let start = setup.start();
                 let mut entry = json!({
                     "condition": levels(condition),

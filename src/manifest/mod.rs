@@ -35,7 +35,9 @@ pub use document::{
     PreviousMapDoc, PreviousMapOf, PriorDoc, PriorFrame, PublishedDoc, PublishedFile, SeedDoc,
     StartDoc, UnknownAs, WorldDoc, WorldFile,
 };
-pub use experiment::{Assumption, CalibrationRun, Experiment, Meanings, Robustness};
+pub use experiment::{
+    Assumption, CalibrationRun, Experiment, Meanings, ResolvedCondition, Robustness,
+};
 pub use inputs::{Input, Inputs, Measured, WrittenIn};
 pub use parameters::ParametersDoc;
 pub use pinned::{PinnedDoc, PinnedFileDoc};

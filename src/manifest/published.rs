@@ -3,9 +3,9 @@
 use super::claims::measures;
 use super::crossing::{Factor, is_kebab, kebab};
 use super::document::ManifestDoc;
+use super::experiment::ResolvedCondition;
 use super::faults::{Faults, step};
 use super::figures::check_figures;
-use super::resolve::Resolved;
 use crate::document::{Diagnostic, Source, known_or_near, listed, suggestion};
 use crate::studies::outcomes::OutcomeTable;
 use crate::studies::prior_map::{
@@ -292,9 +292,13 @@ fn check_measures(
 }
 
 /// Faults of the measures that tables ask for, which depend on what the conditions record.
-pub(super) fn check_recorded(doc: &ManifestDoc, resolved: &[Resolved], faults: &mut Faults<'_>) {
+pub(super) fn check_recorded(
+    doc: &ManifestDoc,
+    conditions: &[ResolvedCondition],
+    faults: &mut Faults<'_>,
+) {
     let mut known = numeric(doc.study);
-    for (_, setup, ..) in resolved {
+    for ResolvedCondition { setup, .. } in conditions {
         if let Setup::PriorMap(setup) = setup {
             let asked_for = &setup.parameters.measurement.coverage_at_distance_m;
             let names = asked_for.iter().map(|&distance| coverage_at_distance(distance));

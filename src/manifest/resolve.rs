@@ -4,7 +4,7 @@ use super::choice::{By, Choice};
 use super::claims;
 use super::crossing::{Factor, cross, is_kebab, kebab};
 use super::document::{FactorRef, ManifestDoc, StartDoc};
-use super::experiment::{Assumption, CalibrationRun, Experiment, Meanings};
+use super::experiment::{Assumption, CalibrationRun, Experiment, Meanings, ResolvedCondition};
 use super::faults::{Faults, step};
 use super::inputs::{InputFiles, Inputs, WrittenIn, joined, normalised};
 use super::parameters::WrappedValue;
@@ -22,7 +22,7 @@ use crate::studies::{Condition, Setup, StudyKind, prior_map};
 use crate::table::Table;
 use crate::units::Radians;
 use crate::world::World;
-use serde_json::{Value, json};
+use serde_json::json;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -70,9 +70,6 @@ pub fn resolve(
     experiment.inputs = files.finish(&doc.license_of);
     Ok((experiment, faults))
 }
-
-/// A condition, what its trials need, what its things mean and what they were resolved from.
-pub(super) type Resolved = (Condition, Setup, Meanings, Value);
 
 /// What the trials of every study need.
 pub(super) struct Parts {
@@ -134,23 +131,15 @@ impl Resolver<'_> {
         let published = self.published();
         published::check_requests(doc, &factors, &published, &mut self.faults);
 
-        let mut resolved = Vec::new();
-        for condition in conditions {
-            resolved.extend(self.condition(condition));
-        }
+        let conditions: Vec<ResolvedCondition> =
+            conditions.into_iter().filter_map(|condition| self.condition(condition)).collect();
         if !self.faults.any_error() {
-            published::check_recorded(doc, &resolved, &mut self.faults);
+            published::check_recorded(doc, &conditions, &mut self.faults);
             // What names a file, a map its image, may itself be what is missing.
             self.check_licenses();
             self.check_pins();
         }
-        claims::check(self, &resolved);
-        let (mut cells, mut meanings, mut described) = (Vec::new(), Vec::new(), Vec::new());
-        for (condition, setup, meaning, description) in resolved {
-            cells.push((condition, setup));
-            meanings.push(meaning);
-            described.push(description);
-        }
+        claims::check(self, &conditions);
         Experiment {
             name: doc.name.clone(),
             title: doc.title.clone(),
@@ -163,9 +152,7 @@ impl Resolver<'_> {
             trials: doc.trials,
             shared_noise: doc.shared_noise.clone(),
             factors,
-            conditions: cells,
-            meanings,
-            described,
+            conditions,
             published,
             published_files: doc
                 .published
@@ -259,7 +246,7 @@ impl Resolver<'_> {
         tables
     }
 
-    fn condition(&mut self, condition: Condition) -> Option<Resolved> {
+    fn condition(&mut self, condition: Condition) -> Option<ResolvedCondition> {
         let doc = self.doc;
         let robot = self.choose(&doc.robot, "/robot", &condition);
         let robot_file = robot.as_ref().map(|(path, _)| (*path).clone());
@@ -278,7 +265,11 @@ impl Resolver<'_> {
     }
 
     /// A condition of the prior-knowledge study.
-    fn prior_map(&mut self, condition: Condition, parts: Option<Parts>) -> Option<Resolved> {
+    fn prior_map(
+        &mut self,
+        condition: Condition,
+        parts: Option<Parts>,
+    ) -> Option<ResolvedCondition> {
         let parameters = self.parameters::<prior_map::Parameters>(&condition);
         // Every part has told its faults by now; the prior needs them all.
         let (parameters, parts) = (parameters?, parts?);
@@ -313,7 +304,8 @@ impl Resolver<'_> {
             "world": world.described,
             "prior": knowledge.map(|knowledge| knowledge.described()),
         });
-        Some((condition, Setup::PriorMap(Arc::new(setup)), meanings, described))
+        let setup = Setup::PriorMap(Arc::new(setup));
+        Some(ResolvedCondition { condition, setup, meanings, described })
     }
 
     /// What coverage is measured against: the same for all conditions that differ in prior knowledge and choices only.

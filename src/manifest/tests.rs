@@ -31,7 +31,7 @@ fn with_settings(overrides: &[&str]) -> (prior_map::Parameters, Experiment) {
     let overrides: Vec<String> = overrides.iter().map(|&o| o.to_owned()).collect();
     let (experiment, _) = resolve(&Source::new("a.yaml", text), &overrides, &Shared)
         .unwrap_or_else(|faults| panic!("{}", faults[0].render(false)));
-    let Setup::PriorMap(setup) = &experiment.conditions[0].1 else {
+    let Setup::PriorMap(setup) = &experiment.conditions[0].setup else {
         panic!("a study of another kind")
     };
     (setup.parameters.clone(), experiment)
@@ -94,7 +94,7 @@ fn the_authors_floor_plan_lies_on_their_world_in_the_frame_of_the_start() {
     assert_eq!(told, "");
     let names: Vec<&str> = experiment.inputs.iter().map(|i| i.as_written.as_str()).collect();
     assert!(names.contains(&"floorplans/basic.png"), "{names:?}");
-    let Setup::PriorMap(setup) = &experiment.conditions[0].1 else {
+    let Setup::PriorMap(setup) = &experiment.conditions[0].setup else {
         panic!("a study of another kind")
     };
     let origin = setup.prior.as_ref().unwrap().frame().origin;
@@ -161,7 +161,7 @@ const CHAIN: &str = "  m0: {previous-map: {world: {file: rooms.yaml, layers: [wa
     m1: {previous-map: {world: {file: rooms.yaml, layers: [walls, t1]}, prior: m0, why: second}}";
 
 fn prior_of(experiment: &Experiment) -> OccupancyGrid {
-    let Setup::PriorMap(setup) = &experiment.conditions[0].1 else {
+    let Setup::PriorMap(setup) = &experiment.conditions[0].setup else {
         panic!("a study of another kind")
     };
     setup.prior.as_deref().cloned().unwrap()
@@ -189,7 +189,7 @@ fn a_previous_map_is_what_the_robot_before_ended_with_in_the_worlds_frame() {
     let free = CHAIN.replace("prior: m0,", "prior: m0, unknown: free,");
     let map = prior_of(&changing(&free, &[]).0.unwrap());
     assert_eq!(map.count(Occupancy::Unknown), 0);
-    let keys = |maps: &str| changing(maps, &[]).0.unwrap().meanings[0].prior;
+    let keys = |maps: &str| changing(maps, &[]).0.unwrap().conditions[0].meanings.prior;
     assert_eq!(keys(CHAIN), keys(CHAIN), "a function of the manifest");
     let second = |maps: &str| changing(maps, &[]).1.pop();
     assert_ne!(second(CHAIN), second(&CHAIN.replace("t0", "t2")), "what it knew then counts");
@@ -265,7 +265,7 @@ fn meshes_in_the_folders_of_models_are_sealed_and_others_are_named() {
     );
     let names: Vec<&str> = experiment.inputs.iter().map(|i| i.as_written.as_str()).collect();
     assert_eq!(names, ["kobuki.urdf", "m/table.stl", "w.world"]);
-    assert_ne!(experiment.meanings[0].world, plain.0.meanings[0].world);
+    assert_ne!(experiment.conditions[0].meanings.world, plain.0.conditions[0].meanings.world);
     assert!(experiment.resolved_text("1").contains("\"models\":{\"shop\":\"m\"}"));
     assert!(!plain.0.resolved_text("1").contains("\"models\""), "nothing changes for others");
 
@@ -273,7 +273,7 @@ fn meshes_in_the_folders_of_models_are_sealed_and_others_are_named() {
         [{center-m: [0, 0], radius-m: 0.1, z-m: [0, 1.5]}]}, \"model://shop/lamb.dae\": {}}}";
     let (experiment, told) = meshed(stand_in, &[("m/table.stl", TABLE)]).unwrap();
     assert!(!told.contains("incomplete") && told.contains("this stands in for nothing"), "{told}");
-    let lamp = experiment.conditions[0].1.world().solids.last().unwrap().body.slice(0.2);
+    let lamp = experiment.conditions[0].setup.world().solids.last().unwrap().body.slice(0.2);
     assert_eq!(lamp, [Outline::Circle { center: Point::new(0.0, 2.0), radius: 0.1 }]);
 
     let broken = meshed(&stand_in.replace("radius-m: 0.1", "radius-m: -1"), &[]).unwrap_err();

@@ -3,7 +3,7 @@
 use super::key::{ENGINE_VERSION, explain, key_content, key_of, study_digest};
 use super::selection::{Selection, SelectionError};
 use crate::digest::StudyDigest;
-use crate::manifest::Experiment;
+use crate::manifest::{Experiment, ResolvedCondition};
 use crate::rng::Seeds;
 use crate::studies::{Condition, TrialSpec};
 use serde_json::Value;
@@ -57,11 +57,8 @@ impl Plan {
 
     /// How many trials of `experiment` `selection` wants, without making them.
     pub fn size(experiment: &Experiment, selection: &Selection) -> u64 {
-        let wanted = experiment
-            .conditions
-            .iter()
-            .filter(|(condition, _)| selection.wants(condition))
-            .count();
+        let wanted =
+            experiment.design().filter(|(condition, _)| selection.wants(condition)).count();
         let all = wanted as u64 * u64::from(selection.trials.unwrap_or(experiment.trials));
         match selection.shard {
             // Of all N numbers from 0, those that leave I - 1 when divided.
@@ -126,7 +123,7 @@ fn expand(experiment: &Experiment, selection: &Selection) -> Vec<TrialSpec> {
     let (shard, shards) = selection.shard.unwrap_or((1, 1));
     let mut number = 0_u32;
     let mut trials = Vec::new();
-    for ((condition, setup), meanings) in experiment.conditions.iter().zip(&experiment.meanings) {
+    for ResolvedCondition { condition, setup, meanings, .. } in &experiment.conditions {
         if !selection.wants(condition) {
             continue;
         }

@@ -73,8 +73,8 @@ pub fn study_digest(experiment: &Experiment) -> StudyDigest {
 
 /// The content of a trial's key in lines that two people can compare.
 pub fn explain(experiment: &Experiment, spec: &TrialSpec) -> String {
-    let at = experiment.conditions.iter().position(|(c, _)| *c == spec.condition);
-    let Some(meanings) = at.map(|i| &experiment.meanings[i]) else {
+    let mut conditions = experiment.conditions.iter();
+    let Some(resolved) = conditions.find(|resolved| resolved.condition == spec.condition) else {
         return format!("trial {} is not of this experiment\n", spec.key);
     };
     let content = key_content(
@@ -84,7 +84,7 @@ pub fn explain(experiment: &Experiment, spec: &TrialSpec) -> String {
         &spec.condition,
         spec.trial,
         &spec.setup,
-        meanings,
+        &resolved.meanings,
     );
     let mut text = format!(
         "trial {}/{}\nkey   {}\n\nThe key is the SHA-256 of the canonical JSON of:\n",

@@ -146,7 +146,7 @@ impl Selection {
                 });
             }
         }
-        if experiment.conditions.iter().any(|(condition, _)| self.wants(condition)) {
+        if experiment.design().any(|(condition, _)| self.wants(condition)) {
             Ok(())
         } else {
             Err(SelectionError::Nothing)

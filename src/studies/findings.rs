@@ -1,7 +1,7 @@
 //! From records to what a reader sees, as far as all studies share it: the trials table and how cells are chosen.
 
 use super::deadline::Calibration;
-use super::{Condition, Setup, TrialRecord};
+use super::{Condition, TrialRecord};
 use crate::stats::compatibility::{Agreement, Method, Silence, absence};
 use crate::table::{Column, Table, Value};
 use std::collections::{BTreeMap, BTreeSet};
@@ -12,7 +12,7 @@ pub struct Findings<'a> {
     /// Factors and their values, in the manifest's order.
     pub factors: &'a [(String, Vec<String>)],
     /// The conditions of the whole design, those that a partial run leaves out too.
-    pub design: &'a [(Condition, Setup)],
+    pub design: Vec<&'a Condition>,
     /// The records, in plan order.
     pub records: &'a [TrialRecord],
     /// The paper's own numbers, by name: factor columns, `coverage-percent`, `value`, `sd`, `n`.
@@ -31,13 +31,13 @@ impl<'a> Findings<'a> {
         published: &'a BTreeMap<String, Table>,
     ) -> Self {
         let by_condition = records.chunk_by(|a, b| a.condition == b.condition).collect();
-        Self { factors, design: &[], records, published, calibration: None, by_condition }
+        Self { factors, design: Vec::new(), records, published, calibration: None, by_condition }
     }
 
     /// The same with the conditions of the whole `design`.
     #[must_use]
-    pub fn designed(mut self, design: &'a [(Condition, Setup)]) -> Self {
-        self.design = design;
+    pub fn designed(mut self, design: impl Iterator<Item = &'a Condition>) -> Self {
+        self.design = design.collect();
         self
     }
 
@@ -125,7 +125,7 @@ impl<'a> Findings<'a> {
     /// Why a cell of these factor values has no number of ours, where `trials` of it were run.
     pub(super) fn absence(&self, fixed: &[(String, String)], trials: u64) -> Silence {
         let planned = |condition: &Condition| fixed.iter().all(|f| condition.0.contains(f));
-        absence(self.design.iter().any(|(condition, _)| planned(condition)), trials)
+        absence(self.design.iter().any(|condition| planned(condition)), trials)
     }
 
     /// The row of the published table `name` for the values of `fixed` that it has columns for.

@@ -182,7 +182,7 @@ impl Inputs for Afresh<'_> {
         seeded.seed = seed;
         let plan = Plan::of(seeded);
         let records = study.run(&plan.trials)?;
-        let planned = PlannedPassages::of(&plan.experiment.conditions, plan.experiment.trials);
+        let planned = PlannedPassages::of(plan.experiment.design(), plan.experiment.trials);
         planned
             .and_then(|planned| planned.showed(&records))
             .map(|passages| Measured::Passages(passages.to_csv().into_bytes()))

@@ -42,10 +42,10 @@ impl PlannedPassages {
     /// # Errors
     /// Where a condition is something other than isolated passages.
     pub fn of<'a>(
-        conditions: impl IntoIterator<Item = &'a (Condition, Setup)>,
+        conditions: impl IntoIterator<Item = (&'a Condition, &'a Setup)>,
         trials: u32,
     ) -> Result<Self, CalibrationError> {
-        let maneuver = |(condition, setup): &(Condition, Setup)| match setup {
+        let maneuver = |(condition, setup): (&Condition, &Setup)| match setup {
             Setup::Deadline(setup) if setup.parameters.mission.task == Task::Passage => {
                 Ok((setup.parameters.passage.motion, setup.parameters.passage.speed))
             }
