@@ -1,7 +1,7 @@
 //! The claims of a manifest, held against its factors, measures and published tables.
 
 use super::experiment::ResolvedCondition;
-use super::resolve::Resolver;
+use super::resolver::Resolver;
 use crate::claims::metric::WALL_TIME_COLUMNS;
 use crate::claims::{self, Known};
 use crate::document::{Content, Diagnostic, Tree, quoted};

@@ -3,7 +3,7 @@
 use super::choice::FactorDoc;
 use super::document::ManifestDoc;
 use super::faults::{Faults, step};
-use crate::document::known_or_near;
+use super::names::{Factor, is_kebab, kebab};
 use crate::studies::Condition;
 use crate::studies::FactorValue;
 use std::collections::{BTreeMap, BTreeSet};
@@ -19,15 +19,6 @@ const MOST_EXCLUSIONS: usize = 1000;
 
 /// Columns of tables that no factor may be named after.
 const RESERVED: [&str; 7] = ["key", "trial", "outcome", "coverage-percent", "value", "sd", "n"];
-
-/// A factor with all values it takes anywhere, in the order written.
-#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
-pub struct Factor {
-    /// Its name.
-    pub name: String,
-    /// Its values.
-    pub values: Vec<String>,
-}
 
 /// The factors of `doc` and its conditions, last factor fastest, those of `include` at the end.
 pub(super) fn cross(doc: &ManifestDoc, faults: &mut Faults<'_>) -> (Vec<Factor>, Vec<Condition>) {
@@ -70,10 +61,9 @@ pub(super) fn cross(doc: &ManifestDoc, faults: &mut Faults<'_>) -> (Vec<Factor>,
             FactorDoc::By(by) => {
                 let known: Vec<&str> = factors.iter().map(|f| f.name.as_str()).collect();
                 let Some(other) = factors.iter().find(|f| f.name == by.by) else {
-                    let fault = faults
-                        .fault(&format!("{pointer}/by"), format!("unknown factor `{}`", by.by))
-                        .label("expected a factor written before this one");
-                    faults.push(fault.help(known_or_near(&by.by, &known)));
+                    let message = format!("unknown factor `{}`", by.by);
+                    let label = "expected a factor written before this one";
+                    faults.unknown(&format!("{pointer}/by"), message, label, &by.by, &known);
                     continue;
                 };
                 faults.check_levels(by.values.keys(), other, &format!("{pointer}/values"), true);
@@ -208,19 +198,4 @@ fn include(
             faults.push(fault.label(format!("`{added}`")).warning());
         }
     }
-}
-
-/// A name like `name` that [`is_kebab`], to suggest.
-pub(super) fn kebab(name: &str) -> String {
-    let lower = name.to_ascii_lowercase();
-    let parts: Vec<&str> =
-        lower.split(|c: char| !c.is_ascii_alphanumeric()).filter(|p| !p.is_empty()).collect();
-    if parts.is_empty() { "a-name".to_owned() } else { parts.join("-") }
-}
-
-/// Whether `name` is of lower-case letters, digits and single hyphens between them.
-pub(super) fn is_kebab(name: &str) -> bool {
-    name.split('-').all(|part| {
-        !part.is_empty() && part.bytes().all(|b| b.is_ascii_lowercase() || b.is_ascii_digit())
-    })
 }

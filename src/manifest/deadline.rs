@@ -1,12 +1,16 @@
 //! What is particular to manifests of the deadline study: keys it has and has not, its calibration, its conditions.
 
 use super::experiment::{CalibrationRun, Experiment, Meanings, ResolvedCondition};
-use super::inputs::{Measured, OfCalibration, WrittenIn, normalised};
+use super::input::{Input, InputKind, WrittenIn};
+use super::library::{Inputs, Library, Measured, joined, normalised};
 use super::lint;
-use super::resolve::{Calibrated, Parts, Resolver, resolve};
+use super::parts::Parts;
+use super::resolve::resolve;
+use super::resolver::Resolver;
 use crate::studies::deadline::{self, Calibration, Parameters, PlannedPassages, Task};
 use crate::studies::{Condition, Setup, StudyKind};
 use serde_json::json;
+use std::cell::RefCell;
 use std::sync::Arc;
 
 impl Resolver<'_> {
@@ -54,14 +58,8 @@ impl Resolver<'_> {
 
     /// The planner's expectations, measured by the calibration manifest or read from the bundle that holds them.
     fn calibration(&mut self) -> Option<Arc<Calibration>> {
-        if self.calibration.is_none() {
-            let read = self.read_calibration();
-            self.calibration = Some(read.map_or(Calibrated::Told, Calibrated::Known));
-        }
-        match &self.calibration {
-            Some(Calibrated::Known(known)) => Some(Arc::clone(known)),
-            _ => None,
-        }
+        let key = self.doc.calibration.clone().unwrap_or_default();
+        self.once(|library| &mut library.calibrations, key, Self::read_calibration)
     }
 
     fn read_calibration(&mut self) -> Option<Arc<Calibration>> {
@@ -75,7 +73,7 @@ impl Resolver<'_> {
             return None;
         };
         let pointer = "/calibration";
-        if let Some(other) = self.files.calibrates() {
+        if let Some(other) = self.library.files.calibrates() {
             let message =
                 format!("`{other}` is read as a calibration and asks for the calibration `{path}`");
             let fault = self.faults.fault(pointer, message).label("one that is none of its own");
@@ -92,7 +90,7 @@ impl Resolver<'_> {
                 // What follows from the passages is sealed beside them, for people.
                 if run.passages.is_some() {
                     let csv = calibration.to_csv();
-                    self.files.made(&pairs, WrittenIn::Calibration, csv.as_bytes());
+                    self.library.files.made(&pairs, InputKind::Maneuvers, csv.as_bytes());
                 }
                 self.calibration_run = Some(Arc::new(run));
                 Some(Arc::new(calibration))
@@ -110,12 +108,16 @@ impl Resolver<'_> {
     /// The experiment that the manifest `path`, written at `pointer`, describes. It and all that it reads are inputs, too:
     /// whoever doubts the pairs can measure them again.
     fn calibration_experiment(&mut self, path: &str, pointer: &str) -> Option<Experiment> {
-        let source = self.text(path, pointer)?;
+        let source = self.text(path, pointer, InputKind::Calibration)?;
         let written_in = self.faults.written_in(pointer);
-        let files = OfCalibration::new(&mut self.files, &normalised(path), written_in);
-        let resolved = resolve(&source, &[], &files);
+        let path = normalised(path);
+        let resolved =
+            resolve(&source, &[], &OfCalibration::new(&mut self.library, &path, written_in));
         match resolved {
             Ok((experiment, warnings)) => {
+                for Input { as_written, kind, .. } in &experiment.inputs {
+                    self.library.files.say(&joined(&path, as_written), written_in, *kind);
+                }
                 self.faults.extend(warnings);
                 Some(experiment)
             }
@@ -134,7 +136,7 @@ impl Resolver<'_> {
     ) -> Result<(CalibrationRun, Calibration), String> {
         let passages = PlannedPassages::of(experiment.design(), experiment.trials)
             .map_err(|e| e.to_string())?;
-        let measured = match self.files.calibrate(&experiment, &sealed_as)? {
+        let measured = match self.library.files.calibrate(&experiment, &sealed_as)? {
             Measured::StandIn => None,
             Measured::Passages(bytes) => {
                 let text = String::from_utf8(bytes).map_err(|e| e.to_string())?;
@@ -146,5 +148,31 @@ impl Resolver<'_> {
             None => Calibration::stand_in(),
         };
         Ok((CalibrationRun { experiment, passages: measured, sealed_as }, calibration))
+    }
+}
+
+/// The files of the calibration manifest `manifest`, which are inputs of the manifest that names it, too.
+struct OfCalibration<'f, 'a> {
+    library: RefCell<&'f mut Library<'a>>,
+    manifest: String,
+    written_in: WrittenIn,
+}
+
+impl<'f, 'a> OfCalibration<'f, 'a> {
+    /// Files beside `manifest`, which is [`normalised`] and was written in `written_in`.
+    fn new(library: &'f mut Library<'a>, manifest: &str, written_in: WrittenIn) -> Self {
+        Self { library: RefCell::new(library), manifest: manifest.to_owned(), written_in }
+    }
+}
+
+impl Inputs for OfCalibration<'_, '_> {
+    fn read(&self, as_written: &str, _: WrittenIn) -> Result<Vec<u8>, String> {
+        let path = joined(&self.manifest, as_written);
+        let files = &mut self.library.borrow_mut().files;
+        files.read(&path, self.written_in, InputKind::Calibration).map(|bytes| bytes.to_vec())
+    }
+
+    fn calibrates(&self) -> Option<&str> {
+        Some(&self.manifest)
     }
 }

@@ -1,8 +1,8 @@
 //! A manifest with everything settled: names are references, defaults are written out, files are read.
 
-use super::crossing::Factor;
 use super::document::{Author, Cite};
-use super::inputs::Input;
+use super::input::Input;
+use super::names::Factor;
 use crate::claims::{Claim, Sensitivity};
 use crate::digest::MeaningDigest;
 use crate::document::{Node, Tree};

@@ -1,9 +1,7 @@
 //! Collects what is wrong with a manifest, each fault once, at the place it is written.
 
-use super::crossing::Factor;
-use super::inputs::WrittenIn;
-use crate::document::{Diagnostic, FaultList, Severity, Tree, known_or_near, quoted};
-use crate::studies::FactorValue;
+use super::input::WrittenIn;
+use crate::document::{Diagnostic, FaultList, Severity, Tree};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -38,11 +36,6 @@ impl<'a> Faults<'a> {
             return Diagnostic::placeless(message);
         }
         self.tree.fault(self.tree.key_place(pointer), message)
-    }
-
-    /// What may have been meant by `word`, for a fault that is told.
-    pub(super) fn near(&self, word: &str, known: &[&str]) -> String {
-        if self.is_full() { String::new() } else { known_or_near(word, known) }
     }
 
     /// Collects an error at a value.
@@ -92,93 +85,6 @@ impl<'a> Faults<'a> {
         match self.tree.place(pointer).source {
             0 => WrittenIn::Manifest,
             _ => WrittenIn::CommandLine,
-        }
-    }
-
-    /// Whether `value` is one of the factor `name`; a fault at `pointer` where it is not.
-    pub(super) fn check_level(
-        &mut self,
-        factors: &[Factor],
-        name: &str,
-        value: &FactorValue,
-        pointer: &str,
-    ) -> bool {
-        let Some(factor) = self.check_factor(factors, name, pointer, true) else { return false };
-        if factor.values.contains(&value.0) {
-            return true;
-        }
-        let known: Vec<&str> = factor.values.iter().map(String::as_str).collect();
-        let fault = self
-            .fault(pointer, format!("`{value}` is not a value of the factor `{name}`"))
-            .label("unknown value")
-            .help(self.near(&value.0, &known));
-        self.push(fault);
-        false
-    }
-
-    /// The factor `name`; a fault at `pointer` (or its key) where there is none.
-    pub(super) fn check_factor<'f>(
-        &mut self,
-        factors: &'f [Factor],
-        name: &str,
-        pointer: &str,
-        at_key: bool,
-    ) -> Option<&'f Factor> {
-        let found = factors.iter().find(|factor| factor.name == name);
-        if found.is_none() {
-            let known: Vec<&str> = factors.iter().map(|f| f.name.as_str()).collect();
-            let message = format!("unknown factor `{name}`");
-            let fault = if at_key {
-                self.key_fault(pointer, message)
-            } else {
-                self.fault(pointer, message)
-            };
-            let help = self.near(name, &known);
-            self.push(fault.label("not a key of `factors`").help(help));
-        }
-        found
-    }
-
-    /// Faults of a `values` mapping at `pointer` whose keys should be those of `factor`: all of them where it is to be
-    /// `complete`.
-    pub(super) fn check_levels<'k>(
-        &mut self,
-        keys: impl IntoIterator<Item = &'k String>,
-        factor: &Factor,
-        pointer: &str,
-        complete: bool,
-    ) {
-        let known: Vec<&str> = factor.values.iter().map(String::as_str).collect();
-        let levels: BTreeSet<&str> = known.iter().copied().collect();
-        let (mut written, mut meant) = (BTreeSet::new(), BTreeSet::new());
-        for key in keys {
-            written.insert(key.as_str());
-            if levels.contains(key.as_str()) {
-                continue;
-            }
-            let mut help = String::new();
-            if !self.is_full() {
-                help = known_or_near(key, &known);
-                meant.extend(crate::document::suggestion(key, known.iter().copied()));
-            }
-            let fault = self
-                .key_fault(
-                    &step(pointer, key),
-                    format!("`{}` is not a value of the factor `{}`", quoted(key), factor.name),
-                )
-                .label("unknown value")
-                .help(help);
-            self.push(fault);
-        }
-        for level in known.iter().filter(|_| complete) {
-            // A misspelled value is one fault, not two.
-            if !written.contains(level) && !meant.contains(level) {
-                let level = quoted(level);
-                let message = format!("`{level}`, a value of `{}`, has no entry here", factor.name);
-                let fault =
-                    self.key_fault(pointer, message).label(format!("expected `{level}: ...`"));
-                self.push(fault);
-            }
         }
     }
 

@@ -1,10 +1,9 @@
 //! What figures ask for, held against factors, tables and published numbers.
 
-use super::crossing::Factor;
 use super::document::ManifestDoc;
 use super::faults::Faults;
-use super::published::{check_columns, check_only, check_outcomes, check_published, foreign};
-use crate::document::known_or_near;
+use super::names::Factor;
+use super::requests::{check_columns, check_only, check_outcomes, check_published, foreign};
 use crate::studies::outcomes::OutcomeShares;
 use crate::studies::{FigureLayout, Outcome, PublishedScatter, StudyKind, TableLayout};
 use crate::table::Table;
@@ -115,11 +114,9 @@ fn check_scatter(
         .collect();
     let Some((_, layout)) = with_numbers.iter().find(|(id, _)| *id == wanted.table) else {
         let message = format!("`{}` is no table with numbers of the paper's", wanted.table);
-        let fault = faults
-            .fault(&place, message)
-            .label("expected the id of an outcome or coverage table with `published`");
+        let label = "expected the id of an outcome or coverage table with `published`";
         let known: Vec<&str> = with_numbers.iter().map(|(id, _)| *id).collect();
-        faults.push(fault.help(known_or_near(&wanted.table, &known)));
+        faults.unknown(&place, message, label, &wanted.table, &known);
         return;
     };
     let (by, rows) = match layout {

@@ -1,7 +1,7 @@
 //! What is well-formed and still wrong: starts inside walls, priors that lie elsewhere, slips of units.
 
 use super::faults::Faults;
-use super::priors::UsedPrior;
+use super::knowledge::UsedPrior;
 use super::worlds::WALLS;
 use crate::geometry::{Outline, Point, Pose};
 use crate::grid::{Cell, Occupancy, OccupancyGrid};

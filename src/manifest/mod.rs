@@ -3,6 +3,19 @@
 //! `ManifestDoc` is what someone wrote; [`resolve`] takes it to an [`Experiment`], in which names are
 //! references, defaults are written out and impossible combinations no longer exist, or to every fault it
 //! has. Pure: files come through [`Inputs`].
+//!
+//! | room | holds |
+//! |---|---|
+//! | `document` `choice` `parameters` `pinned` `schema` | what someone wrote, and its JSON Schema |
+//! | `faults` `names` | every fault once; factors, values and near misses |
+//! | `library/` | every file read once, held against its pin, and what was made of it |
+//! | `resolver` | those three and the manifest: what the rooms below work with |
+//! | `parts` `worlds` `models` | robot, world and start of a condition |
+//! | `knowledge` `priors` `previous` | its prior knowledge |
+//! | `deadline` `lint` | what is particular to a study; what is wrong or suspicious about a condition |
+//! | `numbers` `requests` `figures` `claims` `sensitivity` | what the paper prints, and what is asked of results |
+//! | `settings` `overrides` `crossing` | the manifest before its conditions, and those |
+//! | `resolve` | the way through all of them, to an `experiment` |
 
 mod choice;
 mod claims;
@@ -12,23 +25,29 @@ mod document;
 mod experiment;
 mod faults;
 mod figures;
-mod inputs;
+mod input;
+mod knowledge;
+mod library;
 mod lint;
 mod models;
+mod names;
+mod numbers;
 mod overrides;
 mod parameters;
+mod parts;
 mod pinned;
 mod previous;
 mod priors;
-mod published;
 mod readers;
+mod requests;
 mod resolve;
+mod resolver;
+mod schema;
 mod sensitivity;
 mod settings;
 mod worlds;
 
 pub use choice::{By, Choice, DependentFactor, FactorDoc, Levels, Ordered};
-pub use crossing::Factor;
 pub use document::{
     Alpha, Author, BoundingBoxOf, Cite, DerivedFrom, FactorRef, FloorPlanOf, FootprintOf,
     GenerateDoc, GeneratedWorld, ManifestDoc, MapPrior, OriginDoc, OwnWorld, PoseDoc,
@@ -38,22 +57,14 @@ pub use document::{
 pub use experiment::{
     Assumption, CalibrationRun, Experiment, Meanings, ResolvedCondition, Robustness,
 };
-pub use inputs::{Input, Inputs, Measured, WrittenIn};
+pub use input::{Input, InputKind, WrittenIn};
+pub use library::{Inputs, Measured};
+pub use names::Factor;
 pub use parameters::ParametersDoc;
 pub use pinned::{PinnedDoc, PinnedFileDoc};
 pub use previous::{explored, unexplored};
 pub use resolve::resolve;
-
-use crate::studies::StudyKind;
-
-/// The JSON Schema (2020-12) of manifests: of one study, or of any.
-pub fn schema(kind: Option<StudyKind>) -> serde_json::Value {
-    let mut schema = crate::document::schema_of::<ManifestDoc>();
-    if let Some(kind) = kind {
-        schema["properties"]["parameters"] = parameters::schema_of(kind);
-    }
-    schema
-}
+pub use schema::schema;
 
 #[cfg(test)]
 mod tests;

@@ -3,10 +3,9 @@
 
 use super::document::WorldFile;
 use super::faults::step;
-use super::inputs::{InputFiles, WrittenIn, joined, normalised};
-use super::pinned::Pins;
-use super::resolve::Resolver;
-use crate::digest::Sha256Digest;
+use super::input::{InputKind, WrittenIn};
+use super::library::{Library, Unread, joined, normalised};
+use super::resolver::Resolver;
 use crate::world::sdf::{Found, Models, Place, place_of};
 use crate::world::{Solid, document, mesh};
 use std::collections::{BTreeMap, BTreeSet};
@@ -19,8 +18,7 @@ pub(super) struct Shelf<'r, 'a> {
     world: (String, WrittenIn),
     /// What the folders of models are relative to.
     folders: WrittenIn,
-    files: &'r mut InputFiles<'a>,
-    pins: &'r Pins,
+    library: &'r mut Library<'a>,
     stand_ins: BTreeMap<&'r str, Arc<[Solid]>>,
     known: BTreeMap<String, Found>,
     /// Files that are not the ones that are pinned, in words.
@@ -44,25 +42,20 @@ impl Shelf<'_, '_> {
             Ok(found) => found,
             Err(why) => return Found::Missing(why),
         };
-        let pin = self.pins.of(&path).filter(|_| written_in == WrittenIn::Manifest);
-        let bytes = match self.files.read(&path, written_in) {
+        let bytes = match self.library.read(&path, written_in, InputKind::World) {
             Ok(bytes) => bytes,
-            Err(reason) => {
-                if let Some(pin) = pin {
-                    let published = pin.published();
-                    self.unpinned
-                        .push(format!("cannot read the mesh `{path}`, published as {published}"));
-                }
+            Err(Unread::Unpinned { bytes, digests, .. }) => {
+                self.unpinned
+                    .push(format!("the mesh `{path}` is not the file that is pinned: {digests}"));
+                bytes
+            }
+            Err(Unread::Missing { reason, published }) => {
+                self.unpinned.extend(published.map(|published| {
+                    format!("cannot read the mesh `{path}`, published as {published}")
+                }));
                 return Found::Missing(format!("`{path}`: {reason}"));
             }
         };
-        let found = Sha256Digest::of(&bytes);
-        if let Some(pin) = pin.filter(|pin| pin.digest != found) {
-            self.unpinned.push(format!(
-                "the mesh `{path}` is not the file that is pinned: expected SHA-256 {}, found {found}",
-                pin.digest
-            ));
-        }
         Found::Mesh(Arc::new(mesh::read(&path, &bytes)))
     }
 }
@@ -112,12 +105,11 @@ impl<'r, 'a> Shelf<'r, 'a> {
         doc: &'r WorldFile,
         world: (String, WrittenIn),
         folders: WrittenIn,
-        files: &'r mut InputFiles<'a>,
-        pins: &'r Pins,
+        library: &'r mut Library<'a>,
         stand_ins: BTreeMap<&'r str, Arc<[Solid]>>,
     ) -> Self {
         let (known, unpinned) = (BTreeMap::new(), Vec::new());
-        Self { doc, world, folders, files, pins, stand_ins, known, unpinned }
+        Self { doc, world, folders, library, stand_ins, known, unpinned }
     }
 
     pub(super) fn told(self) -> Told {

@@ -7,11 +7,11 @@ use super::choice::{By, Choice};
 use super::document::{ManifestDoc, PreviousMapDoc, PriorDoc, UnknownAs};
 use super::experiment::{Assumption, Meanings};
 use super::faults::step;
-use super::inputs::normalised;
+use super::knowledge::{Exploration, Knowledge, Told, UsedPrior, read_as};
+use super::library::{Known, normalised};
 use super::lint;
-use super::priors::{Exploration, Knowledge, Told, UsedPrior, read_as};
 use super::readers;
-use super::resolve::{Known, Resolver};
+use super::resolver::Resolver;
 use crate::digest::{Sha256Digest, TrialKey};
 use crate::document::{Source, reports};
 use crate::grid::OccupancyGrid;
@@ -164,13 +164,11 @@ impl<'a> Resolver<'a> {
             },
         });
         let cache = json!([spec.key, doc.unknown]).to_string();
-        let known = if let Some(known) = self.priors.get(&cache) {
-            known.clone()
-        } else {
-            let known = self.read_explored(&spec, doc.unknown, &place);
-            self.priors.insert(cache, known.clone());
-            known
-        };
+        let known = self.once(
+            |library| &mut library.grids,
+            cache,
+            |this| this.read_explored(&spec, doc.unknown, &place),
+        );
         let (grid, meaning) = known.ok_or(Told)?;
         Ok(UsedPrior { grid, meaning, described, pointer: pointer.to_owned(), own: false })
     }
@@ -183,7 +181,7 @@ impl<'a> Resolver<'a> {
     ) -> Known<OccupancyGrid> {
         let sealed_as = ["yaml", "pgm"]
             .map(|ending| normalised(&format!("previous-map-{}.{ending}", spec.key.short())));
-        let read = self.files.explore(spec, &sealed_as).and_then(|[descriptor, image]| {
+        let read = self.library.files.explore(spec, &sealed_as).and_then(|[descriptor, image]| {
             let text = String::from_utf8(descriptor.to_vec()).map_err(|e| e.to_string())?;
             let source = Source::new(sealed_as[0].clone(), text);
             readers::explored(&source, &sealed_as[1], &image)

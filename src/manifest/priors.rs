@@ -1,102 +1,29 @@
 //! Prior knowledge PK_E: a map file aligned to the world, what is derived from a world, or a graph of places in it.
 
 use super::choice::Choice;
-use super::document::{
-    DerivedFrom, MapPrior, OwnWorld, PriorDoc, PriorFrame, TopoMetricPrior, UnknownAs,
-};
+use super::document::{DerivedFrom, MapPrior, OwnWorld, PriorDoc, PriorFrame, TopoMetricPrior};
 use super::faults::step;
-use super::inputs::{joined, normalised};
+use super::input::InputKind;
+use super::knowledge::{Exploration, Knowledge, Told, UsedPrior, meaning, read_as};
+use super::library::{Known, joined, normalised};
 use super::previous;
 use super::readers::{self, Derived};
-use super::resolve::{Known, Resolver};
+use super::resolver::Resolver;
 use super::worlds::UsedWorld;
-use crate::digest::{Hasher, MeaningDigest};
 use crate::document::suggestion;
 use crate::geometry::{Point, Pose};
-use crate::grid::{GridFrame, Occupancy, OccupancyGrid};
-use crate::json;
+use crate::grid::{GridFrame, OccupancyGrid};
 use crate::robot::Robot;
 use crate::studies::Condition;
 use crate::studies::prior_map::Parameters;
-use crate::studies::prior_map::tour::TopoMetricMap;
 use crate::world::{floor_plan::Plan, map_server};
-use serde_json::{Value, json};
+use serde_json::json;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// The factor that chooses among prior maps, and the choice of none.
 const FACTOR: &str = "prior";
 pub(super) const NONE: &str = "none";
-
-/// Something could not be had; the faults say why.
-#[derive(Debug)]
-pub(super) struct Told;
-
-/// Prior knowledge as a condition uses it.
-#[derive(Clone)]
-pub(super) enum Knowledge {
-    /// A map.
-    Map(UsedPrior),
-    /// A graph, what it means and what it was read from.
-    TopoMetric(Arc<TopoMetricMap>, MeaningDigest, Value),
-}
-
-impl Knowledge {
-    /// The map, where it is one.
-    pub(super) fn map(&self) -> Option<&UsedPrior> {
-        match self {
-            Self::Map(map) => Some(map),
-            Self::TopoMetric(..) => None,
-        }
-    }
-
-    /// The graph, where it is one.
-    pub(super) fn topo_metric_map(&self) -> Option<Arc<TopoMetricMap>> {
-        match self {
-            Self::Map(_) => None,
-            Self::TopoMetric(graph, ..) => Some(Arc::clone(graph)),
-        }
-    }
-
-    /// Digest of what it means.
-    pub(super) fn meaning(&self) -> MeaningDigest {
-        match self {
-            Self::Map(map) => map.meaning,
-            Self::TopoMetric(_, meaning, _) => *meaning,
-        }
-    }
-
-    /// What it was resolved from.
-    pub(super) fn described(&self) -> Value {
-        match self {
-            Self::Map(map) => map.described.clone(),
-            Self::TopoMetric(.., described) => described.clone(),
-        }
-    }
-}
-
-/// A prior map as a condition uses it.
-#[derive(Clone)]
-pub(super) struct UsedPrior {
-    pub(super) grid: Arc<OccupancyGrid>,
-    pub(super) meaning: MeaningDigest,
-    pub(super) described: Value,
-    /// Where it is written.
-    pub(super) pointer: String,
-    /// Whether it was derived from the condition's own world, and so lies on it.
-    pub(super) own: bool,
-}
-
-/// What a robot explores with which settings: a condition's own trials, or an exploration before them.
-#[derive(Clone, Copy)]
-pub(super) struct Exploration<'a> {
-    /// The condition that decides all choices, also for what went before.
-    pub(super) condition: &'a Condition,
-    pub(super) world: &'a UsedWorld,
-    pub(super) robot: &'a Arc<Robot>,
-    pub(super) start: Pose,
-    pub(super) parameters: &'a Parameters,
-}
 
 impl<'a> Resolver<'a> {
     /// Faults of the names of prior maps.
@@ -133,12 +60,9 @@ impl<'a> Resolver<'a> {
                 // A misspelled name is one fault, not two.
                 meant.extend(suggestion(name, known.iter().copied()));
             }
-            let help = self.faults.near(name, &known);
-            let fault = self
-                .faults
-                .fault(pointer, format!("unknown prior map `{name}`"))
-                .label("neither `none` nor a key of `prior-maps`");
-            self.faults.push(fault.help(help));
+            let message = format!("unknown prior map `{name}`");
+            let label = "neither `none` nor a key of `prior-maps`";
+            self.faults.unknown(pointer, message, label, name, &known);
         }
         for name in doc.prior_maps.keys().filter(|name| !meant.contains(name.as_str())) {
             let message = format!("the prior map `{name}` is not used");
@@ -220,24 +144,22 @@ impl<'a> Resolver<'a> {
         // Without a scanner there is no height to cut at; the lint says so.
         let height = robot.lidar.as_ref().map_or(0.0, |lidar| lidar.height);
         let cache = json!([described, of.meaning, height]).to_string();
-        let known = if let Some(known) = self.priors.get(&cache) {
-            known.clone()
-        } else {
-            let plan = Plan { height, resolution, layers: None };
-            let known: Known<OccupancyGrid> = match kind.draw(&of.world, plan) {
+        let plan = Plan { height, resolution, layers: None };
+        let known = self.once(
+            |library| &mut library.grids,
+            cache,
+            |this| match kind.draw(&of.world, plan) {
                 Ok(grid) => {
                     let meaning = meaning(&grid);
                     Some((Arc::new(grid), meaning))
                 }
                 Err(problem) => {
-                    let fault = self.faults.fault(&pointer, problem).label("derived here");
-                    self.faults.push(fault);
+                    let fault = this.faults.fault(&pointer, problem).label("derived here");
+                    this.faults.push(fault);
                     None
                 }
-            };
-            self.priors.insert(cache, known.clone());
-            known
-        };
+            },
+        );
         let (grid, meaning) = known.ok_or(Told)?;
         // Footprints and boxes leave most walls out by what they are: that few have one in the world is no slip.
         let own = own || kind != Derived::FloorPlan;
@@ -246,18 +168,12 @@ impl<'a> Resolver<'a> {
 
     /// Every condition reads it anew: it is small.
     fn topo_metric_map(&mut self, doc: &TopoMetricPrior, pointer: &str) -> Option<Knowledge> {
-        let source = self.text(&doc.topo_metric_map, &format!("{pointer}/topo-metric-map"))?;
-        match readers::topo_metric_map(&source) {
-            Ok(graph) => {
-                let described = json!({ "topo-metric-map": normalised(&doc.topo_metric_map) });
-                let meaning = graph.meaning();
-                Some(Knowledge::TopoMetric(Arc::new(graph), meaning, described))
-            }
-            Err(faults) => {
-                self.faults.extend(faults);
-                None
-            }
-        }
+        let place = format!("{pointer}/topo-metric-map");
+        let source = self.text(&doc.topo_metric_map, &place, InputKind::Prior)?;
+        let graph = self.told(readers::topo_metric_map(&source))?;
+        let described = json!({ "topo-metric-map": normalised(&doc.topo_metric_map) });
+        let meaning = graph.meaning();
+        Some(Knowledge::TopoMetric(Arc::new(graph), meaning, described))
     }
 
     fn map(&mut self, doc: &MapPrior, pointer: &str, start: Pose) -> Option<UsedPrior> {
@@ -281,76 +197,23 @@ impl<'a> Resolver<'a> {
             return None;
         }
         let cache = json!([described, self.faults.written_in(&place), shift]).to_string();
-        let known = if let Some(known) = self.priors.get(&cache) {
-            known.clone()
-        } else {
-            let known = self.read_map(doc, &place, shift);
-            self.priors.insert(cache, known.clone());
-            known
-        };
-        let (grid, meaning) = known?;
+        let (grid, meaning) = self.once(
+            |library| &mut library.grids,
+            cache,
+            |this| this.read_map(doc, &place, shift),
+        )?;
         let pointer = pointer.to_owned();
         Some(UsedPrior { grid, meaning, described, pointer, own: false })
     }
 
     fn read_map(&mut self, doc: &MapPrior, place: &str, shift: Point) -> Known<OccupancyGrid> {
-        let source = self.text(&doc.map, place)?;
-        let image = match map_server::image_path(&source) {
-            Ok(image) => image,
-            Err(faults) => {
-                self.faults.extend(faults);
-                return None;
-            }
-        };
+        let source = self.text(&doc.map, place, InputKind::Prior)?;
+        let image = self.told(map_server::image_path(&source))?;
         let path = joined(&normalised(&doc.map), &image);
-        let written_in = self.faults.written_in(place);
-        let bytes = self.bytes_of(&path, written_in, &path, place)?;
-        let grid = match readers::map(&source, &path, &bytes, doc.alpha) {
-            Ok(grid) => grid,
-            Err(faults) => {
-                self.faults.extend(faults);
-                return None;
-            }
-        };
+        let bytes = self.bytes(&path, InputKind::Prior, &path, place)?;
+        let grid = self.told(readers::map(&source, &path, &bytes, doc.alpha))?;
         let origin = doc.origin.map_or(grid.frame().origin, |o| Point::new(o.x_m, o.y_m));
         let frame = GridFrame { origin: origin + shift, ..*grid.frame() };
         Some(read_as(&grid, frame, doc.unknown))
     }
-}
-
-/// `grid` at `frame`, its unknown cells as `unknown` says, and what that means.
-pub(super) fn read_as(
-    grid: &OccupancyGrid,
-    frame: GridFrame,
-    unknown: UnknownAs,
-) -> (Arc<OccupancyGrid>, MeaningDigest) {
-    let unknown = match unknown {
-        UnknownAs::Unknown => Occupancy::Unknown,
-        UnknownAs::Free => Occupancy::Free,
-        UnknownAs::Occupied => Occupancy::Occupied,
-    };
-    let cells = grid
-        .values()
-        .iter()
-        .map(|&cell| if cell == Occupancy::Unknown { unknown } else { cell })
-        .collect();
-    let grid = OccupancyGrid::from_cells(frame, cells);
-    let meaning = meaning(&grid);
-    (Arc::new(grid), meaning)
-}
-
-/// Digest of where a grid lies and what it holds.
-fn meaning(grid: &OccupancyGrid) -> MeaningDigest {
-    let mut hasher = Hasher::new();
-    hasher.update(b"reenact-grid-1\0").update(json::canonical_of(grid.frame())).update([0]);
-    let cells: Vec<u8> = grid
-        .values()
-        .iter()
-        .map(|cell| match cell {
-            Occupancy::Unknown => b'?',
-            Occupancy::Free => b'.',
-            Occupancy::Occupied => b'#',
-        })
-        .collect();
-    MeaningDigest(hasher.update(cells).digest())
 }

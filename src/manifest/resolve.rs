@@ -1,27 +1,24 @@
 //! From a manifest as written to an experiment: every name looked up, every file read, every fault collected.
 
-use super::choice::{By, Choice};
-use super::claims;
-use super::crossing::{Factor, cross, is_kebab, kebab};
-use super::document::{FactorRef, ManifestDoc, StartDoc};
-use super::experiment::{Assumption, CalibrationRun, Experiment, Meanings, ResolvedCondition};
+use super::crossing::cross;
+use super::document::ManifestDoc;
+use super::experiment::{Assumption, Experiment, Meanings, ResolvedCondition};
 use super::faults::{Faults, step};
-use super::inputs::{InputFiles, Inputs, WrittenIn, joined, normalised};
+use super::input::InputKind;
+use super::knowledge::Knowledge;
+use super::library::{Inputs, Library, normalised};
+use super::names::{is_kebab, kebab};
 use super::parameters::WrappedValue;
-use super::pinned::Pins;
-use super::priors::Knowledge;
+use super::parts::Parts;
+use super::resolver::Resolver;
+use super::schema::schema;
 use super::worlds::UsedWorld;
-use super::{lint, overrides, previous, published, schema, sensitivity, settings};
+use super::{claims, figures, lint, numbers, overrides, previous, requests, sensitivity, settings};
 use crate::digest::MeaningDigest;
-use crate::document::{Diagnostic, Node, Parsed, Source, known_or_near, parse_tree_by, read};
+use crate::document::{Diagnostic, Node, Parsed, Source, parse_tree_by, read};
 use crate::geometry::Pose;
-use crate::grid::OccupancyGrid;
-use crate::robot::{Robot, urdf};
-use crate::studies::deadline::Calibration;
 use crate::studies::{Condition, Setup, StudyKind, prior_map};
 use crate::table::Table;
-use crate::units::Radians;
-use crate::world::World;
 use serde_json::json;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -37,79 +34,33 @@ pub fn resolve(
     inputs: &dyn Inputs,
 ) -> Result<(Experiment, Vec<Diagnostic>), Vec<Diagnostic>> {
     let mut tree = read(source)?;
-    let mut files = InputFiles::new(inputs);
-    settings::underlay(&mut tree, overrides, &mut files)?;
+    let mut library = Library::new(inputs);
+    settings::underlay(&mut tree, overrides, &mut library)?;
     overrides::apply(&mut tree, overrides)?;
     // The study says which parameters there are; one that is not known is told by the schema.
     let kind = tree.root.get("study").and_then(Node::scalar_text);
     let kind = StudyKind::ALL.into_iter().find(|k| kind.as_deref() == Some(k.name()));
     let Parsed { value: doc, tree } = parse_tree_by::<ManifestDoc>(tree, &schema(kind))?;
     let mut faults = Faults::new(&tree);
+    library.pin(&doc.pinned, &mut faults);
     let mut resolver = Resolver {
         doc: &doc,
         folder: &source.name,
-        pins: Pins::read(&doc.pinned, &mut faults),
         faults,
-        files,
+        library,
         factors: Vec::new(),
-        robots: BTreeMap::new(),
-        worlds: BTreeMap::new(),
-        priors: BTreeMap::new(),
-        references: BTreeMap::new(),
         aligned: BTreeSet::new(),
-        calibration: None,
         calibration_run: None,
     };
     let mut experiment = resolver.run(overrides);
-    let Resolver { faults, files, .. } = resolver;
+    let Resolver { faults, library, .. } = resolver;
     let broken = faults.any_error();
     let faults = faults.finish();
     if broken {
         return Err(faults);
     }
-    experiment.inputs = files.finish(&doc.license_of);
+    experiment.inputs = library.files.finish(&doc.license_of);
     Ok((experiment, faults))
-}
-
-/// What the trials of every study need.
-pub(super) struct Parts {
-    pub(super) robot: Arc<Robot>,
-    pub(super) robot_meaning: MeaningDigest,
-    pub(super) robot_file: Option<String>,
-    pub(super) world: UsedWorld,
-    pub(super) start: Pose,
-}
-
-/// What the planner's expectations were read to be.
-#[derive(Clone)]
-pub(super) enum Calibrated {
-    /// These.
-    Known(Arc<Calibration>),
-    /// Nothing, which has been told.
-    Told,
-}
-
-/// A thing that was read and what it means; `None` where it could not be, which has been told.
-pub(super) type Known<T> = Option<(Arc<T>, MeaningDigest)>;
-
-pub(super) struct Resolver<'a> {
-    pub(super) doc: &'a ManifestDoc,
-    /// Name of the manifest, which relative paths are shown beside.
-    folder: &'a str,
-    pub(super) faults: Faults<'a>,
-    pub(super) pins: Pins,
-    pub(super) files: InputFiles<'a>,
-    pub(super) factors: Vec<Factor>,
-    robots: BTreeMap<(String, WrittenIn), Known<Robot>>,
-    pub(super) worlds: BTreeMap<String, Known<World>>,
-    pub(super) priors: BTreeMap<String, Known<OccupancyGrid>>,
-    references: BTreeMap<String, prior_map::SharedReference>,
-    /// Pairs of world and prior that have been held against each other.
-    aligned: BTreeSet<(MeaningDigest, MeaningDigest, String)>,
-    /// What the calibration gave, once it was asked for.
-    pub(super) calibration: Option<Calibrated>,
-    /// The experiment that gave it.
-    pub(super) calibration_run: Option<Arc<CalibrationRun>>,
 }
 
 impl Resolver<'_> {
@@ -129,15 +80,15 @@ impl Resolver<'_> {
         let assumptions = self.assumptions();
         let sensitivity = sensitivity::read(self, &assumptions);
         let published = self.published();
-        published::check_requests(doc, &factors, &published, &mut self.faults);
+        requests::check_requests(doc, &factors, &published, &mut self.faults);
+        figures::check_figures(doc, &factors, &published, &mut self.faults);
 
         let conditions: Vec<ResolvedCondition> =
             conditions.into_iter().filter_map(|condition| self.condition(condition)).collect();
         if !self.faults.any_error() {
-            published::check_recorded(doc, &conditions, &mut self.faults);
+            requests::check_recorded(doc, &conditions, &mut self.faults);
             // What names a file, a map its image, may itself be what is missing.
-            self.check_licenses();
-            self.check_pins();
+            self.check_unread();
         }
         claims::check(self, &conditions);
         Experiment {
@@ -178,16 +129,19 @@ impl Resolver<'_> {
         }
     }
 
-    fn check_licenses(&mut self) {
-        let read: Vec<String> = self.files.paths();
+    /// Faults of licences and pins of files that nobody read.
+    fn check_unread(&mut self) {
+        let doc = self.doc;
+        let read = self.library.files.paths();
         let known: Vec<&str> = read.iter().map(String::as_str).collect();
-        for path in self.doc.license_of.keys().filter(|path| !known.contains(&path.as_str())) {
-            let fault = self
-                .faults
-                .key_fault(&step("/license-of", path), format!("no input is read from `{path}`"))
-                .label("expected the path of an input, as written")
-                .help(self.faults.near(path, &known));
-            self.faults.push(fault);
+        let licensed = doc.license_of.keys().filter(|path| !known.contains(&path.as_str()));
+        let licensed = licensed.map(|path| (path.clone(), step("/license-of", path), "as written"));
+        let pinned = self.library.unused_pins().into_iter();
+        let pinned = pinned.map(|(path, pointer)| (path, pointer, "from the manifest"));
+        for (path, pointer, how) in licensed.chain(pinned) {
+            let message = format!("no input is read from `{path}`");
+            let label = format!("expected the path of an input, {how}");
+            self.faults.unknown_key(&pointer, message, &label, &path, &known);
         }
     }
 
@@ -236,9 +190,9 @@ impl Resolver<'_> {
                 let pointer = format!("{pointer}/for-all/{i}");
                 self.faults.check_factor(&self.factors, factor, &pointer, false);
             }
-            if let Some(source) = self.text(file.path(), &pointer)
+            if let Some(source) = self.text(file.path(), &pointer, InputKind::PublishedNumbers)
                 && let Some(table) =
-                    published::read(&source, self.doc.study, &self.factors, &mut self.faults)
+                    numbers::read(&source, self.doc.study, &self.factors, &mut self.faults)
             {
                 tables.insert(name.clone(), table);
             }
@@ -248,16 +202,7 @@ impl Resolver<'_> {
 
     fn condition(&mut self, condition: Condition) -> Option<ResolvedCondition> {
         let doc = self.doc;
-        let robot = self.choose(&doc.robot, "/robot", &condition);
-        let robot_file = robot.as_ref().map(|(path, _)| (*path).clone());
-        let robot = robot.and_then(|(path, pointer)| self.robot(path, &pointer));
-        let world = self
-            .choose(&doc.world, "/world", &condition)
-            .and_then(|(world, pointer)| self.world(world, &pointer, &condition));
-        let start = self.start(world.as_ref(), &condition);
-        let parts = robot.zip(world).zip(start).map(|(((robot, robot_meaning), world), start)| {
-            Parts { robot, robot_meaning, robot_file, world, start }
-        });
+        let parts = self.parts(&condition);
         match doc.study {
             StudyKind::PriorMap => self.prior_map(condition, parts),
             StudyKind::Deadline => self.deadline(condition, parts),
@@ -321,134 +266,6 @@ impl Resolver<'_> {
             ..parameters.clone()
         };
         let key = json!([robot, world.meaning, start, alike]).to_string();
-        self.references.entry(key).or_default().clone()
-    }
-
-    pub(super) fn parameters<P: serde::de::DeserializeOwned>(
-        &mut self,
-        condition: &Condition,
-    ) -> Option<P> {
-        let value_of = |factor: &str| condition.value(factor);
-        match self.doc.parameters.for_condition(self.doc.study, &value_of) {
-            Ok(parameters) => Some(parameters),
-            Err(problem) => {
-                self.faults.at_key("/parameters", problem, &format!("for `{condition}`"));
-                None
-            }
-        }
-    }
-
-    /// What `choice` is for `condition`, and where that is written.
-    pub(super) fn choose<'c, T>(
-        &mut self,
-        choice: &'c Choice<T>,
-        pointer: &str,
-        condition: &Condition,
-    ) -> Option<(&'c T, String)> {
-        match choice {
-            Choice::Plain(value) => Some((value, pointer.to_owned())),
-            Choice::By(By { by, values }) => {
-                let place = format!("{pointer}/by");
-                let factor = self.faults.check_factor(&self.factors, by, &place, false)?;
-                let place = format!("{pointer}/values");
-                self.faults.check_levels(values.keys(), factor, &place, true);
-                let level = condition.value(by)?;
-                let pointer = step(&format!("{pointer}/values"), level);
-                self.choose(values.get(level)?, &pointer, condition)
-            }
-        }
-    }
-
-    /// The bytes of the file `path`, written at `pointer`, and its text's name.
-    pub(super) fn bytes(&mut self, path: &str, pointer: &str) -> Option<Arc<[u8]>> {
-        let written_in = self.faults.written_in(pointer);
-        self.bytes_of(&normalised(path), written_in, path, pointer)
-    }
-
-    /// The text of the file `path`, written at `pointer`.
-    pub(super) fn text(&mut self, path: &str, pointer: &str) -> Option<Source> {
-        let bytes = self.bytes(path, pointer)?;
-        let Ok(text) = std::str::from_utf8(&bytes) else {
-            let fault = self.faults.fault(pointer, format!("`{path}` is not UTF-8 text"));
-            self.faults.push(fault.label("expected a text file"));
-            return None;
-        };
-        let name = match self.faults.written_in(pointer) {
-            WrittenIn::Manifest => joined(self.folder, path),
-            WrittenIn::CommandLine | WrittenIn::Calibration | WrittenIn::PreviousMap => {
-                normalised(path)
-            }
-        };
-        Some(Source::new(name, text))
-    }
-
-    fn robot(&mut self, path: &str, pointer: &str) -> Known<Robot> {
-        let key = (normalised(path), self.faults.written_in(pointer));
-        if let Some(known) = self.robots.get(&key) {
-            return known.clone();
-        }
-        let known = self.text(path, pointer).and_then(|source| match urdf::read(&source) {
-            Ok((robot, warnings)) => {
-                self.faults.extend(warnings);
-                let meaning = robot.meaning();
-                Some((Arc::new(robot), meaning))
-            }
-            Err(faults) => {
-                self.faults.extend(faults);
-                None
-            }
-        });
-        self.robots.insert(key, known.clone());
-        known
-    }
-
-    fn start(&mut self, world: Option<&UsedWorld>, condition: &Condition) -> Option<Pose> {
-        let (start, pointer) = self.choose(&self.doc.start, "/start", condition)?;
-        self.start_written(start, &pointer, world, condition)
-    }
-
-    /// The start that `start`, written at `pointer`, is in `world`.
-    pub(super) fn start_written(
-        &mut self,
-        start: &StartDoc,
-        pointer: &str,
-        world: Option<&UsedWorld>,
-        condition: &Condition,
-    ) -> Option<Pose> {
-        match start {
-            StartDoc::Pose(pose) => {
-                Some(Pose::new(pose.x_m, pose.y_m, Radians::from_degrees(pose.heading_deg).get()))
-            }
-            StartDoc::Name(name) => self.named_start(name, pointer, world?),
-            StartDoc::Factor(FactorRef { factor }) => {
-                let place = format!("{pointer}/factor");
-                self.faults.check_factor(&self.factors, factor, &place, false)?;
-                self.named_start(condition.value(factor)?, &place, world?)
-            }
-        }
-    }
-
-    fn named_start(&mut self, name: &str, pointer: &str, world: &UsedWorld) -> Option<Pose> {
-        let starts = &world.world.starts;
-        if let Some(pose) = starts.get(name) {
-            return Some(*pose);
-        }
-        let known: Vec<&str> = starts.keys().map(String::as_str).collect();
-        let fault = self
-            .faults
-            .fault(pointer, format!("unknown start `{name}`"))
-            .label("not a start of the world");
-        self.faults.push(fault.help(known_or_near(name, &known)));
-        None
-    }
-}
-
-/// What paths are relative to, in words.
-pub(super) fn relative_to(written_in: WrittenIn) -> &'static str {
-    match written_in {
-        WrittenIn::Manifest => "paths are relative to the file they are written in",
-        WrittenIn::CommandLine | WrittenIn::Calibration | WrittenIn::PreviousMap => {
-            "paths in `--set` are relative to the current directory"
-        }
+        self.library.references.entry(key).or_default().clone()
     }
 }

@@ -1,8 +1,9 @@
 //! `sensitivity: FILE`: what `reenact vary` found at the other values of the assumptions, read and held against them.
 
 use super::experiment::{Assumption, Robustness};
-use super::inputs::normalised;
-use super::resolve::Resolver;
+use super::input::InputKind;
+use super::library::normalised;
+use super::resolver::Resolver;
 use crate::claims::Sensitivity;
 use crate::claims::sensitivity::in_words;
 
@@ -11,7 +12,7 @@ use crate::claims::sensitivity::in_words;
 pub(super) fn read(resolver: &mut Resolver<'_>, assumptions: &[Assumption]) -> Option<Robustness> {
     const PLACE: &str = "/sensitivity";
     let path = resolver.doc.sensitivity.as_deref()?;
-    let source = resolver.text(path, PLACE)?;
+    let source = resolver.text(path, PLACE, InputKind::Robustness)?;
     let sensitivity = match Sensitivity::from_csv(&source.text) {
         Ok(sensitivity) => sensitivity,
         Err(problem) => {

@@ -1,9 +1,9 @@
 //! `settings: FILE`: parameters that several manifests share, written once with their reasons.
 
-use super::inputs::{InputFiles, WrittenIn, joined, normalised};
+use super::input::{InputKind, WrittenIn};
+use super::library::{Library, joined, normalised, relative_to};
 use super::overrides;
 use super::parameters::{ParametersDoc, is_wrapped, schema_of};
-use super::resolve::relative_to;
 use crate::document::{Diagnostic, Node, Source, Tree, parse_tree_by, read};
 use crate::studies::StudyKind;
 use schemars::JsonSchema;
@@ -33,7 +33,7 @@ struct SettingsDoc {
 pub(super) fn underlay(
     tree: &mut Tree,
     overridden: &[String],
-    files: &mut InputFiles<'_>,
+    library: &mut Library<'_>,
 ) -> Result<(), Vec<Diagnostic>> {
     // `--set settings=FILE` has its say first; its other values go over the file's later.
     let mut as_set = tree.clone();
@@ -44,7 +44,8 @@ pub(super) fn underlay(
     let place = as_set.place("/settings");
     let written_in = if place.source == 0 { WrittenIn::Manifest } else { WrittenIn::CommandLine };
     let fault = |message: String| as_set.fault(place, message);
-    let bytes = files.read(&normalised(&path), written_in).map_err(|reason| {
+    let found = library.files.read(&normalised(&path), written_in, InputKind::Settings);
+    let bytes = found.map_err(|reason| {
         let fault = fault(format!("cannot read `{path}`"));
         vec![fault.label(reason).help(relative_to(written_in))]
     })?;

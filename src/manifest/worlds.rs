@@ -1,12 +1,13 @@
 //! The worlds of a manifest's conditions: which file, which layers; or which building of a family.
 
 use super::document::{FactorRef, GenerateDoc, SeedDoc, WorldDoc, WorldFile};
-use super::inputs::normalised;
+use super::input::InputKind;
+use super::library::{Known, normalised};
 use super::models::Shelf;
 use super::readers;
-use super::resolve::{Known, Resolver};
+use super::resolver::Resolver;
 use crate::digest::MeaningDigest;
-use crate::document::{Source, known_or_near};
+use crate::document::Source;
 use crate::studies::Condition;
 use crate::world::sdf::NoModels;
 use crate::world::{World, generate};
@@ -66,25 +67,22 @@ impl Resolver<'_> {
         };
         let described = json!({ "generate": { "family": doc.family, "seed": seed } });
         let key = described.to_string();
-        let known = if let Some(known) = self.worlds.get(&key) {
-            known.clone()
-        } else {
-            let known: Known<World> = match generate::generate(doc.family, seed) {
+        let (world, meaning) = self.once(
+            |library| &mut library.worlds,
+            key,
+            |this| match generate::generate(doc.family, seed) {
                 Ok(world) => {
                     let meaning = world.meaning();
                     Some((Arc::new(world), meaning))
                 }
                 Err(problem) => {
                     let help = "choose another seed";
-                    let fault = self.faults.fault(pointer, problem.to_string()).label("made here");
-                    self.faults.push(fault.help(help));
+                    let fault = this.faults.fault(pointer, problem.to_string()).label("made here");
+                    this.faults.push(fault.help(help));
                     None
                 }
-            };
-            self.worlds.insert(key, known.clone());
-            known
-        };
-        let (world, meaning) = known?;
+            },
+        )?;
         Some(UsedWorld { world, meaning, described })
     }
 
@@ -111,14 +109,11 @@ impl Resolver<'_> {
         }
         let written_in = self.faults.written_in(&file_pointer);
         let key = json!([described, written_in]).to_string();
-        let known = if let Some(known) = self.worlds.get(&key) {
-            known.clone()
-        } else {
-            let known = self.read_world(doc, pointer, (file, &file_pointer), layers.as_ref());
-            self.worlds.insert(key, known.clone());
-            known
-        };
-        let (world, meaning) = known?;
+        let (world, meaning) = self.once(
+            |library| &mut library.worlds,
+            key,
+            |this| this.read_world(doc, pointer, (file, &file_pointer), layers.as_ref()),
+        )?;
         Some(UsedWorld { world, meaning, described })
     }
 
@@ -129,21 +124,15 @@ impl Resolver<'_> {
         (file, pointer): (&str, &str),
         layers: Option<&(&Vec<String>, String)>,
     ) -> Known<World> {
-        let source = self.text(file, pointer)?;
+        let source = self.text(file, pointer, InputKind::World)?;
         let stand_ins = self.stand_ins(doc, place);
         let world = (normalised(file), self.faults.written_in(pointer));
         let folders = self.faults.written_in(&format!("{place}/models"));
-        let mut shelf = Shelf::new(doc, world, folders, &mut self.files, &self.pins, stand_ins);
+        let mut shelf = Shelf::new(doc, world, folders, &mut self.library, stand_ins);
         let read = readers::world(&source, None, &mut shelf);
         let told = shelf.told();
         self.told_by(told, doc, place);
-        let mut world = match read {
-            Ok(world) => world,
-            Err(faults) => {
-                self.faults.extend(faults);
-                return None;
-            }
-        };
+        let mut world = self.told(read)?;
         if world.missing() > 0 {
             let message = format!("`{file}` is incomplete (things missing: {})", world.missing());
             let fault = self.faults.fault(pointer, message);
@@ -180,12 +169,9 @@ impl Resolver<'_> {
         }
         for (i, layer) in layers.iter().enumerate().filter(|(_, layer)| unknown(layer)) {
             let known: Vec<&str> = known.iter().map(String::as_str).collect();
-            let fault = self
-                .faults
-                .fault(&format!("{pointer}/{i}"), format!("unknown layer `{layer}`"))
-                .label(format!("not a layer of `{}`", source.name))
-                .help(known_or_near(layer, &known));
-            self.faults.push(fault);
+            let message = format!("unknown layer `{layer}`");
+            let label = format!("not a layer of `{}`", source.name);
+            self.faults.unknown(&format!("{pointer}/{i}"), message, &label, layer, &known);
         }
         world.solids.retain(|solid| solid.layer == WALLS || layers.contains(&solid.layer));
         world

@@ -1,156 +1,20 @@
-//! The paper's own numbers, and the tables and figures that ask for them.
+//! What tables ask for, held against factors, measures and published numbers; and what figures ask for like them.
 
 use super::claims::measures;
-use super::crossing::{Factor, is_kebab, kebab};
 use super::document::ManifestDoc;
 use super::experiment::ResolvedCondition;
 use super::faults::{Faults, step};
-use super::figures::check_figures;
-use crate::document::{Diagnostic, Source, known_or_near, listed, suggestion};
+use super::names::{Factor, is_kebab, kebab};
+use super::numbers::MEASURE;
 use crate::studies::outcomes::OutcomeTable;
 use crate::studies::prior_map::{
     AgreementTable, CoverageTable, EffectsTable, MILESTONES, MeasuresTable, coverage_at_distance,
 };
 use crate::studies::{FactorValue, Setup, StudyKind, TableLayout, coverage_tables};
-use crate::table::{Table, Value};
+use crate::table::Table;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Columns of a tidy CSV of published numbers besides the factors', and whether each must be there: tables of the prior-map
-/// study are by coverage, or by measure.
-fn columns(kind: StudyKind, by_measure: bool) -> [(&'static str, bool); 5] {
-    let by_coverage = kind == StudyKind::PriorMap && !by_measure;
-    [
-        ("coverage-percent", by_coverage),
-        ("value", true),
-        ("sd", false),
-        ("n", false),
-        (MEASURE, false),
-    ]
-}
-
-/// The column that names what is measured, in numbers that are not by coverage.
-const MEASURE: &str = "measure";
-
-/// No paper prints more (bytes); a table takes many times its text.
-const MOST_BYTES: usize = 1 << 19;
-
-/// Of how many values that no factor has it is asked whether one was meant.
-const MOST_UNKNOWN: usize = 1000;
-
-/// Reads a tidy CSV: columns named after factors, then `coverage-percent`, `value`, and where known `sd` and
-/// `n`; one row per published number. Where a column `measure` says what was measured, there need be no coverage.
-pub(super) fn read(
-    source: &Source,
-    kind: StudyKind,
-    factors: &[Factor],
-    faults: &mut Faults<'_>,
-) -> Option<Table> {
-    if source.text.len() > MOST_BYTES {
-        faults.push(Diagnostic::placeless(format!(
-            "`{}` is too large: expected at most {MOST_BYTES} bytes, found {}",
-            source.name,
-            source.text.len()
-        )));
-        return None;
-    }
-    let table = Table::from_csv(&source.text);
-    let by_measure = table.as_ref().is_ok_and(|table| table.column(MEASURE).is_some());
-    let numbers = columns(kind, by_measure);
-    let mut fine = true;
-    let known: Vec<&str> = factors
-        .iter()
-        .map(|f| f.name.as_str())
-        .chain(numbers.iter().map(|(name, _)| *name))
-        .collect();
-    let mut header = source.text.lines().next().unwrap_or_default().split(',');
-    if !header.any(|column| known.contains(&column.trim_matches(['"', '\u{feff}']))) {
-        // Nothing of it is quoted: it may be any file, named by a slip.
-        let message = format!(
-            "`{}`: expected a CSV of published numbers, found text whose first line names none of its columns",
-            source.name
-        );
-        faults.push(Diagnostic::placeless(message).help(format!("known: {}", listed(&known))));
-        return None;
-    }
-    let table = match table {
-        Ok(table) => table,
-        Err(error) => {
-            faults.push(Diagnostic::error(source, line(source, error.line), error.problem));
-            return None;
-        }
-    };
-    for column in table.columns.iter().filter(|c| !known.contains(&c.as_str())) {
-        let fault =
-            Diagnostic::error(source, line(source, 1), format!("unknown column `{column}`"))
-                .label("expected factors of the manifest and the columns of numbers");
-        faults.push(fault.help(known_or_near(column, &known)));
-        fine = false;
-    }
-    for (name, _) in numbers.iter().filter(|(name, needed)| *needed && table.column(name).is_none())
-    {
-        let fault = Diagnostic::error(source, line(source, 1), format!("missing column `{name}`"));
-        faults.push(fault.label(format!("expected a column `{name}`")));
-        fine = false;
-    }
-    let levels: BTreeMap<&str, BTreeSet<&str>> = factors
-        .iter()
-        .map(|factor| (factor.name.as_str(), factor.values.iter().map(String::as_str).collect()))
-        .collect();
-    let mut unknown = BTreeSet::new();
-    // Exact while no field spans lines; a place one line off is still a help then.
-    let mut rest = 0;
-    let lines = source.text.split_inclusive('\n').map(|line| {
-        rest += line.len();
-        rest - line.len()..rest - line.len() + line.trim_end_matches(['\n', '\r']).len()
-    });
-    let lines = lines.skip(1).chain(std::iter::repeat(source.text.len()..source.text.len()));
-    for (row, place) in table.rows.iter().zip(lines) {
-        for (column, value) in table.columns.iter().zip(row) {
-            if let Some(factor) = factors.iter().find(|f| f.name == *column) {
-                // A paper may have more levels than are run; one that is nearly a level is a slip.
-                let level = value.to_string();
-                let names = &levels[factor.name.as_str()];
-                if !names.contains(level.as_str())
-                    && unknown.len() < MOST_UNKNOWN
-                    && unknown.insert((column, level.clone()))
-                    && suggestion(&level, names.iter().copied()).is_some()
-                {
-                    let names: Vec<&str> = factor.values.iter().map(String::as_str).collect();
-                    let message = format!("`{level}` is not a value of the factor `{column}`");
-                    let fault = Diagnostic::error(source, place.clone(), message)
-                        .label("this row will stand beside nothing")
-                        .help(known_or_near(&level, &names));
-                    faults.push(fault.warning());
-                }
-            } else if numbers.iter().any(|(name, needed)| name == column && *needed)
-                && value.as_f64().is_none()
-            {
-                let found = match value {
-                    Value::Missing => "nothing".to_owned(),
-                    other => format!("`{other}`"),
-                };
-                let message = format!("`{column}` must be a number, found {found}");
-                faults.push(Diagnostic::error(source, place.clone(), message));
-                fine = false;
-            }
-        }
-    }
-    fine.then_some(table)
-}
-
-/// Bytes of the one-based line `number`.
-fn line(source: &Source, number: usize) -> std::ops::Range<usize> {
-    let start = source
-        .text
-        .split_inclusive('\n')
-        .take(number.saturating_sub(1))
-        .map(str::len)
-        .sum::<usize>();
-    let length = source.text[start..].lines().next().map_or(0, str::len);
-    start..start + length
-}
-
-/// Faults of the requests for tables and figures.
+/// Faults of the requests for tables, and of the ids of figures.
 pub(super) fn check_requests(
     doc: &ManifestDoc,
     factors: &[Factor],
@@ -204,7 +68,6 @@ pub(super) fn check_requests(
             }
         }
     }
-    check_figures(doc, factors, published, faults);
 }
 
 /// A layout that only the study `kind` has.
@@ -264,10 +127,8 @@ fn check_measure(measure: &str, place: &str, known: &[String], faults: &mut Faul
         return;
     }
     let known: Vec<&str> = known.iter().map(String::as_str).collect();
-    let fault = faults
-        .fault(place, format!("trials have no measure `{measure}`"))
-        .label("asked for by this table");
-    faults.push(fault.help(known_or_near(measure, &known)));
+    let message = format!("trials have no measure `{measure}`");
+    faults.unknown(place, message, "asked for by this table", measure, &known);
 }
 
 fn check_measures(
@@ -412,10 +273,8 @@ fn check_agreement(
         let place = format!("{pointer}/tables/{i}");
         let Some((_, table)) = coverage.iter().find(|(known, _)| known == id) else {
             let known: Vec<&str> = coverage.iter().map(|(id, _)| *id).collect();
-            let fault = faults
-                .fault(&place, format!("`{id}` is no coverage table of this manifest"))
-                .label("expected the id of a `coverage-table`");
-            faults.push(fault.help(known_or_near(id, &known)));
+            let message = format!("`{id}` is no coverage table of this manifest");
+            faults.unknown(&place, message, "expected the id of a `coverage-table`", id, &known);
             continue;
         };
         for (lacks, key) in
@@ -482,10 +341,8 @@ fn check_known<'p>(
     let name = name?;
     if !doc.published.contains_key(name) {
         let known: Vec<&str> = doc.published.keys().map(String::as_str).collect();
-        let fault = faults
-            .fault(place, format!("unknown published numbers `{name}`"))
-            .label("not a key of `published`");
-        faults.push(fault.help(known_or_near(name, &known)));
+        let message = format!("unknown published numbers `{name}`");
+        faults.unknown(place, message, "not a key of `published`", name, &known);
     }
     published.get(name)
 }
