@@ -3,10 +3,11 @@
 //!
 //! `cargo bench --bench cmdp_solve`
 
-use reenact::cmdp::build::{
+use reenact::cmdp::{Cmdp, CmdpBuilder, solve};
+use reenact::studies::deadline::build_cmdp::{
     Expectation, Maneuvers, Navigation, OrientedEdge, Place, Reading, Side, Task, Topology,
+    build_cmdp,
 };
-use reenact::cmdp::{Cmdp, CmdpBuilder, build_cmdp, solve};
 
 fn main() {
     divan::main();

@@ -12,7 +12,7 @@ use reenact::studies::prior_map::choice::{Chooser, Sight};
 use reenact::studies::prior_map::explorer::{CONTROL_PERIOD, Explorer};
 use reenact::studies::prior_map::information_gain::AlignedPrior;
 use reenact::studies::prior_map::utility::ranked;
-use reenact::studies::{Setup, TrialSpec};
+use reenact::studies::{TrialSpec, prior_map};
 use reenact::units::{Seconds, Tick};
 use std::hint::black_box;
 use std::time::Instant;
@@ -41,7 +41,9 @@ fn main() {
 /// Milliseconds and frontiers of every selection of a trial.
 #[expect(clippy::disallowed_methods, reason = "the time is what is measured")]
 fn selections(spec: &TrialSpec) -> (Vec<f64>, Vec<f64>) {
-    let Setup::PriorMap(setup) = &spec.setup else { panic!("a study of another kind") };
+    let Some(setup) = spec.setup.of::<prior_map::Setup>() else {
+        panic!("a study of another kind")
+    };
     let own = setup.robot.lidar.clone().expect("it has a scanner");
     let sensing = &setup.parameters.sensing;
     let mut lidar = own;

@@ -60,7 +60,9 @@ impl Tour {
     fn of_an_explorer() -> Self {
         let plan = shipped::plan("prior-tables-1-6.yaml");
         let spec = plan.find("office_false_none/0").expect("the manifest has this trial");
-        let studies::Setup::PriorMap(setup) = &spec.setup else { panic!("of the prior-map study") };
+        let Some(setup) = spec.setup.of::<prior_map::Setup>() else {
+            panic!("of the prior-map study")
+        };
         let (_, recording) = studies::reenact(spec);
         let frames = recording.frames.iter().take_while(|frame| frame.distance_m <= TOUR);
         Self::along(setup, frames.map(|frame| frame.pose).collect())

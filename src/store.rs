@@ -126,7 +126,7 @@ impl TrialStore for DirectoryStore {
 
     fn put(&self, record: &TrialRecord) -> Result<(), StoreError> {
         let key = record.key;
-        if record.outcome == Outcome::Panicked {
+        if record.outcome == Outcome::PANICKED {
             return Err(StoreError::Panicked { key, cause: record.cause.clone() });
         }
         let refused = |e: io::Error| self.refusal("write to", &e);
@@ -407,7 +407,7 @@ mod tests {
         );
         assert_eq!(store.put(&fresh).unwrap_err().to_string(), expected);
         assert_eq!(store.get(&stored.key).unwrap(), Some(stored.clone()), "the first stays");
-        fresh.outcome = Outcome::Panicked;
+        fresh.outcome = Outcome::PANICKED;
         fresh.cause = "index out of bounds".into();
         assert_eq!(
             store.put(&fresh).unwrap_err().to_string(),

@@ -80,7 +80,7 @@ const IMPURE: &[&[&str]] = &[
 ];
 const PRINTING: &[&str] = &["print", "println", "eprint", "eprintln", "dbg"];
 
-/// The parts of a mind. A study's mission holds both ends, and its `mod.rs` is the door to it.
+/// The parts of a mind. A study's mission holds both ends; its `mod.rs` and `study.rs` are the door to it.
 const MIND: &[&str] = &["mapping/", "navigation/", "cmdp/"];
 const TRUTH: &[&str] = &["sim", "world"];
 
@@ -124,7 +124,7 @@ fn is_mind(file: &str) -> bool {
     let in_study = file.strip_prefix("studies/").and_then(|rest| rest.split_once('/'));
     MIND.iter().any(|part| file.starts_with(part))
         || in_study.is_some_and(|(_, part)| {
-            part != "mod.rs" && part != "mission.rs" && !part.starts_with("mission/")
+            !["mod.rs", "study.rs", "mission.rs"].contains(&part) && !part.starts_with("mission/")
         })
 }
 
@@ -215,7 +215,7 @@ fn mind_and_studies(
     mut fault: impl FnMut(String, &str),
 ) {
     if is_mind(file) {
-        let mission = matches!(imported, ["studies", _, "mission", ..]);
+        let mission = matches!(imported, ["studies", _, "mission" | "study", ..]);
         if TRUTH.contains(&imported[0]) || mission {
             fault(
                 format!("a mind imports `{}`, which knows the truth", imported.join("::")),
@@ -426,11 +426,15 @@ fn a_mind_that_sees_the_truth_is_found() {
         [expected(file, "studies::prior_map::mission::Reference")]
     );
     assert_eq!(
+        told(file, "use super::study::PriorMap;"),
+        [expected(file, "studies::prior_map::study::PriorMap")]
+    );
+    assert_eq!(
         told("navigation/local.rs", "use crate::world::World;"),
         [expected("navigation/local.rs", "world::World")]
     );
     for both_ends in
-        ["studies/prior_map/mission/mod.rs", "studies/prior_map/mod.rs", "studies/mod.rs"]
+        ["studies/prior_map/mission/mod.rs", "studies/prior_map/study.rs", "studies/mod.rs"]
     {
         assert_eq!(told(both_ends, "use crate::{sim::Body, world::World};"), Vec::<String>::new());
     }

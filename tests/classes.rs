@@ -13,7 +13,7 @@ use reenact::bundle::{
 };
 use reenact::document::Source;
 use reenact::manifest::{self, Experiment, Inputs, Measured, WrittenIn};
-use reenact::studies::{StudyKind, TrialSpec};
+use reenact::studies::TrialSpec;
 use reenact::verify::{
     Finding, Level, Options, Reenactment, Report, Rows, Severity, climb, plan_of,
 };
@@ -68,7 +68,7 @@ impl Shipped {
         for (factor, value) in chosen {
             command.arg("--only").arg(format!("{factor}={value}"));
         }
-        if experiment.kind == StudyKind::PriorMap {
+        if experiment.kind.has_series() {
             command.args(["--set", "parameters.mission.time-limit-s=20"]);
         }
         let output = command.output().unwrap();

@@ -5,7 +5,7 @@ use reenact::bundle::assemble;
 use reenact::document::{Diagnostic, Source};
 use reenact::manifest::{self, Experiment, Inputs, Measured, WrittenIn};
 use reenact::plan::{ENGINE_VERSION, Plan, Selection};
-use reenact::studies::{Outcome, StudyKind, TrialRecord, TrialSpec};
+use reenact::studies::{StudyKind, TrialRecord, TrialSpec};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -524,14 +524,10 @@ proptest! {
 /// A record that has every measure a trial of the study can have.
 fn with_every_measure(kind: StudyKind, spec: &TrialSpec) -> TrialRecord {
     let asked_for = ["coverage-percent-at-239-m".to_owned()];
-    let further: &[String] = if kind == StudyKind::PriorMap { &asked_for } else { &[] };
-    let outcome = match kind {
-        StudyKind::PriorMap => Outcome::Explored,
-        StudyKind::Deadline => Outcome::Reached,
-    };
-    let names = kind.measures().into_iter().chain(further.iter().cloned());
+    let further = asked_for.iter().filter(|name| kind.is_further_measure(name));
+    let names = kind.measures().into_iter().chain(further.cloned());
     TrialRecord {
-        outcome,
+        outcome: kind.outcomes()[0],
         measures: names.map(|name| (name, Some(1.0))).collect(),
         ..TrialRecord::panicked(spec, String::new())
     }

@@ -50,7 +50,7 @@ fn the_original_basic_world_is_explored_with_and_without_its_own_floor_plan() {
     let selection = Selection { trials: Some(1), ..Selection::default() };
     for spec in &Plan::select(experiment, &selection).unwrap().trials {
         let record = studies::execute(spec);
-        assert_eq!(record.outcome, Outcome::Explored, "{}: {}", spec.condition, record.cause);
+        assert_eq!(record.outcome, Outcome::EXPLORED, "{}: {}", spec.condition, record.cause);
         let coverage = record.measures["coverage-percent"].unwrap();
         assert!(coverage > 99.0, "{}: {coverage} %", spec.condition);
         assert_eq!(record.measures["contacts"], Some(0.0), "{}", spec.condition);

@@ -6,9 +6,7 @@ use super::{figures, format, wall_time};
 use crate::claims::{self, Observations, Verdict};
 use crate::manifest::Input;
 use crate::plan::{ENGINE_VERSION, Plan, Selection};
-use crate::studies::{
-    Dictionary, Findings, Outcome, StudyKind, TableLayout, TrialRecord, coverage_tables,
-};
+use crate::studies::{Dictionary, Findings, Outcome, TableLayout, TrialRecord, coverage_tables};
 use crate::table::{DescribedTable, Table};
 use serde_json::{Value, json};
 
@@ -122,10 +120,7 @@ pub fn findings<'a>(
     factors: &'a [(String, Vec<String>)],
 ) -> Findings<'a> {
     let experiment = &plan.experiment;
-    let calibration = experiment.design().find_map(|(_, setup)| setup.calibration());
-    Findings::new(factors, records, &experiment.published)
-        .designed(experiment.design().map(|(condition, _)| condition))
-        .calibrated(calibration)
+    Findings::new(factors, records, &experiment.published).designed(experiment.design())
 }
 
 fn sealed_conditions(plan: &Plan, records: &[TrialRecord]) -> Vec<SealedCondition> {
@@ -138,7 +133,7 @@ fn sealed_conditions(plan: &Plan, records: &[TrialRecord]) -> Vec<SealedConditio
         }
         if let Some(last) = conditions.last_mut() {
             last.records.push(record.to_line());
-            last.failed += usize::from(record.outcome == Outcome::Panicked);
+            last.failed += usize::from(record.outcome == Outcome::PANICKED);
         }
     }
     conditions
@@ -179,19 +174,16 @@ fn results(plan: &Plan, records: &[TrialRecord]) -> Result<Results, String> {
         });
     }
     let mut files = vec![("trials.csv".to_owned(), trials.to_csv().into_bytes())];
-    match experiment.kind {
-        StudyKind::PriorMap => {
-            let series = findings.series();
-            let row = "one point of a trial's curve: where coverage first crosses a whole percent, and every 10 s";
-            described.push(DescribedTable::of(
-                &series,
-                in_results("series.csv"),
-                ("Curves of the trials", row),
-                |name| dictionary.of_series(name),
-            ));
-            files.push(("series.csv".to_owned(), series.to_csv().into_bytes()));
-        }
-        StudyKind::Deadline => {}
+    if experiment.kind.has_series() {
+        let series = findings.series();
+        let row = "one point of a trial's curve: where coverage first crosses a whole percent, and every 10 s";
+        described.push(DescribedTable::of(
+            &series,
+            in_results("series.csv"),
+            ("Curves of the trials", row),
+            |name| dictionary.of_series(name),
+        ));
+        files.push(("series.csv".to_owned(), series.to_csv().into_bytes()));
     }
     for request in &experiment.tables {
         let path = |extension| format!("tables/{}.{extension}", request.id);

@@ -126,7 +126,8 @@ fn first<'p>(
 
 /// The floor plan of the first condition that a figure speaks of; words where the design leaves that combination out.
 fn plan_figure(plan: &Plan, title: &str, wanted: &PlanFigure, with_prior: bool) -> String {
-    let Some((condition, Setup::PriorMap(setup))) = first(plan, &wanted.only) else {
+    let found = first(plan, &wanted.only).and_then(|(c, s)| Some((c, s.of::<prior_map::Setup>()?)));
+    let Some((condition, setup)) = found else {
         return words_alone(title, NO_CONDITION);
     };
     let prior = condition.value("prior").unwrap_or("prior map");
@@ -135,7 +136,8 @@ fn plan_figure(plan: &Plan, title: &str, wanted: &PlanFigure, with_prior: bool) 
 
 /// The policies of the first condition that a figure speaks of, and what they are.
 fn policy_figure(plan: &Plan, title: &str, wanted: &PolicyGraph) -> (String, String) {
-    let Some((_, Setup::Deadline(setup))) = first(plan, &wanted.only) else {
+    let found = first(plan, &wanted.only).and_then(|(_, setup)| setup.of::<deadline::Setup>());
+    let Some(setup) = found else {
         return (words_alone(title, NO_CONDITION), NO_CONDITION.to_owned());
     };
     match deadline::policy_chart(title, setup, &wanted.within_s) {

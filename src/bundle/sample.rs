@@ -21,7 +21,7 @@ pub(crate) fn record(seed: u64, prior: &str, trial: u32) -> TrialRecord {
         key: TrialKey(key),
         condition: vec![("prior".into(), prior.into())],
         trial,
-        outcome: Outcome::Explored,
+        outcome: Outcome::EXPLORED,
         cause: String::new(),
         measures: [("distance-m-at-90".to_owned(), Some(distance))].into(),
         series: Vec::new(),

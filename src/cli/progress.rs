@@ -193,7 +193,7 @@ impl Observer for Progress {
             }
             RunEvent::Finished { index, record, cached } => {
                 state.estimate.finished(*index, record.sim_seconds, *cached);
-                if record.outcome == Outcome::Panicked {
+                if record.outcome == Outcome::PANICKED {
                     state.failed += 1;
                 } else {
                     interrupt::one_more();

@@ -10,11 +10,9 @@
 //! - [`solve()`], [`solve_with`]: a policy with at most as many randomised states as there are bounds, with
 //!   its exact totals; or that there is none; or an error, never a doubtful policy.
 //! - [`evaluate`]: what any policy exactly costs.
-//! - [`build`]: the model of a navigation task on a toposemantic map.
 //! - [`document`]: models as JSON files.
 
 mod basis;
-pub mod build;
 mod chain;
 pub mod document;
 mod improvement;
@@ -26,7 +24,6 @@ pub mod prune;
 mod solve;
 mod vertex;
 
-pub use build::{Navigation, build_cmdp};
 pub use document::{DocumentError, solve_document};
 pub use lexicographic::{
     BOUND_TOLERANCE, Effort, Infeasible, MAX_STATES, Outcome, Relaxation, Solution, SolveError,

@@ -123,7 +123,7 @@ impl Lock {
         locked.settings = account.settings.of_trials();
         for condition in &mut locked.conditions {
             let slug = &condition.slug;
-            let panicked = Outcome::Panicked.name();
+            let panicked = Outcome::PANICKED.name();
             if let Some(trial) = condition.known.iter().find(|t| t.outcome == panicked) {
                 let (number, cause) = (trial.number, &trial.cause);
                 return Err(format!(

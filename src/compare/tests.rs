@@ -411,7 +411,7 @@ fn a_part_or_a_panic_cannot_be_locked() {
     );
     let panicked = changed(|record| {
         if record.trial == 2 {
-            record.outcome = crate::studies::Outcome::Panicked;
+            record.outcome = crate::studies::Outcome::PANICKED;
             record.cause = "index out of bounds".to_owned();
         }
     });

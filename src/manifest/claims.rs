@@ -5,8 +5,7 @@ use super::resolver::Resolver;
 use crate::claims::metric::WALL_TIME_COLUMNS;
 use crate::claims::{self, Known};
 use crate::document::{Content, Diagnostic, Tree, quoted};
-use crate::studies::prior_map::{coverage_at_distance, is_coverage_at_distance};
-use crate::studies::{Setup, StudyKind};
+use crate::studies::StudyKind;
 
 /// Collects every fault of the claims.
 pub(super) fn check(resolver: &mut Resolver<'_>, conditions: &[ResolvedCondition]) {
@@ -17,15 +16,12 @@ pub(super) fn check(resolver: &mut Resolver<'_>, conditions: &[ResolvedCondition
     let published: Vec<String> = doc.published.keys().cloned().collect();
     let mut metrics = measures(doc.study);
     for ResolvedCondition { setup, .. } in conditions {
-        if let Setup::PriorMap(setup) = setup {
-            let asked_for = &setup.parameters.measurement.coverage_at_distance_m;
-            metrics.extend(asked_for.iter().map(|&distance| coverage_at_distance(distance)));
-        }
+        metrics.extend(setup.further_measures());
     }
     if resolver.faults.any_error() {
         // A condition that could not be resolved may ask for it.
         let named = doc.claims.iter().flat_map(|claim| claim.expect.metrics());
-        metrics.extend(named.filter(|name| is_coverage_at_distance(name)));
+        metrics.extend(named.filter(|name| doc.study.is_further_measure(name)));
     }
     metrics.sort();
     metrics.dedup();
@@ -64,10 +60,10 @@ fn as_written(tree: &Tree, pointer: &str) -> String {
 
 /// What a claim or table of a study may speak of: success, outcomes and the columns of `results/trials.csv`.
 pub(super) fn measures(kind: StudyKind) -> Vec<String> {
-    let outcomes = kind.outcomes().iter().map(|(name, _)| format!("outcome:{name}"));
+    let outcomes = kind.outcomes().iter().map(|outcome| format!("outcome:{}", outcome.name()));
     let mut names: Vec<String> = std::iter::once("success".to_owned()).chain(outcomes).collect();
     names.extend(kind.measures());
-    if kind == StudyKind::PriorMap {
+    if kind.times_choices() {
         names.extend(WALL_TIME_COLUMNS.map(str::to_owned));
     }
     names

@@ -1,63 +1,17 @@
-//! What is particular to manifests of the deadline study: keys it has and has not, its calibration, its conditions.
+//! `calibration: FILE`: the manifest whose isolated passages measure what a planner expects of its maneuvers.
 
-use super::experiment::{CalibrationRun, Experiment, Meanings, ResolvedCondition};
+use super::experiment::{CalibrationRun, Experiment};
 use super::input::{Input, InputKind, WrittenIn};
 use super::library::{Inputs, Library, Measured, joined, normalised};
-use super::lint;
-use super::parts::Parts;
 use super::resolve::resolve;
 use super::resolver::Resolver;
-use crate::studies::deadline::{self, Calibration, Parameters, PlannedPassages, Task};
-use crate::studies::{Condition, Setup, StudyKind};
-use serde_json::json;
+use crate::studies::deadline::{Calibration, PlannedPassages};
 use std::cell::RefCell;
 use std::sync::Arc;
 
 impl Resolver<'_> {
-    /// Faults of keys that belong to the other study.
-    pub(super) fn check_study_keys(&mut self) {
-        let doc = self.doc;
-        let foreign: Vec<&str> = match doc.study {
-            StudyKind::PriorMap => doc.calibration.iter().map(|_| "calibration").collect(),
-            StudyKind::Deadline => {
-                let prior = doc.prior.iter().map(|_| "prior");
-                let maps = (!doc.prior_maps.is_empty()).then_some("prior-maps");
-                prior.chain(maps).collect()
-            }
-        };
-        for key in foreign {
-            let message = format!("the study `{}` has no `{key}`", doc.study.name());
-            self.faults.at_key(&format!("/{key}"), message, "remove this key");
-        }
-    }
-
-    /// A condition of the deadline study.
-    pub(super) fn deadline(
-        &mut self,
-        condition: Condition,
-        parts: Option<Parts>,
-    ) -> Option<ResolvedCondition> {
-        let parameters = self.parameters::<Parameters>(&condition)?;
-        let calibration = match parameters.mission.task {
-            Task::Exploration => Some(self.calibration()),
-            Task::Passage => None,
-        };
-        let Parts { robot, robot_meaning, robot_file, world, start } = parts?;
-        let calibration = match calibration {
-            Some(needed) => Some(needed?),
-            None => None,
-        };
-        let shared = Arc::clone(&world.world);
-        let setup = deadline::Setup::new(shared, robot, start, calibration, parameters);
-        lint::check_deadline(&setup, &mut self.faults);
-        let meanings = Meanings { robot: robot_meaning, world: world.meaning, prior: None };
-        let described = json!({ "robot": robot_file, "world": world.described });
-        let setup = Setup::Deadline(Arc::new(setup));
-        Some(ResolvedCondition { condition, setup, meanings, described })
-    }
-
     /// The planner's expectations, measured by the calibration manifest or read from the bundle that holds them.
-    fn calibration(&mut self) -> Option<Arc<Calibration>> {
+    pub(super) fn calibration(&mut self) -> Option<Arc<Calibration>> {
         let key = self.doc.calibration.clone().unwrap_or_default();
         self.once(|library| &mut library.calibrations, key, Self::read_calibration)
     }

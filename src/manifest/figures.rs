@@ -5,7 +5,7 @@ use super::faults::Faults;
 use super::names::Factor;
 use super::requests::{check_columns, check_only, check_outcomes, check_published, foreign};
 use crate::studies::outcomes::OutcomeShares;
-use crate::studies::{FigureLayout, Outcome, PublishedScatter, StudyKind, TableLayout};
+use crate::studies::{FigureLayout, Outcome, PublishedScatter, TableLayout};
 use crate::table::Table;
 use std::collections::BTreeMap;
 
@@ -20,18 +20,18 @@ pub(super) fn check_figures(
         match &figure.layout {
             FigureLayout::CoverageCurve(curve) => {
                 let pointer = format!("/figures/{i}/coverage-curve");
-                foreign(doc, StudyKind::PriorMap, &pointer, faults);
+                foreign(doc, &pointer, faults);
                 faults.check_factor(factors, &curve.by, &format!("{pointer}/by"), false);
                 check_only(&curve.only, &pointer, factors, faults);
             }
             FigureLayout::WorldPlan(plan) => {
                 let pointer = format!("/figures/{i}/world-plan");
-                foreign(doc, StudyKind::PriorMap, &pointer, faults);
+                foreign(doc, &pointer, faults);
                 check_only(&plan.only, &pointer, factors, faults);
             }
             FigureLayout::PriorOverWorld(plan) => {
                 let pointer = format!("/figures/{i}/prior-over-world");
-                foreign(doc, StudyKind::PriorMap, &pointer, faults);
+                foreign(doc, &pointer, faults);
                 check_only(&plan.only, &pointer, factors, faults);
                 let chosen = plan.only.get("prior").map(|value| value.0.as_str());
                 if chosen.or(doc.prior.as_deref()).is_none_or(|name| name == "none") {
@@ -55,7 +55,7 @@ pub(super) fn check_figures(
             }
             FigureLayout::PolicyGraph(wanted) => {
                 let pointer = format!("/figures/{i}/policy-graph");
-                foreign(doc, StudyKind::Deadline, &pointer, faults);
+                foreign(doc, &pointer, faults);
                 check_only(&wanted.only, &pointer, factors, faults);
             }
         }

@@ -7,11 +7,9 @@ use crate::geometry::{Outline, Point, Pose};
 use crate::grid::{Cell, Occupancy, OccupancyGrid};
 use crate::math;
 use crate::robot::Robot;
-use crate::studies::deadline;
-use crate::studies::prior_map::{Setup, Strategy};
+use crate::studies::Setup;
 use crate::units::Tick;
 use crate::world::World;
-use crate::world::topology::Topology;
 use serde_json::Value;
 use std::f64::consts::TAU;
 
@@ -20,50 +18,11 @@ const ALIGNED_WITHIN: f64 = 0.3;
 /// The share of walls below which a prior is taken to lie elsewhere.
 const ALIGNED_SHARE: f64 = 0.5;
 
-/// Collects what is wrong or suspicious about one condition.
-pub(super) fn check(setup: &Setup, prior: Option<&UsedPrior>, faults: &mut Faults<'_>) {
-    scanner(&setup.robot, faults);
-    start(&setup.world, &setup.robot, setup.start, faults);
-    units(&serde_json::json!(setup.parameters), faults);
-    median(setup, faults);
-    tour(setup, faults);
-    if let Some(prior) = prior {
-        resolution(setup, prior, faults);
-    }
-}
-
-/// Collects what is wrong or suspicious about one condition of the deadline study.
-pub(super) fn check_deadline(setup: &deadline::Setup, faults: &mut Faults<'_>) {
-    scanner(&setup.robot, faults);
-    start(&setup.world, &setup.robot, setup.start, faults);
-    units(&serde_json::json!(setup.parameters), faults);
-    let robot = &setup.robot;
-    for (there, what) in
-        [(robot.camera.is_some(), "logical camera"), (robot.compass.is_some(), "compass")]
-    {
-        if !there {
-            let message = format!("the robot `{}` has no {what}", robot.name);
-            let fault = faults.fault("/robot", message).label("this study explores with one");
-            let help = "add a `<gazebo>` sensor to the URDF, or name another robot";
-            faults.push(fault.help(help));
-        }
-    }
-    match Topology::read(&setup.world.tags, &deadline::tag_scheme(setup)) {
-        Err(problems) => {
-            for problem in problems {
-                let fault = faults.fault("/world", problem.to_string());
-                let help = "docs/world.md tells how tags make a graph";
-                faults.push(fault.label("the tags make no graph").help(help));
-            }
-        }
-        Ok(graph) if graph.goals().next().is_none() => {
-            let fault = faults.fault("/world", "the world has no goal to reach");
-            let label = "no vertex carries a tag of the goal's colour";
-            let help = "`perception.goal-color` names it; docs/world.md tells where it stands";
-            faults.push(fault.label(label).help(help));
-        }
-        Ok(_) => {}
-    }
+/// Collects what is wrong or suspicious about one condition of whatever study.
+pub(super) fn check(setup: &Setup, faults: &mut Faults<'_>) {
+    scanner(setup.robot(), faults);
+    start(setup.world(), setup.robot(), setup.start(), faults);
+    units(&setup.parameters(), faults);
 }
 
 fn scanner(robot: &Robot, faults: &mut Faults<'_>) {
@@ -110,41 +69,6 @@ fn spot(point: Point) -> String {
     format!("({:.2}, {:.2}) m", point.x, point.y)
 }
 
-/// A tour needs a graph, and a graph is of no use to anything else.
-fn tour(setup: &Setup, faults: &mut Faults<'_>) {
-    let exploration = &setup.parameters.exploration;
-    let is_toured = exploration.strategy == Strategy::TopoMetricTour;
-    let pointer = "/parameters/exploration/strategy";
-    if is_toured && setup.topo_metric_map.is_none() {
-        let message = "the strategy `topo-metric-tour` has no graph to make a tour of";
-        let fault = faults.fault(pointer, message).label("expected a prior with a graph");
-        let help = "name one under `prior-maps`, as `graph: {topo-metric-map: FILE}`, and choose it as `prior`";
-        faults.push(fault.help(help));
-    } else if !is_toured && setup.topo_metric_map.is_some() {
-        let message = "the prior is a graph, which this strategy cannot use";
-        let fault = faults.fault(pointer, message).label("expected `topo-metric-tour`");
-        faults.push(
-            fault.help("set `exploration.strategy: topo-metric-tour` where this is the prior"),
-        );
-    }
-    if !is_toured && exploration.node_noise_sd_m > 0.0 {
-        let pointer = "/parameters/exploration/node-noise-sd-m";
-        let message = "there are no nodes for `exploration.node-noise-sd-m` to move";
-        let label = "expected 0 but for `strategy: topo-metric-tour`";
-        faults.at(pointer, message, label);
-    }
-}
-
-/// A median over an even number of beams would invent a range between two.
-fn median(setup: &Setup, faults: &mut Faults<'_>) {
-    let beams = setup.parameters.navigation.obstacle_median_beams;
-    if beams.is_multiple_of(2) {
-        let pointer = "/parameters/navigation/obstacle-median-beams";
-        let message = format!("`navigation.obstacle-median-beams` must be odd, found {beams}");
-        faults.at(pointer, message, "expected 1, 3, 5, ...");
-    }
-}
-
 /// Values that look as if they were written in another unit, by the unit in their key.
 fn units(parameters: &Value, faults: &mut Faults<'_>) {
     for (group, values) in parameters.as_object().into_iter().flatten() {
@@ -171,8 +95,9 @@ fn units(parameters: &Value, faults: &mut Faults<'_>) {
     }
 }
 
-fn resolution(setup: &Setup, prior: &UsedPrior, faults: &mut Faults<'_>) {
-    let (own, map) = (prior.grid.frame().resolution, setup.parameters.mapping.resolution_m);
+/// Tells where a prior map must be resampled to the robot's `map` (m).
+pub(super) fn resolution(map: f64, prior: &UsedPrior, faults: &mut Faults<'_>) {
+    let own = prior.grid.frame().resolution;
     if own != map {
         let message = format!("the prior map has cells of {own} m, the robot's map of {map} m");
         let fault = faults.fault(&prior.pointer, message).label("is resampled");
@@ -181,9 +106,9 @@ fn resolution(setup: &Setup, prior: &UsedPrior, faults: &mut Faults<'_>) {
 }
 
 /// Holds the walls of a prior map against those of the world.
-pub(super) fn alignment(setup: &Setup, prior: &UsedPrior, faults: &mut Faults<'_>) {
-    let Some(lidar) = &setup.robot.lidar else { return };
-    let solids = &setup.world.solids;
+pub(super) fn alignment(robot: &Robot, world: &World, prior: &UsedPrior, faults: &mut Faults<'_>) {
+    let Some(lidar) = &robot.lidar else { return };
+    let solids = &world.solids;
     let has_walls = solids.iter().any(|solid| solid.layer == WALLS);
     let outlines: Vec<Outline> = solids
         .iter()

@@ -17,6 +17,7 @@
 //! | `settings` `overrides` `crossing` | the manifest before its conditions, and those |
 //! | `resolve` | the way through all of them, to an `experiment` |
 
+mod asked;
 mod choice;
 mod claims;
 mod crossing;

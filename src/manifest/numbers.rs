@@ -10,7 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Columns of a tidy CSV of published numbers besides the factors', and whether each must be there: tables of the prior-map
 /// study are by coverage, or by measure.
 fn columns(kind: StudyKind, by_measure: bool) -> [(&'static str, bool); 5] {
-    let by_coverage = kind == StudyKind::PriorMap && !by_measure;
+    let by_coverage = kind.has_series() && !by_measure;
     [
         ("coverage-percent", by_coverage),
         ("value", true),

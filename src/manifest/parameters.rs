@@ -1,10 +1,9 @@
 //! A study's parameters as written: every value plain, with a reason, or by a factor.
 
 use crate::document::Node;
-use crate::studies::{StudyKind, deadline, prior_map};
+use crate::studies::StudyKind;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Deserialize;
-use serde::de::DeserializeOwned;
 use serde_json::{Map, Value, json};
 use std::borrow::Cow;
 
@@ -58,27 +57,18 @@ impl ParametersDoc {
     }
 
     /// The parameters for one condition: wrapped values taken out by `value_of` (factor to its value).
-    ///
-    /// # Errors
-    /// What serde refuses; the schema has been checked before, so this is a value of a wrong kind within
-    /// `values` at most.
-    pub(super) fn for_condition<'c, P: DeserializeOwned>(
+    pub(super) fn for_condition<'c>(
         &self,
         kind: StudyKind,
         value_of: &dyn Fn(&str) -> Option<&'c str>,
-    ) -> Result<P, String> {
-        let plain = unwrap_all(&self.0, &groups(kind), value_of);
-        serde_json::from_value(Value::Object(plain)).map_err(|error| error.to_string())
+    ) -> Value {
+        Value::Object(unwrap_all(&self.0, &groups(kind), value_of))
     }
 }
 
 /// The parameters' tree of groups: what is an object in the defaults is a group, the rest are values.
 fn groups(kind: StudyKind) -> Map<String, Value> {
-    let defaults = match kind {
-        StudyKind::PriorMap => json!(prior_map::Parameters::default()),
-        StudyKind::Deadline => json!(deadline::Parameters::default()),
-    };
-    match defaults {
+    match kind.defaults() {
         Value::Object(groups) => groups,
         _ => Map::new(),
     }
@@ -158,7 +148,7 @@ impl JsonSchema for ParametersDoc {
     /// Those of any study: `manifest::schema` puts those of one in their place.
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         let mut schema = Schema::default();
-        schema.insert("anyOf".to_owned(), StudyKind::ALL.map(schema_of).to_vec().into());
+        schema.insert("anyOf".to_owned(), StudyKind::all().map(schema_of).collect());
         schema
     }
 }
@@ -168,10 +158,7 @@ pub(super) fn schema_of(kind: StudyKind) -> Value {
     // Inlined, because its groups differ from the study's own schemas in what their values may be.
     let settings = schemars::generate::SchemaSettings::draft2020_12().for_deserialize();
     let generator = settings.with(|s| s.inline_subschemas = true).into_generator();
-    let mut schema = match kind {
-        StudyKind::PriorMap => generator.into_root_schema_for::<prior_map::Parameters>(),
-        StudyKind::Deadline => generator.into_root_schema_for::<deadline::Parameters>(),
-    };
+    let mut schema = kind.schema(generator);
     schema.remove("$schema");
     schema.remove("title");
     if let Some(object) = schema.as_object_mut() {
@@ -237,6 +224,7 @@ fn wrap_values(schema: &mut Map<String, Value>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::studies::prior_map::Parameters;
 
     #[test]
     fn wrapped_values_are_found_and_taken_out() {
@@ -248,11 +236,12 @@ mod tests {
             "mapping": {"resolution-m": {"value": 0.05, "why": "finer"}}
         }))
         .unwrap();
-        let kind = StudyKind::PriorMap;
+        let kind = StudyKind::named("prior-map").unwrap();
         let pointers: Vec<_> = doc.wrapped(kind).iter().map(|w| w.pointer.clone()).collect();
         assert_eq!(pointers, ["/parameters/mapping/resolution-m", "/parameters/sensing/range-m"]);
         let level = |factor: &str| (factor == "environment").then_some("office");
-        let parameters: prior_map::Parameters = doc.for_condition(kind, &level).unwrap();
+        let parameters = doc.for_condition(kind, &level);
+        let parameters: Parameters = serde_json::from_value(parameters).unwrap();
         assert_eq!(parameters.sensing.range_m, Some(30.0));
         assert_eq!(parameters.sensing.range_noise_sd_m, Some(0.1));
         assert_eq!(parameters.mapping.resolution_m, 0.05);

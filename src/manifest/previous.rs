@@ -17,7 +17,8 @@ use crate::document::{Source, reports};
 use crate::grid::OccupancyGrid;
 use crate::json;
 use crate::rng::Seeds;
-use crate::studies::{Condition, Setup, StudyKind, TrialSpec, prior_map};
+use crate::studies::prior_map::{self, PriorMap};
+use crate::studies::{Condition, Setup, Study, TrialSpec};
 use crate::world::floor_plan::{self, Plan};
 use crate::world::map_server;
 use serde_json::json;
@@ -47,10 +48,7 @@ pub fn unexplored(spec: &TrialSpec, named: &[String; 2]) -> Result<[Vec<u8>; 2],
 }
 
 fn setup_of(spec: &TrialSpec) -> Result<&prior_map::Setup, String> {
-    match &spec.setup {
-        Setup::PriorMap(setup) => Ok(setup),
-        Setup::Deadline(_) => Err("the study `deadline` makes no maps".to_owned()),
-    }
+    spec.setup.of().ok_or_else(|| "the study makes no maps".to_owned())
 }
 
 fn image_beside([_, image]: &[String; 2]) -> String {
@@ -226,7 +224,7 @@ fn spec(
     )
     .with_topo_metric_map(prior.and_then(Knowledge::topo_metric_map));
     let coordinates = vec![
-        ("study".to_owned(), StudyKind::PriorMap.name().to_owned()),
+        ("study".to_owned(), PriorMap.name().to_owned()),
         ("previous-map".to_owned(), trial.to_string()),
     ];
     TrialSpec {
@@ -234,6 +232,6 @@ fn spec(
         condition: Condition(Vec::new()),
         trial,
         seeds: Seeds::new(seed, coordinates),
-        setup: Setup::PriorMap(Arc::new(setup)),
+        setup: Setup::new(setup),
     }
 }

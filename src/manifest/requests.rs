@@ -8,9 +8,9 @@ use super::names::{Factor, is_kebab, kebab};
 use super::numbers::MEASURE;
 use crate::studies::outcomes::OutcomeTable;
 use crate::studies::prior_map::{
-    AgreementTable, CoverageTable, EffectsTable, MILESTONES, MeasuresTable, coverage_at_distance,
+    AgreementTable, CoverageTable, EffectsTable, MILESTONES, MeasuresTable,
 };
-use crate::studies::{FactorValue, Setup, StudyKind, TableLayout, coverage_tables};
+use crate::studies::{FactorValue, StudyKind, TableLayout, coverage_tables};
 use crate::table::Table;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -38,32 +38,31 @@ pub(super) fn check_requests(
         match &table.layout {
             TableLayout::CoverageTable(table) => {
                 let pointer = format!("/tables/{i}/coverage-table");
-                foreign(doc, StudyKind::PriorMap, &pointer, faults);
+                foreign(doc, &pointer, faults);
                 check_table(table, &pointer, doc, factors, published, faults);
             }
             TableLayout::AgreementTable(wanted) => {
                 let pointer = format!("/tables/{i}/agreement-table");
-                foreign(doc, StudyKind::PriorMap, &pointer, faults);
+                foreign(doc, &pointer, faults);
                 check_agreement(wanted, &pointer, doc, faults);
             }
             TableLayout::EffectsTable(wanted) => {
                 let pointer = format!("/tables/{i}/effects-table");
-                foreign(doc, StudyKind::PriorMap, &pointer, faults);
+                foreign(doc, &pointer, faults);
                 check_effects(wanted, &pointer, doc, factors, published, faults);
             }
             TableLayout::MeasuresTable(wanted) => {
                 let pointer = format!("/tables/{i}/measures-table");
-                foreign(doc, StudyKind::PriorMap, &pointer, faults);
+                foreign(doc, &pointer, faults);
                 check_measures(wanted, &pointer, doc, factors, published, faults);
             }
             TableLayout::OutcomeTable(table) => {
                 let pointer = format!("/tables/{i}/outcome-table");
-                foreign(doc, StudyKind::Deadline, &pointer, faults);
                 check_outcomes(table, &pointer, doc, factors, published, faults);
             }
             TableLayout::ManeuverTable(table) => {
                 let pointer = format!("/tables/{i}/maneuver-table");
-                foreign(doc, StudyKind::Deadline, &pointer, faults);
+                foreign(doc, &pointer, faults);
                 check_only(&table.only, &pointer, factors, faults);
             }
         }
@@ -71,10 +70,13 @@ pub(super) fn check_requests(
 }
 
 /// A layout that only the study `kind` has.
-pub(super) fn foreign(doc: &ManifestDoc, kind: StudyKind, pointer: &str, faults: &mut Faults<'_>) {
-    if doc.study != kind {
+/// Tells where the layout at `pointer` is another study's.
+pub(super) fn foreign(doc: &ManifestDoc, pointer: &str, faults: &mut Faults<'_>) {
+    let layout = pointer.rsplit('/').next().unwrap_or_default();
+    let owner = StudyKind::all().find(|kind| kind.layouts().contains(&layout));
+    if let Some(owner) = owner.filter(|owner| *owner != doc.study) {
         let message = format!("the study `{}` has no such layout", doc.study.name());
-        let label = format!("of the study `{}`", kind.name());
+        let label = format!("of the study `{}`", owner.name());
         faults.at_key(pointer, message, &label);
     }
 }
@@ -160,12 +162,9 @@ pub(super) fn check_recorded(
 ) {
     let mut known = numeric(doc.study);
     for ResolvedCondition { setup, .. } in conditions {
-        if let Setup::PriorMap(setup) = setup {
-            let asked_for = &setup.parameters.measurement.coverage_at_distance_m;
-            let names = asked_for.iter().map(|&distance| coverage_at_distance(distance));
-            let new: Vec<String> = names.filter(|name| !known.contains(name)).collect();
-            known.extend(new);
-        }
+        let names = setup.further_measures().into_iter();
+        let new: Vec<String> = names.filter(|name| !known.contains(name)).collect();
+        known.extend(new);
     }
     for (i, table) in doc.tables.iter().enumerate() {
         let TableLayout::MeasuresTable(wanted) = &table.layout else { continue };

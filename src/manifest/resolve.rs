@@ -1,5 +1,6 @@
 //! From a manifest as written to an experiment: every name looked up, every file read, every fault collected.
 
+use super::asked::Asked;
 use super::crossing::cross;
 use super::document::ManifestDoc;
 use super::experiment::{Assumption, Experiment, Meanings, ResolvedCondition};
@@ -12,16 +13,12 @@ use super::parameters::WrappedValue;
 use super::parts::Parts;
 use super::resolver::Resolver;
 use super::schema::schema;
-use super::worlds::UsedWorld;
 use super::{claims, figures, lint, numbers, overrides, previous, requests, sensitivity, settings};
-use crate::digest::MeaningDigest;
 use crate::document::{Diagnostic, Node, Parsed, Source, parse_tree_by, read};
-use crate::geometry::Pose;
-use crate::studies::{Condition, Setup, StudyKind, prior_map};
+use crate::studies::{Condition, StudyKind};
 use crate::table::Table;
 use serde_json::json;
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::Arc;
 
 /// Resolves the manifest `source`, changed by `overrides` (`PATH=VALUE`), with the files that `inputs` hands
 /// over. Comes with warnings.
@@ -39,7 +36,7 @@ pub fn resolve(
     overrides::apply(&mut tree, overrides)?;
     // The study says which parameters there are; one that is not known is told by the schema.
     let kind = tree.root.get("study").and_then(Node::scalar_text);
-    let kind = StudyKind::ALL.into_iter().find(|k| kind.as_deref() == Some(k.name()));
+    let kind = kind.as_deref().and_then(StudyKind::named);
     let Parsed { value: doc, tree } = parse_tree_by::<ManifestDoc>(tree, &schema(kind))?;
     let mut faults = Faults::new(&tree);
     library.pin(&doc.pinned, &mut faults);
@@ -203,69 +200,35 @@ impl Resolver<'_> {
     fn condition(&mut self, condition: Condition) -> Option<ResolvedCondition> {
         let doc = self.doc;
         let parts = self.parts(&condition);
-        match doc.study {
-            StudyKind::PriorMap => self.prior_map(condition, parts),
-            StudyKind::Deadline => self.deadline(condition, parts),
-        }
-    }
-
-    /// A condition of the prior-knowledge study.
-    fn prior_map(
-        &mut self,
-        condition: Condition,
-        parts: Option<Parts>,
-    ) -> Option<ResolvedCondition> {
-        let parameters = self.parameters::<prior_map::Parameters>(&condition);
-        // Every part has told its faults by now; the prior needs them all.
-        let (parameters, parts) = (parameters?, parts?);
-        let Parts { robot, robot_meaning, robot_file, world, start } = parts;
-        let knowledge = self.prior(&condition, &world, &robot, start, &parameters).ok()?;
-        let prior = knowledge.as_ref().and_then(Knowledge::map);
-        let reference = self.reference(robot_meaning, &world, start, &parameters);
-        let setup = prior_map::Setup::new(
-            Arc::clone(&world.world),
-            robot,
-            prior.as_ref().map(|prior| Arc::clone(&prior.grid)),
-            start,
-            parameters,
-        )
-        .with_topo_metric_map(knowledge.as_ref().and_then(Knowledge::topo_metric_map))
-        .with_reference(reference);
-        lint::check(&setup, prior, &mut self.faults);
-        if let Some(prior) = prior.filter(|prior| !prior.own) {
-            // Conditions share worlds and priors; holding one against the other once is enough.
-            let pair = (world.meaning, prior.meaning, prior.pointer.clone());
-            if self.aligned.insert(pair) {
-                lint::alignment(&setup, prior, &mut self.faults);
-            }
-        }
+        let mut asked = Asked { resolver: self, condition: &condition, parts, knowledge: None };
+        let setup = doc.study.setup(&mut asked)?;
+        let Asked { parts, knowledge, .. } = asked;
+        let Parts { robot_meaning, robot_file, world, .. } = parts?;
+        lint::check(&setup, &mut self.faults);
         let meanings = Meanings {
             robot: robot_meaning,
             world: world.meaning,
             prior: knowledge.as_ref().map(Knowledge::meaning),
         };
-        let described = json!({
-            "robot": robot_file,
-            "world": world.described,
-            "prior": knowledge.map(|knowledge| knowledge.described()),
-        });
-        let setup = Setup::PriorMap(Arc::new(setup));
+        let mut described = json!({ "robot": robot_file, "world": world.described });
+        if doc.study.keys().contains(&"prior") {
+            described["prior"] = json!(knowledge.map(|knowledge| knowledge.described()));
+        }
         Some(ResolvedCondition { condition, setup, meanings, described })
     }
 
-    /// What coverage is measured against: the same for all conditions that differ in prior knowledge and choices only.
-    fn reference(
-        &mut self,
-        robot: MeaningDigest,
-        world: &UsedWorld,
-        start: Pose,
-        parameters: &prior_map::Parameters,
-    ) -> prior_map::SharedReference {
-        let alike = prior_map::Parameters {
-            exploration: prior_map::Parameters::default().exploration,
-            ..parameters.clone()
-        };
-        let key = json!([robot, world.meaning, start, alike]).to_string();
-        self.library.references.entry(key).or_default().clone()
+    /// Faults of keys that belong to other studies.
+    fn check_study_keys(&mut self) {
+        let doc = self.doc;
+        let written = [
+            ("prior", doc.prior.is_some()),
+            ("prior-maps", !doc.prior_maps.is_empty()),
+            ("calibration", doc.calibration.is_some()),
+        ];
+        let known = doc.study.keys();
+        for (key, _) in written.iter().filter(|(key, is_there)| *is_there && !known.contains(key)) {
+            let message = format!("the study `{}` has no `{key}`", doc.study.name());
+            self.faults.at_key(&format!("/{key}"), message, "remove this key");
+        }
     }
 }

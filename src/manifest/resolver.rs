@@ -48,20 +48,6 @@ impl<'a> Resolver<'a> {
         read.map_err(|faults| self.faults.extend(faults)).ok()
     }
 
-    pub(super) fn parameters<P: serde::de::DeserializeOwned>(
-        &mut self,
-        condition: &Condition,
-    ) -> Option<P> {
-        let value_of = |factor: &str| condition.value(factor);
-        match self.doc.parameters.for_condition(self.doc.study, &value_of) {
-            Ok(parameters) => Some(parameters),
-            Err(problem) => {
-                self.faults.at_key("/parameters", problem, &format!("for `{condition}`"));
-                None
-            }
-        }
-    }
-
     /// What `choice` is for `condition`, and where that is written.
     pub(super) fn choose<'c, T>(
         &mut self,

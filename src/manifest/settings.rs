@@ -62,7 +62,7 @@ pub(super) fn underlay(
     let study_of = |tree: &Tree| tree.root.get("study").and_then(Node::scalar_text);
     let written = read(&source)?;
     let (own, theirs) = (study_of(&as_set), study_of(&written));
-    let kind = StudyKind::ALL.into_iter().find(|kind| theirs.as_deref() == Some(kind.name()));
+    let kind = theirs.as_deref().and_then(StudyKind::named);
     let mut expected = crate::document::schema_of::<SettingsDoc>();
     if let Some(kind) = kind {
         expected["properties"]["parameters"] = schema_of(kind);

@@ -4,7 +4,7 @@ use super::*;
 use crate::document::{Diagnostic, Source};
 use crate::geometry::{Outline, Point};
 use crate::grid::{Occupancy, OccupancyGrid};
-use crate::studies::{Setup, TrialSpec, prior_map};
+use crate::studies::{TrialSpec, prior_map};
 use crate::world::originals;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -31,7 +31,7 @@ fn with_settings(overrides: &[&str]) -> (prior_map::Parameters, Experiment) {
     let overrides: Vec<String> = overrides.iter().map(|&o| o.to_owned()).collect();
     let (experiment, _) = resolve(&Source::new("a.yaml", text), &overrides, &Shared)
         .unwrap_or_else(|faults| panic!("{}", faults[0].render(false)));
-    let Setup::PriorMap(setup) = &experiment.conditions[0].setup else {
+    let Some(setup) = experiment.conditions[0].setup.of::<prior_map::Setup>() else {
         panic!("a study of another kind")
     };
     (setup.parameters.clone(), experiment)
@@ -94,7 +94,7 @@ fn the_authors_floor_plan_lies_on_their_world_in_the_frame_of_the_start() {
     assert_eq!(told, "");
     let names: Vec<&str> = experiment.inputs.iter().map(|i| i.as_written.as_str()).collect();
     assert!(names.contains(&"floorplans/basic.png"), "{names:?}");
-    let Setup::PriorMap(setup) = &experiment.conditions[0].setup else {
+    let Some(setup) = experiment.conditions[0].setup.of::<prior_map::Setup>() else {
         panic!("a study of another kind")
     };
     let origin = setup.prior.as_ref().unwrap().frame().origin;
@@ -161,7 +161,7 @@ const CHAIN: &str = "  m0: {previous-map: {world: {file: rooms.yaml, layers: [wa
     m1: {previous-map: {world: {file: rooms.yaml, layers: [walls, t1]}, prior: m0, why: second}}";
 
 fn prior_of(experiment: &Experiment) -> OccupancyGrid {
-    let Setup::PriorMap(setup) = &experiment.conditions[0].setup else {
+    let Some(setup) = experiment.conditions[0].setup.of::<prior_map::Setup>() else {
         panic!("a study of another kind")
     };
     setup.prior.as_deref().cloned().unwrap()

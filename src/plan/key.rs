@@ -44,7 +44,7 @@ pub fn key_content(
         condition.0.iter().map(|(name, value)| (name.clone(), json!(value))).collect();
     let mut content = json!({
         "engine-version": ENGINE_VERSION,
-        "study": kind,
+        "study": kind.name(),
         "seed": seed,
         "shared-noise": shared,
         "condition": levels,

@@ -3,7 +3,7 @@
 use super::{ClaimRow, Figure, ReportTable};
 use crate::plan::{Plan, Selection};
 use crate::stats::compatibility::{Agreement, Silence};
-use crate::studies::{Outcome, StudyKind, TableLayout, TrialRecord};
+use crate::studies::{End, Outcome, TableLayout, TrialRecord};
 
 /// One sentence each, the manifest's own first. `tables` are those of the page, in the order of the plan's requests.
 pub(super) fn limits(
@@ -27,15 +27,15 @@ pub(super) fn limits(
         ));
     }
     let count = |wanted: fn(Outcome) -> bool| records.iter().filter(|r| wanted(r.outcome)).count();
-    let panicked = count(|outcome| outcome == Outcome::Panicked);
+    let panicked = count(|outcome| outcome == Outcome::PANICKED);
     if panicked > 0 {
         limits.push(format!(
             "{} to run: a fault of the program, not a result.",
             counted(panicked, "trial failed", "trials failed")
         ));
     }
-    if experiment.kind == StudyKind::PriorMap {
-        let unfinished = count(|outcome| outcome != Outcome::Explored) - panicked;
+    if experiment.kind.has_series() {
+        let unfinished = count(|outcome| outcome.end() != End::Success) - panicked;
         if unfinished > 0 {
             limits.push(format!(
                 "{unfinished} of {} trials ended before everything was explored.",
@@ -161,8 +161,8 @@ mod tests {
         plan.experiment.overrides = vec!["seed=7".to_owned()];
         plan.experiment.shared_noise = vec!["prior".to_owned()];
         let mut records = bundle.records().unwrap();
-        records[0].outcome = Outcome::Panicked;
-        records[1].outcome = Outcome::Stuck;
+        records[0].outcome = Outcome::PANICKED;
+        records[1].outcome = Outcome::STUCK;
         let mut tables = content_of(&bundle, &plan, &selection).unwrap().tables;
         let silent = |cell: &mut ReportCell, why| {
             (cell.ours, cell.agreement) = (None, Agreement::Silent(why));

@@ -72,8 +72,7 @@ fn facts(bundle: &Bundle, plan: &Plan) -> Vec<(String, String)> {
             "not told: this is no bag, or not one of ours".to_owned(),
         ));
     }
-    let calibrated = plan.experiment.design().any(|(_, setup)| setup.calibration().is_some());
-    if calibrated {
+    if plan.experiment.calibration.is_some() {
         let files = bundle.inputs().iter().filter(|input| role(&input.as_written) == "calibration");
         let files: Vec<&str> = files.map(|input| input.path.as_str()).collect();
         let text = format!(

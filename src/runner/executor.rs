@@ -31,7 +31,7 @@ impl Executor for Mock {
             key: spec.key,
             condition: spec.condition.0.clone(),
             trial: spec.trial,
-            outcome: Outcome::Explored,
+            outcome: Outcome::EXPLORED,
             cause: String::new(),
             measures: [("distance-m".to_owned(), Some(f64::from(spec.key.0.0[0]) / 4.0))].into(),
             series: Vec::new(),

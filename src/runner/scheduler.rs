@@ -138,7 +138,7 @@ impl Scheduler {
                     let is_cached = cached.is_some();
                     let record = cached.unwrap_or_else(|| attempt(executor, &plan[index]));
                     if let (Some(store), false, true) =
-                        (store, is_cached, record.outcome != Outcome::Panicked)
+                        (store, is_cached, record.outcome != Outcome::PANICKED)
                     {
                         store.put(&record)?;
                     }

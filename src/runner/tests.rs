@@ -36,7 +36,7 @@ fn plan(trials: u32) -> Vec<TrialSpec> {
         goals: BTreeMap::new(),
         warnings: Vec::new(),
     };
-    let setup = Arc::new(prior_map::Setup::new(
+    let setup = Setup::new(prior_map::Setup::new(
         Arc::new(world),
         Arc::new(robot),
         None,
@@ -49,7 +49,7 @@ fn plan(trials: u32) -> Vec<TrialSpec> {
             condition: Condition(vec![("prior".into(), "none".into())]),
             trial,
             seeds: Seeds::new(1, Vec::new()),
-            setup: Setup::PriorMap(setup.clone()),
+            setup: setup.clone(),
         })
         .collect()
 }
@@ -104,7 +104,7 @@ fn a_panic_is_a_record_with_its_cause_and_is_never_stored() {
     let scheduler = Scheduler::new(2).unwrap();
     let failing = Mock { panicking: vec![2, 4] };
     let records = scheduler.run(&plan, &failing, Some(&store), &Silent).unwrap();
-    assert_eq!(records[2].outcome, Outcome::Panicked);
+    assert_eq!(records[2].outcome, Outcome::PANICKED);
     assert_eq!(records[2].cause, "trial 2 was told to fail");
     assert_eq!(store.records.lock().unwrap().len(), 4);
     // Next time only those two run.

@@ -1,6 +1,6 @@
 //! What every column of every table of a study says: factors, what all studies share, and each study's own.
 
-use super::{StudyKind, TableLayout, TableRequest, deadline, outcomes, prior_map};
+use super::{Outcome, StudyKind, TableLayout, TableRequest, deadline, outcomes, prior_map};
 use crate::claims::Judgement;
 use crate::claims::metric::WALL_TIME_COLUMNS;
 use crate::table::{Column, unit_of};
@@ -12,43 +12,6 @@ pub struct Dictionary<'a> {
     pub kind: StudyKind,
     /// Factors with all their values, in the manifest's order.
     pub factors: &'a [(String, Vec<String>)],
-}
-
-impl StudyKind {
-    /// Every measure that a trial of the study can have, but for those whose names a manifest's numbers make.
-    pub fn measures(self) -> Vec<String> {
-        match self {
-            Self::PriorMap => prior_map::columns::measures(),
-            Self::Deadline => deadline::columns::measures(),
-        }
-    }
-
-    /// The outcomes of its trials that are no fault of the program, each with what it says.
-    pub fn outcomes(self) -> &'static [(&'static str, &'static str)] {
-        match self {
-            Self::PriorMap => &[
-                ("explored", "no frontier was left that the robot could go to"),
-                ("stuck", "the robot could not go on to any frontier, or made no progress"),
-                ("time-limit", "the manifest's time limit was reached"),
-            ],
-            Self::Deadline => &[
-                ("reached", "the robot arrived at the goal in time"),
-                ("collided", "the body came into contact with something"),
-                ("late", "the time was up while new places were still being found"),
-                (
-                    "stalled",
-                    "the time was up and no new place had been found for long, or nothing was left to do",
-                ),
-            ],
-        }
-    }
-
-    fn measure(self, name: &str) -> Option<Column> {
-        match self {
-            Self::PriorMap => prior_map::columns::measure(name),
-            Self::Deadline => deadline::columns::measure(name),
-        }
-    }
 }
 
 impl Dictionary<'_> {
@@ -187,12 +150,11 @@ impl Dictionary<'_> {
     }
 
     fn outcome(&self) -> Column {
-        let known = self.kind.outcomes();
+        let known = [self.kind.outcomes(), &[Outcome::PANICKED]].concat();
         let words: Vec<String> =
-            known.iter().map(|(name, says)| format!("{name}: {says}")).collect();
-        let meaning =
-            format!("Why the trial ended. {}; panicked: the program failed", words.join("; "));
-        let among = known.iter().map(|(name, _)| *name).chain(["panicked"]).map(str::to_owned);
+            known.iter().map(|outcome| format!("{}: {}", outcome.name(), outcome.says())).collect();
+        let meaning = format!("Why the trial ended. {}", words.join("; "));
+        let among = known.iter().map(|outcome| outcome.name().to_owned());
         Column { among: among.collect(), ..Column::text("outcome", &meaning) }
     }
 }

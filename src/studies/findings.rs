@@ -1,7 +1,6 @@
 //! From records to what a reader sees, as far as all studies share it: the trials table and how cells are chosen.
 
-use super::deadline::Calibration;
-use super::{Condition, TrialRecord};
+use super::{Condition, Setup, TrialRecord};
 use crate::stats::compatibility::{Agreement, Method, Silence, absence};
 use crate::table::{Column, Table, Value};
 use std::collections::{BTreeMap, BTreeSet};
@@ -12,13 +11,11 @@ pub struct Findings<'a> {
     /// Factors and their values, in the manifest's order.
     pub factors: &'a [(String, Vec<String>)],
     /// The conditions of the whole design, those that a partial run leaves out too.
-    pub design: Vec<&'a Condition>,
+    pub design: Vec<(&'a Condition, &'a Setup)>,
     /// The records, in plan order.
     pub records: &'a [TrialRecord],
     /// The paper's own numbers, by name: factor columns, `coverage-percent`, `value`, `sd`, `n`.
     pub published: &'a BTreeMap<String, Table>,
-    /// Deadline study: what the planner expected of its maneuvers.
-    pub calibration: Option<&'a Calibration>,
     /// The records again, by condition: a table asks for each of its cells, and conditions are far fewer than trials.
     by_condition: Vec<&'a [TrialRecord]>,
 }
@@ -31,20 +28,13 @@ impl<'a> Findings<'a> {
         published: &'a BTreeMap<String, Table>,
     ) -> Self {
         let by_condition = records.chunk_by(|a, b| a.condition == b.condition).collect();
-        Self { factors, design: Vec::new(), records, published, calibration: None, by_condition }
+        Self { factors, design: Vec::new(), records, published, by_condition }
     }
 
     /// The same with the conditions of the whole `design`.
     #[must_use]
-    pub fn designed(mut self, design: impl Iterator<Item = &'a Condition>) -> Self {
+    pub fn designed(mut self, design: impl Iterator<Item = (&'a Condition, &'a Setup)>) -> Self {
         self.design = design.collect();
-        self
-    }
-
-    /// The same with what the planner expected of its maneuvers.
-    #[must_use]
-    pub fn calibrated(mut self, calibration: Option<&'a Calibration>) -> Self {
-        self.calibration = calibration;
         self
     }
 
@@ -125,7 +115,7 @@ impl<'a> Findings<'a> {
     /// Why a cell of these factor values has no number of ours, where `trials` of it were run.
     pub(super) fn absence(&self, fixed: &[(String, String)], trials: u64) -> Silence {
         let planned = |condition: &Condition| fixed.iter().all(|f| condition.0.contains(f));
-        absence(self.design.iter().any(|condition| planned(condition)), trials)
+        absence(self.design.iter().any(|(condition, _)| planned(condition)), trials)
     }
 
     /// The row of the published table `name` for the values of `fixed` that it has columns for.

@@ -1,53 +1,12 @@
 //! What a trial yields: one canonical JSON line.
 
-use super::Condition;
+use super::{Condition, Outcome};
 use crate::digest::{Hasher, Sha256Digest, TrialKey};
 use crate::json;
-use schemars::JsonSchema;
 use serde::de::{Error, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
-
-/// Why a trial ended.
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
-)]
-#[serde(rename_all = "kebab-case")]
-pub enum Outcome {
-    /// Deadline: the robot arrived at the goal in time; in a passage, at the end of it.
-    Reached,
-    /// Deadline: the body came into contact with something.
-    Collided,
-    /// Deadline: the time was up, though new places were still being found.
-    Late,
-    /// Deadline: the time was up, and no new place had been found for long; or nothing was left to do.
-    Stalled,
-    /// Prior map: no frontier is left that the robot could go to.
-    Explored,
-    /// Prior map: the robot could not go on to any frontier, or made no progress.
-    Stuck,
-    /// Prior map: the time limit of the manifest was reached.
-    TimeLimit,
-    /// The program failed inside the trial; the record says how. Never stored.
-    Panicked,
-}
-
-impl Outcome {
-    /// The name in tables and records.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Reached => "reached",
-            Self::Collided => "collided",
-            Self::Late => "late",
-            Self::Stalled => "stalled",
-            Self::Explored => "explored",
-            Self::Stuck => "stuck",
-            Self::TimeLimit => "time-limit",
-            Self::Panicked => "panicked",
-        }
-    }
-}
 
 /// One point of a trial's curve.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -134,7 +93,7 @@ impl TrialRecord {
             key: spec.key,
             condition: spec.condition.0.clone(),
             trial: spec.trial,
-            outcome: Outcome::Panicked,
+            outcome: Outcome::PANICKED,
             cause,
             measures: BTreeMap::new(),
             series: Vec::new(),

@@ -58,7 +58,7 @@ pub(super) fn run(
         ),
     }
     let drifted = held.told(terminal);
-    Ok(if records.iter().any(|record| record.outcome == Outcome::Panicked) {
+    Ok(if records.iter().any(|record| record.outcome == Outcome::PANICKED) {
         Exit::Failed
     } else if drifted {
         Exit::No

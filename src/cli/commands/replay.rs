@@ -11,7 +11,7 @@ use crate::report::{
     replay_page, still_svg,
 };
 use crate::studies::recording::Recording;
-use crate::studies::{self, Setup, TrialRecord};
+use crate::studies::{self, TrialRecord, prior_map};
 use crate::verify::plan_of;
 
 /// Re-enacts one trial or two.
@@ -120,10 +120,11 @@ fn gain_still(
     recording: &Recording,
 ) -> Result<String, Failure> {
     let spec = plan.find(&args.trials[0]).map_err(Failure::not_understood)?;
-    let Setup::PriorMap(setup) = &spec.setup else {
-        return Err(Failure::not_understood(
-            "`--decision` draws information gains, which the study `deadline` has none of; `--plans DIR` writes its plans",
-        ));
+    let Some(setup) = spec.setup.of::<prior_map::Setup>() else {
+        return Err(Failure::not_understood(format!(
+            "`--decision` draws information gains, which the study `{}` has none of; `--plans DIR` writes its plans",
+            plan.experiment.kind.name()
+        )));
     };
     let view = GainView {
         decision,

@@ -124,7 +124,7 @@ struct Done {
 
 impl Done {
     fn failed(&self) -> usize {
-        self.records.iter().filter(|r| r.outcome == Outcome::Panicked).count()
+        self.records.iter().filter(|r| r.outcome == Outcome::PANICKED).count()
     }
 
     fn sim_seconds(&self) -> f64 {
@@ -154,7 +154,7 @@ impl Done {
         if let Some(held) = &self.held {
             text.push_str(&held.in_words());
         }
-        for record in self.records.iter().filter(|r| r.outcome == Outcome::Panicked) {
+        for record in self.records.iter().filter(|r| r.outcome == Outcome::PANICKED) {
             let name = format!("{}/{}", record.condition().slug(), record.trial);
             terminal.error(&format!("trial {name} failed: {}", record.cause));
         }
@@ -167,14 +167,14 @@ impl Done {
     }
 
     fn summary(&self) -> String {
-        let mut outcomes: Vec<(Outcome, usize)> = Vec::new();
+        let mut outcomes: Vec<(Outcome, usize)> =
+            Outcome::all().into_iter().map(|outcome| (outcome, 0)).collect();
         for record in &self.records {
-            match outcomes.iter_mut().find(|(o, _)| *o == record.outcome) {
-                Some((_, n)) => *n += 1,
-                None => outcomes.push((record.outcome, 1)),
+            if let Some((_, n)) = outcomes.iter_mut().find(|(o, _)| *o == record.outcome) {
+                *n += 1;
             }
         }
-        outcomes.sort_unstable();
+        outcomes.retain(|(_, n)| *n > 0);
         let outcomes: Vec<_> = outcomes.iter().map(|(o, n)| format!("{n} {}", o.name())).collect();
         let fresh = self.records.len() - self.cached;
         let mut text = format!(

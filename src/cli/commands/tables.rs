@@ -243,7 +243,7 @@ mod tests {
         for deadline in ["680", "68"] {
             for (i, strategy) in (0..).zip(STRATEGIES) {
                 for trial in 0..4 {
-                    let outcome = if trial < i { Outcome::Reached } else { Outcome::Late };
+                    let outcome = if trial < i { Outcome::REACHED } else { Outcome::LATE };
                     records.push(record(deadline, strategy, trial, outcome));
                 }
             }
@@ -256,7 +256,7 @@ mod tests {
             id: "table-1".to_owned(),
             title: "Table 1, success rate (%)".to_owned(),
             layout: TableLayout::OutcomeTable(OutcomeTable {
-                show: Quantity::Share(vec![Outcome::Reached]),
+                show: Quantity::Share(vec![Outcome::REACHED]),
                 by: "strategy".to_owned(),
                 rows: vec!["start".to_owned(), "deadline-s".to_owned()],
                 only: BTreeMap::new(),

@@ -1,7 +1,6 @@
 //! Tests of the whole planner by theme, and the instances they share.
 
 mod certificate;
-mod corridors;
 mod execution;
 mod extremes;
 mod golden;

@@ -3,9 +3,9 @@
 
 use super::exploration::{Explorer, Next};
 use super::intersection::{Exit, Intersection, Opening};
-use crate::cmdp::build::{Expectation, Maneuvers, Place};
 use crate::geometry::Cardinal;
 use crate::rng::{Seeds, Stream};
+use crate::studies::deadline::build_cmdp::{Expectation, Maneuvers, Place};
 use std::collections::BTreeMap;
 
 /// One vertex.

@@ -1,11 +1,11 @@
 //! The six (time, failure) pairs of the planner's maneuvers (section 6, "Maneuvers"), measured by a calibration
 //! experiment of isolated passages and handed to the study as an input.
 
-use crate::cmdp::build::{Expectation, Maneuvers, Motion, Speed};
 use crate::stats::distribution::student_t_quantile;
 use crate::stats::proportion::{Proportion, wilson};
 use crate::stats::summary::Summary;
 use crate::studies::Outcome;
+use crate::studies::deadline::build_cmdp::{Expectation, Maneuvers, Motion, Speed};
 use crate::studies::findings::rounded;
 use crate::table::{Table, Value};
 use serde_json::{Value as Json, json};
@@ -182,10 +182,10 @@ fn pair<'a>(
     of: impl Iterator<Item = &'a Driven>,
 ) -> Result<Pair, CalibrationError> {
     let (mut times, mut passages, mut collided) = (Vec::new(), 0, 0);
-    for passage in of.filter(|passage| passage.outcome != Outcome::Panicked) {
+    for passage in of.filter(|passage| passage.outcome != Outcome::PANICKED) {
         passages += 1;
-        collided += u64::from(passage.outcome == Outcome::Collided);
-        if passage.outcome == Outcome::Reached {
+        collided += u64::from(passage.outcome == Outcome::COLLIDED);
+        if passage.outcome == Outcome::REACHED {
             times.extend(passage.time_s);
         }
     }
@@ -229,7 +229,7 @@ mod tests {
         let passage = |i: u32, motion, speed| Driven {
             motion,
             speed,
-            outcome: if i < 3 { Outcome::Collided } else { Outcome::Reached },
+            outcome: if i < 3 { Outcome::COLLIDED } else { Outcome::REACHED },
             time_s: Some(10.0 + f64::from(i)),
         };
         let passages = MOTIONS

@@ -1,5 +1,6 @@
 //! The six maneuvers as the calibration measured them, beside what became of them in the study's own trials.
 
+use super::Setup;
 use super::calibration::{Calibration, MOTIONS, Pair, SPEEDS, maneuver_name};
 use super::requests::ManeuverTable;
 use crate::stats::proportion::{Proportion, wilson};
@@ -37,11 +38,14 @@ impl Findings<'_> {
         let only: Vec<(String, String)> =
             request.only.iter().map(|(f, v)| (f.clone(), v.0.clone())).collect();
         let trials = self.matching(&only);
+        // One calibration serves all conditions.
+        let mut setups = self.design.iter().filter_map(|(_, setup)| setup.of::<Setup>());
+        let calibration = setups.find_map(|setup| setup.calibration.as_deref());
         MOTIONS
             .iter()
             .flat_map(|motion| SPEEDS.map(|speed| (*motion, speed)))
             .map(|(motion, speed)| {
-                let pairs = self.calibration.into_iter().flat_map(Calibration::pairs);
+                let pairs = calibration.into_iter().flat_map(Calibration::pairs);
                 let pair = pairs.copied().find(|p| p.motion == motion && p.speed == speed);
                 row(maneuver_name(motion, speed), pair, &trials)
             })

@@ -1,7 +1,7 @@
 //! What the Intersection Detection System hands to the explorer: a vertex and the edges that leave it.
 
-use crate::cmdp::build::Place;
 use crate::geometry::Cardinal;
+use crate::studies::deadline::build_cmdp::Place;
 use serde::{Deserialize, Serialize};
 
 /// What an outgoing edge leads through.

@@ -4,6 +4,7 @@
 //! A Pioneer 3-AT explores a building towards a goal room under a global deadline, on a semantic topological oriented map
 //! (Definition 1) without any metric; legs are planned as a constrained MDP.
 
+pub mod build_cmdp;
 #[cfg(test)]
 mod building;
 pub mod calibration;
@@ -21,6 +22,7 @@ mod requests;
 mod rules;
 pub mod schedule;
 pub mod strategy;
+mod study;
 pub mod toposemantic_map;
 
 pub use calibration::Calibration;
@@ -31,6 +33,7 @@ pub use parameters::{ErrorShape, Hiding, Mission, Parameters, Passage, Sensing, 
 pub use passages::{Passages, PlannedPassages};
 pub use requests::{ManeuverTable, PolicyGraph};
 pub use rules::{Rules, UnplannedSpeed};
+pub use study::Deadline;
 
 use crate::geometry::Pose;
 use crate::robot::Robot;

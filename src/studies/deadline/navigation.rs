@@ -5,8 +5,8 @@
 use super::planner::{Action, Plan, PlanError, Planning};
 use super::schedule::LocalDeadline;
 use super::toposemantic_map::{ToposemanticMap, VertexId};
-use crate::cmdp::build::Maneuvers;
 use crate::rng::Stream;
+use crate::studies::deadline::build_cmdp::Maneuvers;
 
 /// A navigation task under way.
 #[derive(Debug, Clone)]

@@ -3,8 +3,8 @@
 
 use super::intersection_detection::Perception;
 use super::rules::Rules;
-use crate::cmdp::build::{Motion, Speed};
 use crate::navigation::maneuver::PilotRule;
+use crate::studies::deadline::build_cmdp::{Motion, Speed};
 use crate::studies::parameters;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -3,8 +3,8 @@
 
 use super::calibration::{Calibration, CalibrationError, Driven};
 use super::parameters::Task;
-use crate::cmdp::build::{Motion, Speed};
 use crate::digest::Sha256Digest;
+use crate::studies::deadline::build_cmdp::{Motion, Speed};
 use crate::studies::{Condition, Outcome, Setup, TrialRecord};
 use crate::table::{Table, Value};
 
@@ -12,7 +12,7 @@ const COLUMNS: [&str; 6] = ["motion", "speed", "trial", "outcome", "time-s", "re
 
 /// The outcomes that a passage can have.
 const OUTCOMES: [Outcome; 5] =
-    [Outcome::Reached, Outcome::Collided, Outcome::Late, Outcome::Stalled, Outcome::Panicked];
+    [Outcome::REACHED, Outcome::COLLIDED, Outcome::LATE, Outcome::STALLED, Outcome::PANICKED];
 
 /// The passages of a calibration experiment, in plan order.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,8 +45,8 @@ impl PlannedPassages {
         conditions: impl IntoIterator<Item = (&'a Condition, &'a Setup)>,
         trials: u32,
     ) -> Result<Self, CalibrationError> {
-        let maneuver = |(condition, setup): (&Condition, &Setup)| match setup {
-            Setup::Deadline(setup) if setup.parameters.mission.task == Task::Passage => {
+        let maneuver = |(condition, setup): (&Condition, &Setup)| match setup.of::<super::Setup>() {
+            Some(setup) if setup.parameters.mission.task == Task::Passage => {
                 Ok((setup.parameters.passage.motion, setup.parameters.passage.speed))
             }
             _ => Err(CalibrationError::of(format!(
@@ -208,7 +208,7 @@ mod tests {
     fn records() -> [TrialRecord; 2] {
         [0, 1].map(|trial| {
             let mut record = sample::record(7, "none", trial);
-            record.outcome = if trial == 0 { Outcome::Reached } else { Outcome::Collided };
+            record.outcome = if trial == 0 { Outcome::REACHED } else { Outcome::COLLIDED };
             record.measures = [("time-s".to_owned(), (trial == 0).then_some(12.5))].into();
             record
         })

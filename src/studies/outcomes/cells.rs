@@ -85,7 +85,7 @@ impl Findings<'_> {
     ) -> OutcomeCell {
         let mut trials = self.matching(fixed);
         let ran = trials.len() as u64;
-        trials.retain(|record| record.outcome != Outcome::Panicked);
+        trials.retain(|record| record.outcome != Outcome::PANICKED);
         let published = request.published.as_ref().and_then(|name| {
             let (table, row) = self.published_row(name, fixed)?;
             let n = match table.value(row, "n") {

@@ -6,24 +6,28 @@ use super::{
 };
 use crate::figure::{Estimate, EstimateChart, Look, Panel, PanelLine, Part, ShareChart, Shares};
 use crate::stats::summary::quantile;
-use crate::studies::Outcome;
 use crate::studies::findings::Findings;
+use crate::studies::{End, Outcome};
 use crate::table::Value;
 
 /// The factor that limits the time of trials, where there is one.
 const DEADLINE: &str = "deadline-s";
 const TIME: &str = "time-s";
 
-/// Outcomes in the order in which they are stacked. Panicked trials are counted nowhere.
-const STACK: [(Outcome, Look); 7] = [
-    (Outcome::Reached, Look::Good),
-    (Outcome::Explored, Look::Good),
-    (Outcome::Late, Look::Slow),
-    (Outcome::TimeLimit, Look::Slow),
-    (Outcome::Stalled, Look::Idle),
-    (Outcome::Collided, Look::Bad),
-    (Outcome::Stuck, Look::Bad),
-];
+/// Outcomes in the order in which they are stacked, the best first. Panicked trials are counted nowhere.
+fn stack() -> Vec<(Outcome, Look)> {
+    let looks = [
+        (End::Success, Look::Good),
+        (End::TimeUp, Look::Slow),
+        (End::Idle, Look::Idle),
+        (End::Failure, Look::Bad),
+    ];
+    let all = Outcome::all();
+    let of = |(end, look): (End, Look)| {
+        all.iter().filter(move |outcome| outcome.end() == end).map(move |outcome| (*outcome, look))
+    };
+    looks.into_iter().flat_map(of).collect()
+}
 
 /// A factor's value in words: `deadline 680 s`, `furnished true`.
 pub(in crate::studies) fn named(factor: &str, value: &str) -> String {
@@ -103,7 +107,7 @@ impl Findings<'_> {
                 fixed.extend(cell.rows.iter().cloned());
                 fixed.push((request.by.clone(), cell.by.clone()));
                 let mut trials = self.matching(&fixed);
-                trials.retain(|record| record.outcome != Outcome::Panicked);
+                trials.retain(|record| record.outcome != Outcome::PANICKED);
                 let values = measured(&trials, measure);
                 (values.len() > 3).then(|| (quantile(&values, 0.25), quantile(&values, 0.75)))
             }
@@ -136,8 +140,10 @@ impl Findings<'_> {
         let ended = |outcome: Outcome| self.records.iter().any(|r| r.outcome == outcome);
         let printed =
             |outcome| request.published.iter().any(|share| share.of.first() == Some(&outcome));
-        let parts: Vec<(Outcome, Look)> =
-            STACK.into_iter().filter(|(outcome, _)| ended(*outcome) || printed(*outcome)).collect();
+        let parts: Vec<(Outcome, Look)> = stack()
+            .into_iter()
+            .filter(|(outcome, _)| ended(*outcome) || printed(*outcome))
+            .collect();
         let row = |cell: &OutcomeCell| {
             let mut fixed: Vec<(String, String)> =
                 request.only.iter().map(|(f, v)| (f.clone(), v.0.clone())).collect();
@@ -172,7 +178,7 @@ impl Findings<'_> {
         fixed: &[(String, String)],
     ) -> Shares {
         let mut trials = self.matching(fixed);
-        trials.retain(|record| record.outcome != Outcome::Panicked);
+        trials.retain(|record| record.outcome != Outcome::PANICKED);
         let all = crate::stats::length(&trials);
         let share = |(outcome, _): &(Outcome, Look)| {
             let of: Vec<_> = trials.iter().filter(|r| r.outcome == *outcome).collect();
@@ -221,7 +227,7 @@ mod tests {
                         .map(|(f, v)| (f.to_owned(), v.to_owned()))
                         .to_vec();
                 record.trial = trial;
-                record.outcome = if late { Outcome::Late } else { Outcome::Reached };
+                record.outcome = if late { Outcome::LATE } else { Outcome::REACHED };
                 let time = (!late).then_some(20.0 + f64::from(trial));
                 record.measures.insert("time-s".to_owned(), time);
                 records.push(record);
@@ -278,7 +284,7 @@ mod tests {
         let chart = with_findings(|f| {
             f.outcome_figure(
                 "Success",
-                &table(Quantity::Share(vec![Outcome::Reached]), Some("reached")),
+                &table(Quantity::Share(vec![Outcome::REACHED]), Some("reached")),
             )
         });
         let line = &chart.lines[0];
@@ -323,8 +329,8 @@ mod tests {
                     rows: vec!["deadline-s".to_owned()],
                     only: BTreeMap::new(),
                     published: vec![
-                        share(&[Outcome::Reached], "reached"),
-                        share(&[Outcome::Late, Outcome::Stalled], "late"),
+                        share(&[Outcome::REACHED], "reached"),
+                        share(&[Outcome::LATE, Outcome::STALLED], "late"),
                     ],
                 },
             )
@@ -341,7 +347,7 @@ mod tests {
 
     #[test]
     fn a_scatter_has_a_point_for_each_printed_number_and_tells_how_near_it_is() {
-        let show = Quantity::Share(vec![Outcome::Reached]);
+        let show = Quantity::Share(vec![Outcome::REACHED]);
         let tables = [TableRequest {
             id: "success".to_owned(),
             title: String::new(),

@@ -136,7 +136,7 @@ mod tests {
                 ("noise".to_owned(), noise.to_owned()),
             ],
             trial,
-            outcome: Outcome::Explored,
+            outcome: Outcome::EXPLORED,
             cause: String::new(),
             measures: BTreeMap::from([("distance-m".to_owned(), distance)]),
             series: Vec::new(),

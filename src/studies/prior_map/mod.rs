@@ -19,10 +19,13 @@ mod phase;
 mod released_gain;
 mod requests;
 pub mod results;
+mod study;
 pub mod tour;
 pub mod utility;
 
 pub use cell_tests::{CellTests, Difference};
+pub use study::PriorMap;
+
 pub use parameters::{
     Candidate, Coverage, Crossing, Exploration, Gain, Mapping, Measurement, Mission, Navigation,
     Parameters, Reselect, Sensing, Strategy, View,

@@ -236,7 +236,7 @@ impl Findings<'_> {
         let runs: Vec<Vec<(f64, f64)>> = self
             .matching(fixed)
             .into_iter()
-            .filter(|r| r.outcome != Outcome::Panicked)
+            .filter(|r| r.outcome != Outcome::PANICKED)
             .map(|r| {
                 let x = |p: &SeriesPoint| match wanted.against {
                     Metric::TimeS => p.time_s,

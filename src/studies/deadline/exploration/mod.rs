@@ -10,9 +10,9 @@ use super::rules::{Rules, UnplannedSpeed};
 use super::schedule::LocalDeadline;
 use super::strategy::{Chooser, uniform};
 use super::toposemantic_map::{Arrival, Edge, MapError, ToposemanticMap, VertexId};
-use crate::cmdp::build::{Maneuvers, Motion, Side, Speed};
 use crate::geometry::Cardinal;
 use crate::rng::{Seeds, Stream};
+use crate::studies::deadline::build_cmdp::{Maneuvers, Motion, Side, Speed};
 use thiserror::Error;
 
 /// What the robot does next.

@@ -1,7 +1,7 @@
 //! Algorithms 2 and 3 on buildings that are graphs.
 
 use super::*;
-use crate::cmdp::build::Place;
+use crate::studies::deadline::build_cmdp::Place;
 use crate::studies::deadline::building::{Building, maneuvers, plain};
 use crate::studies::deadline::intersection::Exit;
 use crate::studies::deadline::planner::{Method, Status};

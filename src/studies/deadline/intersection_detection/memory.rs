@@ -1,8 +1,8 @@
 //! What tags have been seen, and which of them belong to one intersection.
 
 use super::Perception;
-use crate::cmdp::build::Place;
 use crate::geometry::{Cardinal, Point};
+use crate::studies::deadline::build_cmdp::Place;
 use crate::studies::deadline::intersection::{Exit, Intersection, Opening};
 use std::collections::BTreeMap;
 

@@ -1,10 +1,10 @@
 //! Tags of a small building as a camera without occlusion would detect them, driven past by a robot on rails.
 
 use super::*;
-use crate::cmdp::build::Place;
 use crate::geometry::Axis;
 use crate::math;
 use crate::rng::{Seeds, Stream};
+use crate::studies::deadline::build_cmdp::Place;
 use crate::studies::deadline::intersection::Exit;
 use Cardinal::{East, North, South, West};
 use proptest::prelude::{ProptestConfig, prop_assert_eq, proptest};

@@ -2,7 +2,6 @@
 //! them.
 
 use super::{Prepared, graph};
-use crate::cmdp::build::Speed;
 use crate::geometry::{Cardinal, Point, Pose};
 use crate::navigation::maneuver::{self, CONTROL_PERIOD, Leg, Pilot, Sense, SpeedLimits};
 use crate::rng::Seeds;
@@ -11,6 +10,7 @@ use crate::sim::{
     CameraScene, CompassNoise, Distribution, DriveNoise, Occlusion, OdometryNoise, Scene,
     Simulator, Stepping,
 };
+use crate::studies::deadline::build_cmdp::Speed;
 use crate::studies::deadline::intersection::{Intersection, Opening};
 use crate::studies::deadline::{ErrorShape, Hiding, IntersectionDetectionSystem, Setup};
 use crate::studies::recording::{Frame, GraphView, Recording, Sensed};

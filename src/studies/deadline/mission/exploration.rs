@@ -3,9 +3,9 @@
 use super::body::{Body, Happening};
 use super::tally::{self, Tally};
 use super::{Ending, Prepared, graph, record};
-use crate::cmdp::build::Maneuvers;
 use crate::geometry::Point;
 use crate::studies::deadline::Setup;
+use crate::studies::deadline::build_cmdp::Maneuvers;
 use crate::studies::deadline::exploration::{Explorer, Next};
 use crate::studies::deadline::planner::Plan;
 use crate::studies::recording::{Recording, SolvedPlan};
@@ -80,11 +80,11 @@ impl<'a> Exploration<'a> {
                 Happening::OnTheWay => {}
                 Happening::Contact => {
                     self.tally.collide();
-                    return Ending::plain(Outcome::Collided, self.body.now());
+                    return Ending::plain(Outcome::COLLIDED, self.body.now());
                 }
                 Happening::Lost => {
                     let cause = "saw no vertex where it began".to_owned();
-                    return Ending { outcome: Outcome::Stalled, cause, at: self.body.now() };
+                    return Ending { outcome: Outcome::STALLED, cause, at: self.body.now() };
                 }
                 Happening::Arrived(here) => {
                     let now = self.body.now();
@@ -101,10 +101,10 @@ impl<'a> Exploration<'a> {
                         self.places.push(self.body.position());
                     }
                     match next {
-                        Next::GlobalSuccess => return Ending::plain(Outcome::Reached, now),
+                        Next::GlobalSuccess => return Ending::plain(Outcome::REACHED, now),
                         Next::GiveUp(why) if now < self.deadline => {
                             let cause = why.to_string();
-                            return Ending { outcome: Outcome::Stalled, cause, at: now };
+                            return Ending { outcome: Outcome::STALLED, cause, at: now };
                         }
                         Next::GiveUp(_) => {}
                         Next::Leave(leave) => {
@@ -123,7 +123,7 @@ impl<'a> Exploration<'a> {
             if self.body.now() >= self.deadline {
                 let idle = self.deadline.0 - self.discovered.0.min(self.deadline.0);
                 let stalled = idle >= self.patience.0;
-                let outcome = if stalled { Outcome::Stalled } else { Outcome::Late };
+                let outcome = if stalled { Outcome::STALLED } else { Outcome::LATE };
                 return Ending::plain(outcome, self.body.now());
             }
         }

@@ -1,7 +1,7 @@
 //! What the mind knows and is about to do, for those who look on.
 
-use crate::cmdp::build::{Motion, Place, Speed};
 use crate::geometry::Point;
+use crate::studies::deadline::build_cmdp::{Motion, Place, Speed};
 use crate::studies::deadline::exploration::{Candidate, Decision, Explorer, Purpose};
 use crate::studies::deadline::planner::Plan;
 use crate::studies::deadline::rules::Rules;

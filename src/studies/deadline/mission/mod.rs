@@ -3,6 +3,7 @@
 mod body;
 mod exploration;
 mod graph;
+pub(super) mod lints;
 mod passage;
 mod policy_chart;
 mod tally;
@@ -115,7 +116,7 @@ fn record(
     let Seconds(seconds) = ending.at.seconds();
     // As in Table 1, a time belongs to trials that arrived.
     let time = Tick(ending.at.0 - began.0).seconds().get();
-    let time = (ending.outcome == Outcome::Reached).then_some(time);
+    let time = (ending.outcome == Outcome::REACHED).then_some(time);
     measures.insert("time-s".to_owned(), time);
     TrialRecord {
         key: spec.key,

@@ -3,10 +3,10 @@
 
 use super::body::{Body, Happening};
 use super::{Ending, Prepared, record};
-use crate::cmdp::build::Motion;
 use crate::geometry::{Cardinal, Pose};
 use crate::rng::Stream;
 use crate::studies::deadline::Setup;
+use crate::studies::deadline::build_cmdp::Motion;
 use crate::studies::deadline::intersection::Opening;
 use crate::studies::recording::Recording;
 use crate::studies::{Outcome, TrialRecord, TrialSpec};
@@ -53,17 +53,17 @@ pub(super) fn run(
     let limit = began + Tick::at_or_after(Seconds(passage.time_limit_s));
     let ending = loop {
         match body.step() {
-            Happening::Contact => break Ending::plain(Outcome::Collided, body.now()),
+            Happening::Contact => break Ending::plain(Outcome::COLLIDED, body.now()),
             Happening::Arrived(here) => {
                 let there = &topology.vertices[way.to].tag;
                 if here.tags.contains(there) {
-                    break Ending::plain(Outcome::Reached, body.now());
+                    break Ending::plain(Outcome::REACHED, body.now());
                 }
                 let cause = "arrived at another vertex".to_owned();
-                break Ending { outcome: Outcome::Stalled, cause, at: body.now() };
+                break Ending { outcome: Outcome::STALLED, cause, at: body.now() };
             }
             Happening::OnTheWay | Happening::Lost if body.now() >= limit => {
-                break Ending::plain(Outcome::Late, body.now());
+                break Ending::plain(Outcome::LATE, body.now());
             }
             Happening::OnTheWay | Happening::Lost => {}
         }

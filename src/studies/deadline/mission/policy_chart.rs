@@ -4,9 +4,9 @@
 //! Algorithm 1, and plans one leg from the start to the goal as it plans any leg.
 
 use super::Prepared;
-use crate::cmdp::build::Place;
 use crate::figure::{PolicyChart, PolicyMove, PolicyPanel, PolicyVertex};
 use crate::studies::deadline::Setup;
+use crate::studies::deadline::build_cmdp::Place;
 use crate::studies::deadline::intersection::{Exit, Intersection, Opening};
 use crate::studies::deadline::planner::{Plan, Status};
 use crate::studies::deadline::toposemantic_map::{End, ToposemanticMap, VertexId};
@@ -156,7 +156,7 @@ fn moves(map: &ToposemanticMap, plan: &Plan, from: VertexId) -> Vec<PolicyMove> 
                 let Some(End::Vertex(to)) = map.edge(v, action.exit).map(|edge| edge.to) else {
                     continue;
                 };
-                let fast = action.speed == crate::cmdp::build::Speed::Fast;
+                let fast = action.speed == crate::studies::deadline::build_cmdp::Speed::Fast;
                 let share = mass[v.index()] * probability;
                 next[to.index()] += share;
                 let same =

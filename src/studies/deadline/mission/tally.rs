@@ -1,6 +1,6 @@
 //! What is counted over a trial: maneuvers by motion and speed, and how plans stood to their deadlines.
 
-use crate::cmdp::build::{Motion, Speed};
+use crate::studies::deadline::build_cmdp::{Motion, Speed};
 use crate::studies::deadline::calibration::{MOTIONS, SPEEDS, maneuver_name};
 use crate::studies::deadline::exploration::Explorer;
 use crate::studies::deadline::planner::{Plan, Status};

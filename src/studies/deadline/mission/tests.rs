@@ -1,11 +1,11 @@
 //! Whole trials in the engineering building and in a generated one.
 
 use super::*;
-use crate::cmdp::build::{Expectation, Maneuvers, Motion, Speed};
 use crate::digest::{Sha256Digest, TrialKey};
 use crate::document::Source;
 use crate::rng::Seeds;
 use crate::robot::{Robot, urdf};
+use crate::studies::deadline::build_cmdp::{Expectation, Maneuvers, Motion, Speed};
 use crate::studies::deadline::calibration::{MOTIONS, SPEEDS, maneuver_name};
 use crate::studies::deadline::columns;
 use crate::studies::deadline::strategy::Strategy;
@@ -44,7 +44,7 @@ fn trial(world: World, start: &str, parameters: Parameters, trial: u32) -> Trial
         condition: Condition(vec![("start".into(), start.into())]),
         trial,
         seeds: Seeds::new(2019, vec![("trial".into(), trial.to_string())]),
-        setup: studies::Setup::Deadline(Arc::new(setup)),
+        setup: studies::Setup::new(setup),
     }
 }
 
@@ -63,7 +63,7 @@ fn count(record: &TrialRecord, measure: &str) -> f64 {
 fn a_robot_finds_the_goal_and_every_maneuver_is_counted() {
     let spec = trial(building(), "A", exploration(Strategy::Frontier, 3000.0), 0);
     let record = studies::execute(&spec);
-    assert_eq!(record.outcome, Outcome::Reached, "{}", record.cause);
+    assert_eq!(record.outcome, Outcome::REACHED, "{}", record.cause);
     assert_eq!(record.measures["time-s"], Some(record.sim_seconds));
     let arrived: f64 = MOTIONS
         .iter()
@@ -101,7 +101,7 @@ fn a_recording_tells_what_a_target_was_chosen_among_and_why() {
 fn a_strict_deadline_ends_a_trial_late_and_without_a_time() {
     let spec = trial(building(), "C", exploration(Strategy::Random, 60.0), 1);
     let record = studies::execute(&spec);
-    assert_eq!((record.outcome, record.measures["time-s"]), (Outcome::Late, None));
+    assert_eq!((record.outcome, record.measures["time-s"]), (Outcome::LATE, None));
     assert!((60.0..60.2).contains(&record.sim_seconds), "{}", record.sim_seconds);
 }
 
@@ -111,7 +111,7 @@ fn a_trial_without_a_new_vertex_for_long_has_stalled() {
     let mut parameters = exploration(Strategy::Random, 20.0);
     parameters.mission.stalled_after_s = 2.0;
     let record = studies::execute(&trial(building(), "C", parameters, 1));
-    assert_eq!(record.outcome, Outcome::Stalled);
+    assert_eq!(record.outcome, Outcome::STALLED);
 }
 
 /// An id says nothing but whether a tag was seen before.
@@ -143,7 +143,7 @@ fn a_generated_building_can_be_explored() {
     let world = generate(Family::OfficeFloor, 7).unwrap();
     let spec = trial(world, "B", exploration(Strategy::NormalizedFrontier, 600.0), 0);
     let record = studies::execute(&spec);
-    assert_ne!(record.outcome, Outcome::Panicked, "{}", record.cause);
+    assert_ne!(record.outcome, Outcome::PANICKED, "{}", record.cause);
     assert!(count(&record, "vertices") >= 5.0);
 }
 
@@ -156,7 +156,7 @@ fn a_passage_ends_at_the_next_vertex() {
             parameters.passage.motion = motion;
             parameters.passage.speed = speed;
             let record = studies::execute(&trial(building(), "A", parameters, 5));
-            assert_eq!(record.outcome, Outcome::Reached, "{motion:?} {speed:?}: {}", record.cause);
+            assert_eq!(record.outcome, Outcome::REACHED, "{motion:?} {speed:?}: {}", record.cause);
             let seconds = record.measures["time-s"].unwrap();
             assert!((2.0..60.0).contains(&seconds), "{motion:?} {speed:?} took {seconds} s");
         }
@@ -177,7 +177,7 @@ fn a_robot_that_cannot_feel_its_way_collides() {
         parameters.sensing.compass_noise_deg = 30.0;
         parameters.sensing.compass_noise_correlation_s = 12.0;
         let record = studies::execute(&trial(building(), "A", parameters, number));
-        record.outcome == Outcome::Collided && record.measures["time-s"].is_none()
+        record.outcome == Outcome::COLLIDED && record.measures["time-s"].is_none()
     });
     assert!(collided, "contact ends a passage");
 }

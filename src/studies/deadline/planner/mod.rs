@@ -9,16 +9,16 @@ mod tests;
 
 use super::rules::parameters;
 use super::toposemantic_map::{ToposemanticMap, VertexId};
-use crate::cmdp::build::{
-    BuildError, FAILURE, Maneuver, Maneuvers, Motion, Navigation, Reading, Speed, TIME, Task,
-    Topology, build_cmdp, motion,
-};
 use crate::cmdp::document::write_model;
 use crate::cmdp::{
     Cmdp, Outcome, Policy, Relaxation, Solution, SolveError, Unmeetable, solve, solve_with,
 };
 use crate::geometry::Cardinal;
 use crate::rng::Stream;
+use crate::studies::deadline::build_cmdp::{
+    BuildError, FAILURE, Maneuver, Maneuvers, Motion, Navigation, Reading, Speed, TIME, Task,
+    Topology, build_cmdp, motion,
+};
 use path::Way;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

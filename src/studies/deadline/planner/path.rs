@@ -1,7 +1,9 @@
 //! Plans that need no linear programme: deadlines that do not bind or cannot be met, and the ablations.
 
 use super::{Method, Status};
-use crate::cmdp::build::{Expectation, Maneuvers, Reading, Speed, Task, Topology, motion};
+use crate::studies::deadline::build_cmdp::{
+    Expectation, Maneuvers, Reading, Speed, Task, Topology, motion,
+};
 
 /// One way to the target.
 #[derive(Debug, Clone, PartialEq)]

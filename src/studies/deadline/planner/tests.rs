@@ -1,9 +1,9 @@
 //! Plans against the linear programme, the exported document, and the corridor's closed form.
 
 use super::*;
-use crate::cmdp::build::{Expectation, Place};
 use crate::cmdp::solve_document;
 use crate::rng::Seeds;
+use crate::studies::deadline::build_cmdp::{Expectation, Place};
 use crate::studies::deadline::building::{Building, below, maneuvers};
 use crate::studies::deadline::toposemantic_map::End;
 use proptest::prelude::*;

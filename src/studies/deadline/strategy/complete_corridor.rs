@@ -2,9 +2,9 @@
 //! it is located in".
 
 use super::{Candidates, Preference};
-use crate::cmdp::build::Place;
 use crate::geometry::Axis;
 use crate::rng::Stream;
+use crate::studies::deadline::build_cmdp::Place;
 use crate::studies::deadline::intersection::Opening;
 use crate::studies::deadline::rules::parameters;
 use crate::studies::deadline::toposemantic_map::VertexId;

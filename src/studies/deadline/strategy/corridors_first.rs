@@ -2,8 +2,8 @@
 //! and rooms, the robot always selects corridors first".
 
 use super::{Candidates, Preference};
-use crate::cmdp::build::Place;
 use crate::rng::Stream;
+use crate::studies::deadline::build_cmdp::Place;
 use crate::studies::deadline::rules::parameters;
 use crate::studies::deadline::toposemantic_map::VertexId;
 

@@ -2,9 +2,9 @@
 
 use super::Strategy;
 use super::*;
-use crate::cmdp::build::Place;
 use crate::geometry::Cardinal::{self, East, North, South, West};
 use crate::rng::Seeds;
+use crate::studies::deadline::build_cmdp::Place;
 use crate::studies::deadline::building::{Building, below};
 use crate::studies::deadline::intersection::{Exit, Intersection, Opening};
 use crate::studies::deadline::rules::Rules;

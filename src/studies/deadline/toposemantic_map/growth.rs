@@ -1,8 +1,8 @@
 //! How the map grows: Algorithm 1, and what its listing leaves to the IDS, that a vertex is known.
 
 use super::{Arrival, Edge, End, MapError, SemanticLabel, ToposemanticMap, Vertex, VertexId};
-use crate::cmdp::build::Place;
 use crate::geometry::{Axis, Cardinal};
+use crate::studies::deadline::build_cmdp::Place;
 use crate::studies::deadline::intersection::{Exit, Intersection, Opening};
 
 impl ToposemanticMap {

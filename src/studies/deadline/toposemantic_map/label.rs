@@ -1,7 +1,7 @@
 //! Semantic labels, λ of Definition 1: what kind of place a vertex is, and a name of its own.
 
-use crate::cmdp::build::{Place, Side};
 use crate::geometry::{Axis, Cardinal};
+use crate::studies::deadline::build_cmdp::{Place, Side};
 use std::fmt;
 
 /// L(v): a label that no other vertex of the map has, given in order of discovery and written as in Figures 1 and 2.

@@ -15,8 +15,8 @@ pub use error::{Inconsistency, MapError};
 pub use label::{SemanticLabel, side};
 
 use super::intersection::{Intersection, Opening};
-use crate::cmdp::build::{OrientedEdge, Place, Side, Topology};
 use crate::geometry::{Axis, Cardinal};
+use crate::studies::deadline::build_cmdp::{OrientedEdge, Place, Side, Topology};
 use label::Labels;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::fmt;

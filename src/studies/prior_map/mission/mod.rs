@@ -340,16 +340,16 @@ impl Mission<'_> {
 
     fn ending(&mut self, limit: Tick) -> Option<(Outcome, String)> {
         match self.mind.ending() {
-            Some(Ending::NoFrontierLeft) => return Some((Outcome::Explored, String::new())),
+            Some(Ending::NoFrontierLeft) => return Some((Outcome::EXPLORED, String::new())),
             Some(Ending::NoWay { frontiers }) => {
                 let cause = format!("no way to any of {frontiers} frontiers");
-                return Some((Outcome::Stuck, cause));
+                return Some((Outcome::STUCK, cause));
             }
             None => {}
         }
         let now = self.sim.now();
         if now >= limit {
-            return Some((Outcome::TimeLimit, String::new()));
+            return Some((Outcome::TIME_LIMIT, String::new()));
         }
         let mission = &self.setup.parameters.mission;
         let pose = self.sim.true_pose();
@@ -362,7 +362,7 @@ impl Mission<'_> {
                 "moved less than {} m in {} s",
                 mission.stuck_distance_m, mission.stuck_after_s
             );
-            (Outcome::Stuck, cause)
+            (Outcome::STUCK, cause)
         })
     }
 }

@@ -105,7 +105,7 @@ fn spec(trial: u32, prior: bool, parameters: Parameters) -> TrialSpec {
         condition: Condition(vec![("prior".into(), "none".into())]),
         trial,
         seeds: Seeds::new(1, vec![("trial".into(), trial.to_string())]),
-        setup: studies::Setup::PriorMap(Arc::new(setup)),
+        setup: studies::Setup::new(setup),
     }
 }
 
@@ -133,10 +133,9 @@ fn a_tour_explores_the_flat_whether_or_not_its_nodes_stand_free() {
         parameters.measurement.coverage_at_distance_m = vec![1, 500];
         let map = Some(Arc::new(graph(door)));
         let setup = Setup { parameters, ..setup(None) }.with_topo_metric_map(map);
-        let spec =
-            TrialSpec { setup: studies::Setup::PriorMap(Arc::new(setup)), ..spec_of_the_flat() };
+        let spec = TrialSpec { setup: studies::Setup::new(setup), ..spec_of_the_flat() };
         let record = studies::execute(&spec);
-        assert_eq!(record.outcome, Outcome::Explored, "{door} {noise}: {}", record.cause);
+        assert_eq!(record.outcome, Outcome::EXPLORED, "{door} {noise}: {}", record.cause);
         let measure = |name: &str| record.measures[name].unwrap();
         assert!(measure("coverage-percent") > 97.0, "{door} {noise}");
         assert!(measure("coverage-percent-at-1-m") < 90.0, "{door} {noise}");
@@ -154,7 +153,7 @@ fn every_kind_of_run_explores_the_flat_without_touching_it() {
         parameters.exploration.reselect = reselect;
         let record = studies::execute(&spec(0, prior, parameters));
         let what = format!("prior {prior}, {reselect:?}: {:?} {}", record.outcome, record.cause);
-        assert_eq!(record.outcome, Outcome::Explored, "{what}");
+        assert_eq!(record.outcome, Outcome::EXPLORED, "{what}");
         let measure = |name: &str| record.measures[name].unwrap();
         assert!(measure("coverage-percent") > 97.0, "{what}: {}", measure("coverage-percent"));
         assert_eq!(measure("contacts"), 0.0, "{what}");
@@ -212,7 +211,7 @@ fn every_option_explores_the_flat_and_no_robot_comes_nearer_to_a_wall_than_its_r
             let spec = spec(3, prior, parameters.clone());
             let (record, recording) = studies::reenact(&spec);
             let what = format!("{what}, prior {prior}: {:?} {}", record.outcome, record.cause);
-            assert_eq!(record.outcome, Outcome::Explored, "{what}");
+            assert_eq!(record.outcome, Outcome::EXPLORED, "{what}");
             let covered = record.measures["coverage-percent"].unwrap();
             assert!(covered > 95.0, "{what}: {covered} %");
             let solid = flat().contact(0.01, 0.43);
@@ -324,7 +323,7 @@ fn lost() -> Parameters {
 fn a_robot_that_estimates_its_pose_explores_where_one_that_trusts_odometry_is_lost() {
     for prior in [false, true] {
         let record = studies::execute(&spec(0, prior, lost()));
-        assert_eq!(record.outcome, Outcome::Explored, "{prior}: {}", record.cause);
+        assert_eq!(record.outcome, Outcome::EXPLORED, "{prior}: {}", record.cause);
         let measure = |name: &str| record.measures[name].unwrap();
         assert!(measure("coverage-percent") > 95.0, "{}", measure("coverage-percent"));
         assert_eq!(measure("contacts"), 0.0);
@@ -381,7 +380,7 @@ fn a_time_limit_and_a_walled_in_robot_are_recorded_as_such() {
     let mut parameters = Parameters::default();
     parameters.mission.time_limit_s = 2.0;
     let record = studies::execute(&spec(0, false, parameters));
-    assert_eq!((record.outcome, record.sim_seconds), (Outcome::TimeLimit, 2.0));
+    assert_eq!((record.outcome, record.sim_seconds), (Outcome::TIME_LIMIT, 2.0));
     assert_eq!(record.measures["distance-m-at-95"], None);
 }
 

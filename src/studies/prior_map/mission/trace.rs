@@ -192,7 +192,7 @@ mod tests {
             trace.note_time(Tick(seconds * 3000), distance, Pose::default(), 0);
         }
         let spec = crate::studies::prior_map::mission::tests::spec_of_the_flat();
-        let record = trace.finish(&spec, Outcome::Explored, String::new(), Tick(9000));
+        let record = trace.finish(&spec, Outcome::EXPLORED, String::new(), Tick(9000));
         assert_eq!(record.measures[&coverage_at_distance(2)], Some(30.0));
         assert_eq!(record.measures[&coverage_at_distance(5)], Some(60.0), "it ended before");
     }

@@ -1,7 +1,8 @@
 //! Corridors of n equal edges, whose answers have closed forms.
 
+use super::tests::relative;
 use super::*;
-use crate::cmdp::build::*;
+use crate::cmdp::{Infeasible, Solution, solve};
 
 const SLOW: Expectation = Expectation { time_s: 10.0, failure: 0.01 };
 const FAST: Expectation = Expectation { time_s: 4.0, failure: 0.04 };

@@ -13,8 +13,7 @@
 //! - Ties go by failure, then by time; a failure bound that cannot be met is dropped; a deadline that cannot
 //!   be met becomes the least time that can ([`Navigation::plan`]).
 
-use super::lexicographic::{Outcome, SolveError, Unmeetable, solve_with};
-use super::model::{Cmdp, CmdpBuilder};
+use crate::cmdp::{Cmdp, CmdpBuilder, Outcome, SolveError, Unmeetable, solve_with};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -284,7 +283,7 @@ impl Navigation {
     /// `Solve(CMDP)` of Algorithm 2, always with a policy if the target can be reached at all. A failure bound
     /// that cannot be met is dropped; then a deadline that cannot be met becomes the least expected time,
     /// which is what "as the deadline nears the robot should speed up" asks. Both are flagged in
-    /// [`Solution::relaxed`](super::Solution::relaxed).
+    /// [`Solution::relaxed`](crate::cmdp::Solution::relaxed).
     ///
     /// # Errors
     /// A model too large or too badly scaled.
@@ -333,5 +332,6 @@ fn check(topology: &Topology, task: &Task, expectations: &Maneuvers) -> Result<(
 }
 
 #[cfg(test)]
-#[path = "tests/build.rs"]
+mod corridor_tests;
+#[cfg(test)]
 mod tests;

@@ -1,7 +1,6 @@
 //! `BuildCMDP` on a small map.
 
 use super::*;
-use crate::cmdp::tests::relative;
 
 /// A corridor of three vertices with a room off the middle one (on its left), and a far room off the last.
 fn map() -> Topology {
@@ -123,4 +122,9 @@ fn an_unreachable_target_and_bad_numbers_are_named() {
         text(build_cmdp(&map(), &task(3, 1.0), &wrong)),
         "the time (s) of corridor, slow is NaN; expected a finite number >= 0"
     );
+}
+
+/// |a - b| relative to the larger.
+pub(super) fn relative(a: f64, b: f64) -> f64 {
+    (a - b).abs() / a.abs().max(b.abs()).max(1e-300)
 }

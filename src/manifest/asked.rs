@@ -1,0 +1,84 @@
+//! What a study asks of the manifest for one condition, and what is noted of the answers.
+
+use super::knowledge::Knowledge;
+use super::lint;
+use super::parts::Parts;
+use super::resolver::Resolver;
+use crate::digest::MeaningDigest;
+use crate::studies::deadline::Calibration;
+use crate::studies::prior_map::{Parameters, SharedReference};
+use crate::studies::{Condition, ConditionAsWritten, Prior, Remark, Surroundings};
+use serde_json::{Value, json};
+use std::sync::Arc;
+
+/// A condition while its setup is made.
+pub(super) struct Asked<'r, 'a> {
+    pub(super) resolver: &'r mut Resolver<'a>,
+    pub(super) condition: &'r Condition,
+    /// Robot, world and start; `None` where one could not be had, which has been told.
+    pub(super) parts: Option<Parts>,
+    /// The prior knowledge that was asked for.
+    pub(super) knowledge: Option<Knowledge>,
+}
+
+impl ConditionAsWritten for Asked<'_, '_> {
+    fn parameters(&mut self) -> Option<Value> {
+        let Resolver { doc, .. } = *self.resolver;
+        let value_of = |factor: &str| self.condition.value(factor);
+        Some(doc.parameters.for_condition(doc.study, &value_of))
+    }
+
+    fn refuse_parameters(&mut self, reason: String) {
+        let label = format!("for `{}`", self.condition);
+        self.resolver.faults.at_key("/parameters", reason, &label);
+    }
+
+    fn surroundings(&mut self) -> Option<Surroundings> {
+        self.parts.as_ref().map(|parts| Surroundings {
+            robot: Arc::clone(&parts.robot),
+            world: Arc::clone(&parts.world.world),
+            start: parts.start,
+        })
+    }
+
+    fn prior(&mut self, own: &Parameters) -> Option<Option<Prior>> {
+        let Parts { robot, world, start, .. } = self.parts.as_ref()?;
+        let known = self.resolver.prior(self.condition, world, robot, *start, own).ok()?;
+        if let Some(map) = known.as_ref().and_then(Knowledge::map) {
+            let faults = &mut self.resolver.faults;
+            lint::resolution(own.mapping.resolution_m, map, faults);
+            // Conditions share worlds and priors; holding one against the other once is enough.
+            let pair = (world.meaning, map.meaning, map.pointer.clone());
+            if !map.own && self.resolver.aligned.insert(pair) {
+                lint::alignment(robot, &world.world, map, faults);
+            }
+        }
+        self.knowledge = known;
+        Some(self.knowledge.as_ref().map(|known| match known {
+            Knowledge::Map(map) => Prior::Map(Arc::clone(&map.grid)),
+            Knowledge::TopoMetric(graph, ..) => Prior::TopoMetric(Arc::clone(graph)),
+        }))
+    }
+
+    fn reference(&mut self, parameters: &Value) -> SharedReference {
+        let Some(Parts { robot_meaning, world, start, .. }) = &self.parts else {
+            return SharedReference::default();
+        };
+        let meanings: [&MeaningDigest; 2] = [robot_meaning, &world.meaning];
+        let key = json!([meanings, start, parameters]).to_string();
+        self.resolver.library.references.entry(key).or_default().clone()
+    }
+
+    fn calibration(&mut self) -> Option<Arc<Calibration>> {
+        self.resolver.calibration()
+    }
+
+    fn tell(&mut self, remark: Remark) {
+        let faults = &mut self.resolver.faults;
+        let fault = faults.fault(remark.pointer, remark.message).label(remark.label);
+        faults.push(match remark.help {
+            Some(help) => fault.help(help),
+            None => fault,
+        });
+    }
+}

@@ -1,0 +1,41 @@
+//! What a condition of this study needs of its robot and world, and may lack.
+
+use super::{Setup, tag_scheme};
+use crate::studies::Remark;
+use crate::world::topology::Topology;
+
+/// Returns what is wrong.
+pub(in crate::studies::deadline) fn remarks(setup: &Setup) -> Vec<Remark> {
+    let robot = &setup.robot;
+    let mut remarks = Vec::new();
+    for (there, what) in
+        [(robot.camera.is_some(), "logical camera"), (robot.compass.is_some(), "compass")]
+    {
+        if !there {
+            remarks.push(Remark {
+                pointer: "/robot",
+                message: format!("the robot `{}` has no {what}", robot.name),
+                label: "this study explores with one".to_owned(),
+                help: Some("add a `<gazebo>` sensor to the URDF, or name another robot".to_owned()),
+            });
+        }
+    }
+    match Topology::read(&setup.world.tags, &tag_scheme(setup)) {
+        Err(problems) => remarks.extend(problems.into_iter().map(|problem| Remark {
+            pointer: "/world",
+            message: problem.to_string(),
+            label: "the tags make no graph".to_owned(),
+            help: Some("docs/world.md tells how tags make a graph".to_owned()),
+        })),
+        Ok(graph) if graph.goals().next().is_none() => remarks.push(Remark {
+            pointer: "/world",
+            message: "the world has no goal to reach".to_owned(),
+            label: "no vertex carries a tag of the goal's colour".to_owned(),
+            help: Some(
+                "`perception.goal-color` names it; docs/world.md tells where it stands".to_owned(),
+            ),
+        }),
+        Ok(_) => {}
+    }
+    remarks
+}

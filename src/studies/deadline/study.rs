@@ -1,0 +1,126 @@
+//! The deadline study as the rest of the program knows it.
+
+use super::mission::{self, lints};
+use super::{Parameters, Setup, Task, columns};
+use crate::geometry::Pose;
+use crate::robot::Robot;
+use crate::studies::recording::Recording;
+use crate::studies::study::parameters;
+use crate::studies::{
+    ConditionAsWritten, End, Outcome, Setup as AnySetup, Stopwatch, Study, StudySetup, TrialRecord,
+    TrialSpec,
+};
+use crate::table::Column;
+use crate::world::World;
+use schemars::{Schema, SchemaGenerator};
+use serde_json::{Map, Value, json};
+
+/// Susa Rincon and Carpin 2019.
+#[derive(Debug)]
+pub struct Deadline;
+
+impl Outcome {
+    /// Deadline: the robot arrived at the goal in time; in a passage, at the end of it.
+    pub const REACHED: Self =
+        Self::new("reached", End::Success, "the robot arrived at the goal in time");
+    /// Deadline: the body came into contact with something.
+    pub const COLLIDED: Self =
+        Self::new("collided", End::Failure, "the body came into contact with something");
+    /// Deadline: the time was up, though new places were still being found.
+    pub const LATE: Self =
+        Self::new("late", End::TimeUp, "the time was up while new places were still being found");
+    /// Deadline: the time was up, and no new place had been found for long; or nothing was left to do.
+    pub const STALLED: Self = Self::new(
+        "stalled",
+        End::Idle,
+        "the time was up and no new place had been found for long, or nothing was left to do",
+    );
+}
+
+impl Study for Deadline {
+    fn name(&self) -> &'static str {
+        "deadline"
+    }
+
+    fn about(&self) -> &'static str {
+        "Susa Rincon and Carpin 2019: exploration under a deadline."
+    }
+
+    fn defaults(&self) -> Value {
+        json!(Parameters::default())
+    }
+
+    fn schema(&self, generator: SchemaGenerator) -> Schema {
+        generator.into_root_schema_for::<Parameters>()
+    }
+
+    fn keys(&self) -> &'static [&'static str] {
+        &["calibration"]
+    }
+
+    fn layouts(&self) -> &'static [&'static str] {
+        &["maneuver-table", "policy-graph"]
+    }
+
+    fn outcomes(&self) -> &'static [Outcome] {
+        &[Outcome::REACHED, Outcome::COLLIDED, Outcome::LATE, Outcome::STALLED]
+    }
+
+    fn measures(&self) -> Vec<String> {
+        columns::measures()
+    }
+
+    fn measure(&self, name: &str) -> Option<Column> {
+        columns::measure(name)
+    }
+
+    fn setup(&self, condition: &mut dyn ConditionAsWritten) -> Option<AnySetup> {
+        let parameters: Parameters = parameters(condition)?;
+        let calibration = match parameters.mission.task {
+            Task::Exploration => Some(condition.calibration()),
+            Task::Passage => None,
+        };
+        let around = condition.surroundings()?;
+        let calibration = match calibration {
+            Some(needed) => Some(needed?),
+            None => None,
+        };
+        let setup = Setup::new(around.world, around.robot, around.start, calibration, parameters);
+        for remark in lints::remarks(&setup) {
+            condition.tell(remark);
+        }
+        Some(AnySetup::new(setup))
+    }
+}
+
+impl StudySetup for Setup {
+    fn world(&self) -> &World {
+        &self.world
+    }
+
+    fn robot(&self) -> &Robot {
+        &self.robot
+    }
+
+    fn start(&self) -> Pose {
+        self.start
+    }
+
+    fn parameters(&self) -> Value {
+        json!(self.parameters)
+    }
+
+    fn further(&self) -> Map<String, Value> {
+        let calibration = self.calibration.iter();
+        calibration.map(|known| ("maneuvers".to_owned(), known.to_json())).collect()
+    }
+
+    fn run(
+        &self,
+        spec: &TrialSpec,
+        recording: Option<&mut Recording>,
+        watch: &mut dyn Stopwatch,
+    ) -> TrialRecord {
+        mission::run(spec, self, recording, watch)
+    }
+}

@@ -1,0 +1,291 @@
+//! What a study is to the rest of the program.
+//!
+//! A study is a folder here, and one entry in [`STUDIES`]: what it is called, which parameters it has, what it makes of a
+//! manifest's condition, how its trials run and end, and what they measure. Nothing outside its folder names it, but for the
+//! layouts of tables and figures that are its own.
+
+use super::deadline::Calibration;
+use super::prior_map::{self, SharedReference, tour::TopoMetricMap};
+use super::recording::Recording;
+use super::{Outcome, STUDIES, TrialRecord, TrialSpec};
+use crate::geometry::Pose;
+use crate::grid::OccupancyGrid;
+use crate::robot::Robot;
+use crate::table::Column;
+use crate::world::World;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::{DeserializeOwned, Error};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde_json::{Map, Value};
+use std::any::Any;
+use std::borrow::Cow;
+use std::fmt;
+use std::ops::Deref;
+use std::sync::Arc;
+
+/// A study: how its manifests are read, and what its trials are.
+pub trait Study: Sync {
+    /// Returns the name in manifests, keys and streams.
+    fn name(&self) -> &'static str;
+
+    /// Returns the publication and its subject in one line.
+    fn about(&self) -> &'static str;
+
+    /// Returns the parameters with every default written out: an object of groups, in which what is an object is a group.
+    fn defaults(&self) -> Value;
+
+    /// Returns the schema of the parameters.
+    fn schema(&self, generator: SchemaGenerator) -> Schema;
+
+    /// Returns the keys of a manifest, among those that not every study has, that mean something here: `prior`,
+    /// `prior-maps`, `calibration`.
+    fn keys(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    /// Returns the names of the layouts of tables and figures that show what only this study has.
+    fn layouts(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    /// Returns how trials end that are no fault of the program.
+    fn outcomes(&self) -> &'static [Outcome];
+
+    /// Returns the names of every measure that a trial can have, but for those that parameters make
+    /// ([`StudySetup::further_measures`]).
+    fn measures(&self) -> Vec<String>;
+
+    /// Returns what the measure `name` is; `None` where no trial of this study has it.
+    fn measure(&self, name: &str) -> Option<Column>;
+
+    /// Returns the prefix of measures that parameters make, where a condition may ask for some.
+    fn is_further_measure(&self, _name: &str) -> bool {
+        false
+    }
+
+    /// Returns whether trials have curves: points of time, distance and coverage.
+    fn has_series(&self) -> bool {
+        false
+    }
+
+    /// Returns whether the mind's choices are timed, for claims about the machine.
+    fn times_choices(&self) -> bool {
+        false
+    }
+
+    /// Makes what the trials of a condition need. `None` where that cannot be had, which has been told then.
+    fn setup(&self, condition: &mut dyn ConditionAsWritten) -> Option<Setup>;
+}
+
+/// Robot, world and start: what the trials of every study need.
+#[derive(Debug, Clone)]
+pub struct Surroundings {
+    /// The robot.
+    pub robot: Arc<Robot>,
+    /// The true world.
+    pub world: Arc<World>,
+    /// Where the robot begins, in the world's frame (m, rad).
+    pub start: Pose,
+}
+
+/// Prior knowledge of a condition.
+#[derive(Debug, Clone)]
+pub enum Prior {
+    /// A map in the world's frame.
+    Map(Arc<OccupancyGrid>),
+    /// A graph of places in the world's frame.
+    TopoMetric(Arc<TopoMetricMap>),
+}
+
+/// A condition as the manifest has it. What cannot be had is told by whoever is asked, and is then `None`.
+pub trait ConditionAsWritten {
+    /// Returns the study's parameters for this condition; `None` where they are none.
+    fn parameters(&mut self) -> Option<Value>;
+
+    /// Tells that the parameters are none, for this `reason`.
+    fn refuse_parameters(&mut self, reason: String);
+
+    /// Returns robot, world and start.
+    fn surroundings(&mut self) -> Option<Surroundings>;
+
+    /// Returns the prior knowledge that the manifest chooses, `Some(None)` where it chooses none.
+    fn prior(&mut self, own: &prior_map::Parameters) -> Option<Option<Prior>>;
+
+    /// Returns what coverage is measured against together with every other condition of these `parameters`, robot, world and
+    /// start.
+    fn reference(&mut self, parameters: &Value) -> SharedReference;
+
+    /// Returns what the manifest's `calibration` measured.
+    fn calibration(&mut self) -> Option<Arc<Calibration>>;
+
+    /// Tells what is wrong or looks it.
+    fn tell(&mut self, remark: Remark);
+}
+
+/// Reads the parameters of a condition.
+pub(super) fn parameters<P: DeserializeOwned>(condition: &mut dyn ConditionAsWritten) -> Option<P> {
+    let written = condition.parameters()?;
+    match serde_json::from_value(written) {
+        Ok(parameters) => Some(parameters),
+        Err(error) => {
+            condition.refuse_parameters(error.to_string());
+            None
+        }
+    }
+}
+
+/// Something that is well-formed and cannot be right.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Remark {
+    /// JSON pointer from the manifest's root to the value it is about.
+    pub pointer: &'static str,
+    /// What is wrong.
+    pub message: String,
+    /// What is expected.
+    pub label: String,
+    /// What to do, where that can be said.
+    pub help: Option<String>,
+}
+
+/// Everything the trials of one condition need.
+pub trait StudySetup: Any + fmt::Debug + Send + Sync {
+    /// Returns the true world.
+    fn world(&self) -> &World;
+
+    /// Returns the robot.
+    fn robot(&self) -> &Robot;
+
+    /// Returns where the robot begins, in the world's frame (m, rad).
+    fn start(&self) -> Pose;
+
+    /// Returns the study's parameters, defaults written out.
+    fn parameters(&self) -> Value;
+
+    /// Returns what else a trial depends on, by name: nothing of it is in robot, world, prior, start or parameters.
+    fn further(&self) -> Map<String, Value> {
+        Map::new()
+    }
+
+    /// Returns the names of measures that these parameters ask for.
+    fn further_measures(&self) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// Runs a trial under the eyes of `watch`, writing everything down in `recording` where there is one: a pure function of
+    /// `spec` and this setup. The record is the same either way.
+    fn run(
+        &self,
+        spec: &TrialSpec,
+        recording: Option<&mut Recording>,
+        watch: &mut dyn Stopwatch,
+    ) -> TrialRecord;
+}
+
+/// Times parts of a trial, for claims about the machine. No record depends on it.
+pub trait Stopwatch {
+    /// A mind is asked what to do next.
+    fn asked(&mut self);
+    /// To answer, it chose where to go.
+    fn chose(&mut self);
+}
+
+/// Nobody takes the time.
+impl Stopwatch for () {
+    fn asked(&mut self) {}
+    fn chose(&mut self) {}
+}
+
+/// The setup of a condition, shared by all its trials.
+#[derive(Debug, Clone)]
+pub struct Setup(Arc<dyn StudySetup>);
+
+impl Setup {
+    /// A setup of whatever study.
+    pub fn new(setup: impl StudySetup) -> Self {
+        Self(Arc::new(setup))
+    }
+
+    /// Returns the setup as that of one study; `None` where it is another's.
+    pub fn of<S: StudySetup>(&self) -> Option<&S> {
+        let setup: &dyn Any = &*self.0;
+        setup.downcast_ref()
+    }
+}
+
+impl Deref for Setup {
+    type Target = dyn StudySetup;
+
+    fn deref(&self) -> &Self::Target {
+        &*self.0
+    }
+}
+
+/// Which study a manifest describes: one of [`STUDIES`].
+#[derive(Clone, Copy)]
+pub struct StudyKind(&'static dyn Study);
+
+impl StudyKind {
+    /// Returns every study.
+    pub fn all() -> impl Iterator<Item = Self> {
+        STUDIES.iter().map(|study| Self(*study))
+    }
+
+    /// Returns the study of this name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::all().find(|kind| kind.name() == name)
+    }
+}
+
+impl Deref for StudyKind {
+    type Target = dyn Study;
+
+    fn deref(&self) -> &Self::Target {
+        self.0
+    }
+}
+
+impl PartialEq for StudyKind {
+    fn eq(&self, other: &Self) -> bool {
+        self.name() == other.name()
+    }
+}
+
+impl Eq for StudyKind {}
+
+impl fmt::Debug for StudyKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl Serialize for StudyKind {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
+}
+
+impl<'de> Deserialize<'de> for StudyKind {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let name: Cow<'_, str> = Cow::deserialize(deserializer)?;
+        Self::named(&name).ok_or_else(|| D::Error::custom(format!("no study `{name}`")))
+    }
+}
+
+impl JsonSchema for StudyKind {
+    fn schema_name() -> Cow<'static, str> {
+        "StudyKind".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let known: Vec<Value> = Self::all()
+            .map(|kind| {
+                serde_json::json!({
+                    "type": "string",
+                    "const": kind.name(),
+                    "description": kind.about(),
+                })
+            })
+            .collect();
+        json_schema!({ "description": "Which study a manifest describes.", "oneOf": known })
+    }
+}
