@@ -7,6 +7,7 @@
 mod source;
 
 use source::{NamedPath, Shipped};
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -83,6 +84,9 @@ const PRINTING: &[&str] = &["print", "println", "eprint", "eprintln", "dbg"];
 /// The parts of a mind. A study's mission holds both ends; its `mod.rs` and `study.rs` are the door to it.
 const MIND: &[&str] = &["mapping/", "navigation/", "cmdp/"];
 const TRUTH: &[&str] = &["sim", "world"];
+
+/// Rooms whose modules name one another without a circle: each names those below it, and never what its own parent holds.
+const WITHOUT_CIRCLES: &[&str] = &["claims"];
 
 #[derive(Debug, PartialEq, Eq)]
 struct Violation {
@@ -249,6 +253,55 @@ fn door(file: &str, foreign: &str, mut fault: impl FnMut(String, &str)) {
     }
 }
 
+/// A module by its path.
+type Module = Vec<String>;
+
+/// Which modules of `room` each of its modules names; a module holds its children, so it names them too.
+fn imports(room: &str, files: &[(String, String)]) -> BTreeMap<Module, BTreeSet<Module>> {
+    let modules: BTreeMap<Module, &str> = files
+        .iter()
+        .map(|(file, text)| (module_of(file), text.as_str()))
+        .filter(|(module, _)| module.first().is_some_and(|first| first == room))
+        .collect();
+    let known = |path: &[String]| {
+        (1..=path.len()).rev().map(|n| path[..n].to_vec()).find(|part| modules.contains_key(part))
+    };
+    let of = |(module, text): (&Module, &&str)| {
+        let paths = Shipped::read(text).paths(module);
+        let named = paths.iter().filter(|path| path.segments[0] == "crate");
+        let named = named.filter_map(|path| known(&path.segments[1..]));
+        let children = modules.keys().filter(|child| child.split_last().unwrap().1 == &module[..]);
+        let all = named.chain(children.cloned()).filter(|other| other != module);
+        (module.clone(), all.collect())
+    };
+    modules.iter().map(of).collect()
+}
+
+/// One circle of modules in words, if there is one.
+fn circle(imports: &BTreeMap<Module, BTreeSet<Module>>) -> Option<String> {
+    let mut left = imports.clone();
+    loop {
+        let known: BTreeSet<Module> = left.keys().cloned().collect();
+        let before = left.len();
+        left.retain(|_, named| !named.is_disjoint(&known));
+        if left.len() == before {
+            break;
+        }
+    }
+    // Each module that is left names another that is left, so whoever follows them comes round.
+    let mut walked = vec![left.keys().next()?];
+    loop {
+        let here = walked[walked.len() - 1];
+        let next = left[here].iter().find(|named| left.contains_key(*named)).unwrap();
+        if let Some(begin) = walked.iter().position(|module| *module == next) {
+            walked.push(next);
+            let names: Vec<String> = walked[begin..].iter().map(|m| m.join("::")).collect();
+            return Some(names.join(" -> "));
+        }
+        walked.push(next);
+    }
+}
+
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).to_owned()
 }
@@ -333,6 +386,38 @@ fn every_module_has_a_layer_and_every_dependency_a_door() {
             );
         }
     }
+}
+
+#[test]
+fn rooms_without_circles_stay_so() {
+    let files = shipped_files();
+    for room in WITHOUT_CIRCLES {
+        let imports = imports(room, &files);
+        assert!(imports.len() > 1, "src/{room} holds no modules");
+        assert_eq!(
+            circle(&imports),
+            None,
+            "src/{room}: move what both need into a module below them"
+        );
+    }
+}
+
+#[test]
+fn a_circle_is_found_through_other_modules_and_through_the_parent() {
+    let found = |files: &[(&str, &str)]| {
+        let owned = |(file, text): &(&str, &str)| ((*file).to_owned(), (*text).to_owned());
+        circle(&imports("plan", &files.iter().map(owned).collect::<Vec<_>>()))
+    };
+    let below = ("plan/key.rs", "use crate::digest::Digest; use super::factor::Factor;");
+    assert_eq!(found(&[("plan/mod.rs", "mod key;"), below, ("plan/factor.rs", "")]), None);
+    assert_eq!(
+        found(&[below, ("plan/factor.rs", "fn f() { crate::plan::key::of(); }")]).as_deref(),
+        Some("plan::factor -> plan::key -> plan::factor")
+    );
+    assert_eq!(
+        found(&[("plan/mod.rs", "struct Plan;"), ("plan/key.rs", "use super::Plan;")]).as_deref(),
+        Some("plan -> plan::key -> plan")
+    );
 }
 
 #[test]

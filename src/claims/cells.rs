@@ -18,6 +18,14 @@ impl Values {
     }
 }
 
+impl Values {
+    /// Each of these as the name of a metric, with the pointer from the form to it.
+    pub(crate) fn as_metrics(&self) -> Vec<(String, &str)> {
+        let names = self.0.iter().enumerate();
+        names.map(|(i, name)| (format!("/metric/{i}"), name.as_str())).collect()
+    }
+}
+
 impl<'de> Deserialize<'de> for Values {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct OneOrMany;
@@ -152,6 +160,24 @@ impl ForEach {
             return vec![BTreeMap::new()];
         }
         self.0.iter().flat_map(Where::combinations).collect()
+    }
+
+    /// The pools that `cells` yields, over all combinations.
+    pub(crate) fn pools<P: IntoIterator<Item = Where>>(
+        &self,
+        cells: impl Fn(&BTreeMap<String, String>) -> P,
+    ) -> Vec<Where> {
+        self.combinations().iter().flat_map(cells).collect()
+    }
+
+    /// `named` selections of a form, and after them those that it is repeated over; each with the pointer from the form.
+    pub(crate) fn after<'a>(
+        &'a self,
+        named: impl IntoIterator<Item = (&'static str, &'a Where)>,
+    ) -> Vec<(String, &'a Where)> {
+        let named = named.into_iter().map(|(path, cell)| (path.to_owned(), cell));
+        let repeated = self.0.iter().enumerate();
+        named.chain(repeated.map(|(i, cell)| (format!("/for-each/{i}"), cell))).collect()
     }
 }
 

@@ -1,11 +1,10 @@
 //! The runs of cells, and every reason why they cannot be compared.
 
 use super::cells::Where;
-use super::expect::Terms;
-use super::judge::Context;
+use super::context::Context;
 use super::metric::Metric;
 use super::observations::Observations;
-use super::terms::{Censored, Sides};
+use super::terms::{Censored, Sides, Terms};
 use super::verdict::{CellNumbers, Effect};
 use crate::rng::{Seeds, Stream};
 use crate::stats::proportion::{Proportion, chi_square_homogeneity, fisher_exact};
@@ -31,6 +30,20 @@ pub(super) struct Draft {
     pub(super) conditions: Vec<usize>,
     pub(super) evidence: Result<Evidence, String>,
     pub(super) notes: Vec<String>,
+}
+
+impl Draft {
+    /// What cannot be tested, with no cell looked at.
+    pub(super) fn untestable(about: String, reason: String) -> Self {
+        Self {
+            about,
+            test: "none",
+            cells: Vec::new(),
+            conditions: Vec::new(),
+            evidence: Err(reason),
+            notes: Vec::new(),
+        }
+    }
 }
 
 /// What a test says.
@@ -89,6 +102,21 @@ impl Bench<'_> {
         };
         let groups = reasons.into_iter().next().map_or(Ok(groups), Err);
         Gathered { numbers, conditions, groups, notes }
+    }
+
+    /// One comparison of `cells`: `weigh` says what their runs are evidence of.
+    pub(super) fn draft(
+        &self,
+        about: String,
+        test: &'static str,
+        cells: &[Where],
+        metric: &Metric,
+        weigh: impl FnOnce(&str, &[Group]) -> Result<Evidence, String>,
+    ) -> Draft {
+        let gathered = self.gather(cells, metric);
+        let evidence = gathered.groups.and_then(|groups| weigh(&about, &groups));
+        let (cells, conditions, notes) = (gathered.numbers, gathered.conditions, gathered.notes);
+        Draft { about, test, cells, conditions, evidence, notes }
     }
 
     /// The refusal of trials that are not independent.

@@ -1,49 +1,22 @@
 //! From a claim and the trials to a verdict.
 
-use super::expect::{Expect, Terms};
+use super::claim::Claim;
+use super::context::Context;
 use super::gather::{Bench, COUNT, Draft, Evidence};
 use super::metric::WALL_TIME;
 use super::observations::Observations;
-use super::terms::{Correction, Sides};
+use super::terms::{Correction, Sides, Terms};
 use super::verdict::{CellNumbers, ComparisonVerdict, Judgement, Verdict};
-use super::{Claim, agreement, comparison, equality, level, rate, sign, spread};
 use crate::stats::distribution::normal_quantile;
 use crate::stats::multiple::holm;
 use crate::stats::real;
 use crate::table::Table;
-use std::collections::BTreeMap;
 
 /// Power that the numbers of trials named in verdicts would have had.
 const POWER: f64 = 0.8;
 
 /// Beyond this a number of trials is no plan any more.
 const MOST_TRIALS: f64 = 1e6;
-
-/// What a verdict depends on besides the trials.
-#[derive(Debug, Clone, Copy)]
-pub struct Context<'a> {
-    /// The paper's tables by name (contract: [`super::published`]).
-    pub published: &'a BTreeMap<String, Table>,
-    /// Factors over which the trials share their noise.
-    pub shared_noise: &'a [String],
-    /// Seed of resampling: the experiment's.
-    pub seed: u64,
-    /// Bootstrap resamples.
-    pub resamples: u32,
-    /// Permutations drawn.
-    pub permutations: u32,
-}
-
-impl<'a> Context<'a> {
-    /// The context of a study: 2000 bootstrap resamples, 9999 permutations.
-    pub fn new(
-        published: &'a BTreeMap<String, Table>,
-        shared_noise: &'a [String],
-        seed: u64,
-    ) -> Self {
-        Self { published, shared_noise, seed, resamples: 2000, permutations: 9999 }
-    }
-}
 
 /// Judges `claim` by the trials table (`results/trials.csv`).
 ///
@@ -59,32 +32,18 @@ pub fn judge_observations(
     observations: &Observations,
     context: &Context<'_>,
 ) -> Verdict {
-    let bench = Bench { claim: &claim.id, observations, context, terms: claim.expect.terms() };
+    let bench =
+        Bench { claim: &claim.id, observations, context, terms: claim.expect.as_form().terms() };
     let machine = claim.expect.metrics().into_iter().find(|m| m.starts_with(WALL_TIME));
-    let drafts = match &claim.expect {
-        _ if !claim.circumstance && machine.is_some() => {
-            let metric = machine.unwrap_or_default();
+    let drafts = match machine {
+        Some(metric) if !claim.circumstance => {
             let reason = format!(
                 "`{metric}` depends on the machine: such claims are marked `circumstance: true` and judged apart \
                  from the results"
             );
-            vec![untestable(metric, reason)]
+            vec![Draft::untestable(metric, reason)]
         }
-        Expect::Less(form) => comparison::less(&bench, form),
-        Expect::Greater(form) => comparison::greater(&bench, form),
-        Expect::Rank(form) => comparison::rank(&bench, form),
-        Expect::Trend(form) => comparison::trend(&bench, form),
-        Expect::Equivalent(form) => equality::equivalent(&bench, form),
-        Expect::Homogeneous(form) => equality::homogeneous(&bench, form),
-        Expect::Between(form) => level::between(&bench, form),
-        Expect::Share(form) => level::share(&bench, form),
-        Expect::Every(form) => level::every(&bench, form),
-        Expect::Rate(form) => rate::rate(&bench, form),
-        Expect::SignTest(form) => vec![sign::sign_test(&bench, form)],
-        Expect::Spread(form) => spread::spread(&bench, form),
-        Expect::CorrelationWithPublished(form) => vec![agreement::correlation(&bench, form)],
-        Expect::RmseWithPublished(form) => vec![agreement::rmse(&bench, form)],
-        Expect::Untestable(form) => vec![untestable("this study".to_owned(), form.because.clone())],
+        _ => claim.expect.as_form().judge(&bench),
     };
     conclude(claim, &bench, drafts)
 }
@@ -92,21 +51,10 @@ pub fn judge_observations(
 /// The verdict on a claim for which nothing was measured, for this `reason`.
 pub fn not_measured(claim: &Claim, reason: &str, context: &Context<'_>) -> Verdict {
     let observations = Observations::default();
-    let terms = claim.expect.terms();
+    let terms = claim.expect.as_form().terms();
     let bench = Bench { claim: &claim.id, observations: &observations, context, terms };
     let about = claim.expect.metrics().join(" and ");
-    conclude(claim, &bench, vec![untestable(about, reason.to_owned())])
-}
-
-fn untestable(about: String, reason: String) -> Draft {
-    Draft {
-        about,
-        test: "none",
-        cells: Vec::new(),
-        conditions: Vec::new(),
-        evidence: Err(reason),
-        notes: Vec::new(),
-    }
+    conclude(claim, &bench, vec![Draft::untestable(about, reason.to_owned())])
 }
 
 fn conclude(claim: &Claim, bench: &Bench<'_>, drafts: Vec<Draft>) -> Verdict {

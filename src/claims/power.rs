@@ -4,18 +4,16 @@
 //! judged by the very code that judges the real one, and the verdicts are counted. So pools, corrections,
 //! margins, minimum n and the choice of test all enter as they are.
 
-use super::Claim;
-use super::cells::Where;
-use super::judge::{Context, judge_observations};
+use super::assume::Assume;
+use super::claim::Claim;
+use super::context::Context;
+use super::judge::judge_observations;
 use super::metric::Metric;
 use super::observations::Observations;
 use super::published::{PublishedCell, read, selection};
-use super::terms::one;
 use super::verdict::{Judgement, rounded};
 use crate::rng::Seeds;
 use crate::stats::real;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
@@ -27,35 +25,6 @@ const ENOUGH: f64 = 0.8;
 
 /// Made-up studies per number of trials: a share of 0.8 is then known to about ± 0.06 (two standard errors).
 pub const REPLICATES: u32 = 200;
-
-/// What is taken for the truth.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub enum Assume {
-    /// The paper's cells, as printed.
-    Published {
-        /// Name of the published table.
-        table: String,
-        /// Published values times this are in the metric's unit.
-        #[serde(default = "one")]
-        scale: f64,
-    },
-    /// Values by cell; the first that matches a condition holds there.
-    Cells(Vec<AssumedCell>),
-}
-
-/// A supposed truth in some conditions.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-pub struct AssumedCell {
-    /// Which conditions; default all.
-    #[serde(default)]
-    pub r#where: Where,
-    /// Mean, or share in 0 to 1.
-    pub value: f64,
-    /// Standard deviation of one trial, for measures.
-    pub sd: Option<f64>,
-}
 
 /// How often a number of trials would yield which verdict.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -167,7 +136,7 @@ fn truths(
         }
         Assume::Cells(_) => Vec::new(),
     };
-    let (mut all, pools) = (Vec::new(), claim.expect.pools());
+    let (mut all, pools) = (Vec::new(), claim.expect.as_form().pools());
     for (i, condition) in conditions.iter().enumerate() {
         let value_of = |f: &str| condition.iter().find(|(n, _)| n == f).map(|(_, v)| v.as_str());
         if !pools.iter().any(|pool| pool.admits(value_of)) {

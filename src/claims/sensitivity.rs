@@ -1,7 +1,7 @@
 //! Which verdicts hang on what the paper leaves open: every claim judged again with one setting at a time moved to
 //! the other values that its manifest states, on the same trial numbers and the same noise.
 
-use super::{Judgement, Verdict};
+use super::verdict::{Judgement, Verdict};
 use crate::digest::Sha256Digest;
 use crate::table::{Table, Value};
 use std::collections::BTreeMap;

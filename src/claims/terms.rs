@@ -26,6 +26,11 @@ pub enum Test {
 }
 
 impl Test {
+    /// Returns whether it is a test of shares, and not of measures.
+    pub(crate) fn is_of_shares(self) -> bool {
+        matches!(self, Self::FisherExact | Self::ChiSquare | Self::CochranArmitage)
+    }
+
     /// The test's name in manifests and verdicts.
     pub fn name(self) -> &'static str {
         match self {
@@ -96,50 +101,37 @@ pub enum Side {
     Greater,
 }
 
-/// Which way a trend goes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Direction {
-    /// Up with the score.
-    Rising,
-    /// Down with the score.
-    Falling,
+/// What all forms have in common, with the form's own defaults filled in.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Terms {
+    pub(crate) alpha: f64,
+    pub(crate) correction: Correction,
+    pub(crate) sides: Sides,
+    pub(crate) test: Option<Test>,
+    pub(crate) at_least: Option<usize>,
+    pub(crate) minimum_n: u64,
+    /// Runs that each single cell needs: `minimum_n`, or one where that counts pairs or cells.
+    pub(crate) minimum_runs: u64,
+    pub(crate) censored: Censored,
+    /// The number of first trials of each condition that effect and p are told of as well.
+    pub(crate) also_at_n: Option<u64>,
 }
 
-/// Which number of a sample is meant.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Statistic {
-    /// The mean, or the share.
-    #[default]
-    Mean,
-    /// The median.
-    Median,
-    /// The 95th percentile.
-    P95,
-}
-
-/// What a sign is taken of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Pairs {
-    /// Two cells of each `for-each` combination.
-    #[default]
-    Cells,
-    /// Two trials of the same number in conditions that differ only in the factors compared.
-    Trials,
-}
-
-/// The order of cells across a factor.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Order {
-    /// This value has the highest metric.
-    First(String),
-    /// This value has the lowest metric.
-    Last(String),
-    /// Each of these is higher than the next.
-    Descending(Vec<String>),
+impl Default for Terms {
+    /// Those of a form that says nothing: one estimate, tested as it is.
+    fn default() -> Self {
+        Self {
+            alpha: five_percent(),
+            correction: Correction::None,
+            sides: Sides::One,
+            test: None,
+            at_least: None,
+            minimum_n: 1,
+            minimum_runs: 1,
+            censored: Censored::Refuse,
+            also_at_n: None,
+        }
+    }
 }
 
 pub(super) fn five_percent() -> f64 {

@@ -1,6 +1,6 @@
 //! What judging a claim yields, and its canonical form in `results/claims.json`.
 
-use super::{PaperTable, Words};
+use super::words::{PaperTable, Words};
 use crate::stats::Interval;
 use serde_json::{Map, Value, json};
 use std::fmt;

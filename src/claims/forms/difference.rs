@@ -1,73 +1,19 @@
-//! `less`, `greater`, `rank` and `trend`: differences with a direction.
+//! The difference of two cells, by every test there is of one.
 
-use super::cells::Where;
-use super::comparing::{Comparison, Ranking, Trend};
-use super::expect::Terms;
-use super::gather::{Bench, Draft, Evidence, Group, varies};
-use super::metric::Metric;
-use super::terms::{Direction, Order, Side, Sides, Test};
-use super::verdict::{Effect, FIRST_N, FIRST_N_HEDGES_G, FIRST_N_P};
+use crate::claims::cells::Where;
+use crate::claims::gather::{Bench, Draft, Evidence, Group, varies};
+use crate::claims::metric::Metric;
+use crate::claims::terms::{Side, Sides, Terms, Test};
+use crate::claims::verdict::{Effect, FIRST_N, FIRST_N_HEDGES_G, FIRST_N_P};
 use crate::stats::bootstrap::bootstrap;
 use crate::stats::effect::{cliff_delta, hedges_g, risk_difference};
 use crate::stats::means::{anova, student, welch};
-use crate::stats::proportion::{
-    Proportion, chi_square_homogeneity, cochran_armitage, fisher_exact, newcombe,
-};
-use crate::stats::rank::{mann_whitney, spearman, spearman_interval, spearman_permutation};
+use crate::stats::proportion::{Proportion, chi_square_homogeneity, fisher_exact, newcombe};
+use crate::stats::rank::mann_whitney;
 use crate::stats::summary::{Summary, median};
 use crate::stats::{Interval, Tails, real};
 
-pub(super) fn less(bench: &Bench<'_>, form: &Comparison) -> Vec<Draft> {
-    sided(bench, form, Side::Less)
-}
-
-pub(super) fn greater(bench: &Bench<'_>, form: &Comparison) -> Vec<Draft> {
-    sided(bench, form, Side::Greater)
-}
-
-fn sided(bench: &Bench<'_>, form: &Comparison, side: Side) -> Vec<Draft> {
-    let mut drafts = Vec::new();
-    for metric in Metric::of_run(&form.metric.0, form.per_run) {
-        for pins in form.for_each.combinations() {
-            for other in form.than.cells() {
-                let cells = [form.r#where.pinned(&pins), other.pinned(&pins)];
-                drafts.push(compare(bench, &metric, &cells, side));
-            }
-        }
-    }
-    drafts
-}
-
-pub(super) fn rank(bench: &Bench<'_>, form: &Ranking) -> Vec<Draft> {
-    let Some((factor, values)) = form.across.0.iter().next() else { return Vec::new() };
-    let with = |base: &Where, value: &str| {
-        base.pinned(&[(factor.clone(), value.to_owned())].into_iter().collect())
-    };
-    let pairs: Vec<(&str, &str)> = match &form.order {
-        Order::First(best) => {
-            values.0.iter().filter(|v| *v != best).map(|v| (best.as_str(), v.as_str())).collect()
-        }
-        Order::Last(worst) => {
-            values.0.iter().filter(|v| *v != worst).map(|v| (v.as_str(), worst.as_str())).collect()
-        }
-        Order::Descending(order) => {
-            order.windows(2).map(|pair| (pair[0].as_str(), pair[1].as_str())).collect()
-        }
-    };
-    let mut drafts = Vec::new();
-    for metric in &form.metric.0 {
-        for pins in form.for_each.combinations() {
-            let base = form.r#where.pinned(&pins);
-            for &(high, low) in &pairs {
-                let cells = [with(&base, high), with(&base, low)];
-                drafts.push(compare(bench, &Metric::named(metric), &cells, Side::Greater));
-            }
-        }
-    }
-    drafts
-}
-
-fn compare(bench: &Bench<'_>, metric: &Metric, cells: &[Where; 2], side: Side) -> Draft {
+pub(super) fn compare(bench: &Bench<'_>, metric: &Metric, cells: &[Where; 2], side: Side) -> Draft {
     let sign = if side == Side::Less { "<" } else { ">" };
     let about = format!("{metric}: ({}) {sign} ({})", cells[0], cells[1]);
     let test =
@@ -259,86 +205,4 @@ pub(super) fn mean_effect(a: &Group, b: &Group, interval: Interval) -> Effect {
     let value = a.summary.mean - b.summary.mean;
     let standardised = Some(("hedges-g", hedges_g(a.summary, b.summary)));
     Effect { name: "mean-difference", value, interval, standardised }
-}
-
-pub(super) fn trend(bench: &Bench<'_>, form: &Trend) -> Vec<Draft> {
-    let scores: Vec<f64> = form.along.iter().map(|step| step.score).collect();
-    let side = match form.direction {
-        Direction::Rising => Side::Greater,
-        Direction::Falling => Side::Less,
-    };
-    let word = if side == Side::Greater { "rises" } else { "falls" };
-    let mut drafts = Vec::new();
-    for name in &form.metric.0 {
-        let metric = Metric::named(name);
-        for pins in form.for_each.combinations() {
-            let base = form.r#where.pinned(&pins);
-            let cells: Vec<Where> = form.along.iter().map(|s| base.replaced(&s.r#where)).collect();
-            let about = format!("{metric}: {word} along {} steps in ({base})", cells.len());
-            let test = bench.terms.test.unwrap_or(if metric.is_share() {
-                Test::CochranArmitage
-            } else {
-                Test::Spearman
-            });
-            let gathered = bench.gather(&cells, &metric);
-            let evidence = gathered
-                .groups
-                .and_then(|groups| trend_evidence(bench, &about, test, &groups, &scores, side));
-            drafts.push(Draft {
-                about,
-                test: test.name(),
-                cells: gathered.numbers,
-                conditions: gathered.conditions,
-                evidence,
-                notes: gathered.notes,
-            });
-        }
-    }
-    drafts
-}
-
-fn trend_evidence(
-    bench: &Bench<'_>,
-    about: &str,
-    test: Test,
-    groups: &[Group],
-    scores: &[f64],
-    side: Side,
-) -> Result<Evidence, String> {
-    if groups.len() < 2 {
-        return Err("a trend needs two steps or more".to_owned());
-    }
-    let sides = bench.terms.sides;
-    let shares: Option<Vec<Proportion>> = groups.iter().map(|g| g.proportion).collect();
-    match (test, shares) {
-        (Test::CochranArmitage, Some(shares)) => {
-            let found = cochran_armitage(&shares, scores);
-            let (p_for, p_against) = directed(found.tails, found.z, side, sides);
-            let at = |pick: fn(f64, f64) -> bool| {
-                (1..scores.len())
-                    .fold(0, |best, i| if pick(scores[i], scores[best]) { i } else { best })
-            };
-            let (low, high) = (at(|a, b| a < b), at(|a, b| a > b));
-            let effect = Some(share_effect(shares[high], shares[low], bench.confidence()));
-            Ok(Evidence { p_for, p_against, statistics: vec![("z", found.z)], effect })
-        }
-        (Test::Spearman, None) => {
-            let (mut x, mut y) = (Vec::new(), Vec::new());
-            for (group, score) in groups.iter().zip(scores) {
-                x.resize(x.len() + group.values.len(), *score);
-                y.extend(&group.values);
-            }
-            let rho = spearman(&x, &y);
-            if rho.is_nan() {
-                return Err("no value varies, so nothing can rise or fall".to_owned());
-            }
-            let mut stream = bench.stream(about);
-            let tails = spearman_permutation(&x, &y, bench.context.permutations, &mut stream);
-            let (p_for, p_against) = directed(tails, rho, side, sides);
-            let interval = spearman_interval(rho, x.len() as u64, bench.confidence());
-            let effect = Effect { name: "spearman", value: rho, interval, standardised: None };
-            Ok(Evidence { p_for, p_against, statistics: Vec::new(), effect: Some(effect) })
-        }
-        _ => Err(format!("{} does not apply to this metric", test.name())),
-    }
 }

@@ -1,14 +1,152 @@
-//! `sign-test`: how often one side of a pair is the lower.
+//! `sign-test`: over many pairs of cells, or over trials that share their noise, one side is lower more often
+//! than not. Several metrics of the same runs vote together: they are one pair, not several.
+//!
+//! ```yaml
+//! id: P11
+//! says: Using a priori knowledge improves considerably the performance in all the three cases
+//! paper-table: supports
+//! expect:
+//!   sign-test:
+//!     metric: [distance-m-at-80, distance-m-at-90]
+//!     direction: less
+//!     where: {prior: floor-plan}
+//!     than: {prior: none}
+//!     for-each: {environment: [basic, office, open], furnished: [true, false]}
+//!     minimum-n: 6
+//!     censored: reached-only
+//! ```
 
-use super::gather::{Bench, Draft, Evidence};
-use super::measuring::SignTest;
-use super::metric::Metric;
-use super::terms::{Censored, Pairs, Side, Sides};
-use super::verdict::{CellNumbers, Effect};
+use super::declare::form;
+use super::form::Form;
+use crate::claims::cells::{ForEach, Values, Where};
+use crate::claims::faults::Faults;
+use crate::claims::gather::{Bench, Draft, Evidence};
+use crate::claims::metric::Metric;
+use crate::claims::terms::{Censored, Side, Sides, Terms};
+use crate::claims::verdict::{CellNumbers, Effect};
 use crate::stats;
 use crate::stats::proportion::{Proportion, wilson};
 use crate::stats::real;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+
+form! {
+    /// `sign-test`.
+    pub struct SignTest {
+        /// What is measured. Several metrics of one pair vote; a drawn vote is a tie.
+        pub metric: Values,
+        /// Which side the first cell lies on.
+        pub direction: Side,
+        /// The first of each pair.
+        pub r#where: Where,
+        /// The second of each pair.
+        pub than: Where,
+        /// The pairs, or with `pairs: trials` a restriction of them.
+        #[serde(default)]
+        pub for_each: ForEach,
+        /// Pairs of cells (by their means or shares) or of trials.
+        #[serde(default)]
+        pub pairs: Pairs,
+    }
+    terms {
+        sides, alpha,
+        /// Pairs that are not ties, without which nothing is judged.
+        minimum_n,
+        /// What becomes of runs that did not reach the measure; with `pairs: trials`, `worst` ranks them behind.
+        censored,
+    }
+}
+
+/// What a sign is taken of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Pairs {
+    /// Two cells of each `for-each` combination.
+    #[default]
+    Cells,
+    /// Two trials of the same number in conditions that differ only in the factors compared.
+    Trials,
+}
+
+impl Form for SignTest {
+    /// What is counted are pairs: a cell needs one run.
+    fn terms(&self) -> Terms {
+        Terms { minimum_runs: 1, ..self.shared_terms() }
+    }
+
+    fn measured(&self) -> Vec<(String, &str)> {
+        self.metric.as_metrics()
+    }
+
+    fn selections(&self) -> Vec<(String, &Where)> {
+        self.for_each.after([("/where", &self.r#where), ("/than", &self.than)])
+    }
+
+    fn pools(&self) -> Vec<Where> {
+        self.for_each.pools(|pins| [&self.r#where, &self.than].map(|cell| cell.pinned(pins)))
+    }
+
+    fn ranks(&self) -> bool {
+        self.pairs == Pairs::Trials
+    }
+
+    fn check<'a>(&'a self, _: &mut Faults<'a>) {}
+
+    fn judge(&self, bench: &Bench<'_>) -> Vec<Draft> {
+        let sign = if self.direction == Side::Less { "<" } else { ">" };
+        let about = format!(
+            "{}: ({}) {sign} ({}), by sign",
+            self.metric.0.join(" and "),
+            self.r#where,
+            self.than
+        );
+        let mut signs = Signs::default();
+        let counted = match self.pairs {
+            Pairs::Cells => by_cells(bench, self, &mut signs),
+            Pairs::Trials => by_trials(bench, self, &mut signs),
+        };
+        let evidence = counted.and_then(|()| {
+            let pairs = signs.below + signs.above;
+            if pairs < self.minimum_n.max(1) {
+                return Err(format!(
+                    "{pairs} pairs differ, fewer than the minimum of {} ({} are tied)",
+                    self.minimum_n, signs.ties
+                ));
+            }
+            let claimed = match self.direction {
+                Side::Less => signs.below,
+                Side::Greater => signs.above,
+            };
+            let tails = stats::rank::sign_test(claimed, pairs - claimed);
+            let half = claimed * 2;
+            let (p_for, p_against) = match self.sides {
+                Sides::One => (tails.greater, tails.less),
+                Sides::Two => (
+                    if half > pairs { tails.two_sided } else { 1.0 },
+                    if half < pairs { tails.two_sided } else { 1.0 },
+                ),
+            };
+            let share = Proportion::new(claimed, pairs);
+            let effect = Effect {
+                name: "share-of-pairs",
+                value: share.share(),
+                interval: wilson(share, bench.confidence()),
+                standardised: None,
+            };
+            let statistics = vec![
+                ("pairs", real(pairs)),
+                ("as-claimed", real(claimed)),
+                ("ties", real(signs.ties)),
+            ];
+            Ok(Evidence { p_for, p_against, statistics, effect: Some(effect) })
+        });
+        // More trials make more pairs only where trials are the pairs.
+        let conditions = if self.pairs == Pairs::Trials { signs.conditions } else { Vec::new() };
+        let test = "sign-test";
+        vec![Draft { about, test, cells: signs.cells, conditions, evidence, notes: signs.notes }]
+    }
+}
 
 /// Signs of the pairs, and what they were taken from.
 #[derive(Default)]
@@ -31,56 +169,6 @@ impl Signs {
             _ => self.ties += 1,
         }
     }
-}
-
-pub(super) fn sign_test(bench: &Bench<'_>, form: &SignTest) -> Draft {
-    let sign = if form.direction == Side::Less { "<" } else { ">" };
-    let about = format!(
-        "{}: ({}) {sign} ({}), by sign",
-        form.metric.0.join(" and "),
-        form.r#where,
-        form.than
-    );
-    let mut signs = Signs::default();
-    let counted = match form.pairs {
-        Pairs::Cells => by_cells(bench, form, &mut signs),
-        Pairs::Trials => by_trials(bench, form, &mut signs),
-    };
-    let evidence = counted.and_then(|()| {
-        let pairs = signs.below + signs.above;
-        if pairs < form.minimum_n.max(1) {
-            return Err(format!(
-                "{pairs} pairs differ, fewer than the minimum of {} ({} are tied)",
-                form.minimum_n, signs.ties
-            ));
-        }
-        let claimed = match form.direction {
-            Side::Less => signs.below,
-            Side::Greater => signs.above,
-        };
-        let tails = stats::rank::sign_test(claimed, pairs - claimed);
-        let half = claimed * 2;
-        let (p_for, p_against) = match form.sides {
-            Sides::One => (tails.greater, tails.less),
-            Sides::Two => (
-                if half > pairs { tails.two_sided } else { 1.0 },
-                if half < pairs { tails.two_sided } else { 1.0 },
-            ),
-        };
-        let share = Proportion::new(claimed, pairs);
-        let effect = Effect {
-            name: "share-of-pairs",
-            value: share.share(),
-            interval: wilson(share, bench.confidence()),
-            standardised: None,
-        };
-        let statistics =
-            vec![("pairs", real(pairs)), ("as-claimed", real(claimed)), ("ties", real(signs.ties))];
-        Ok(Evidence { p_for, p_against, statistics, effect: Some(effect) })
-    });
-    // More trials make more pairs only where trials are the pairs.
-    let conditions = if form.pairs == Pairs::Trials { signs.conditions } else { Vec::new() };
-    Draft { about, test: "sign-test", cells: signs.cells, conditions, evidence, notes: signs.notes }
 }
 
 /// One pair per combination: noise in common is welcome within a pair and refused between pairs.

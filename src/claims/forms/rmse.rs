@@ -1,148 +1,125 @@
-//! Our cells beside the paper's: `correlation-with-published`, `rmse-with-published`.
+//! `rmse-with-published`: root mean square difference over the published cells, in the metric's unit, with the
+//! skill over a constant and over `baseline` means beside it.
+//!
+//! ```yaml
+//! id: D15b
+//! ours: success rates within 18 points of the paper's
+//! expect:
+//!   rmse-with-published:
+//!     metric: success
+//!     published: success-percent
+//!     scale: 0.01
+//!     at-most: 0.18
+//!     baseline: [start, strategy]
+//! ```
 
-use super::cells::Where;
-use super::gather::{Bench, Draft, Evidence};
-use super::measuring::{Correlation, Rmse};
-use super::pairing::{Pair, Point, clusters, log_ratios, pair_up, printed};
-use super::verdict::Effect;
-use crate::math::ln;
+use super::agreement::Compared;
+use super::declare::form;
+use super::form::Form;
+use super::pairing::{Pair, Point, clusters, printed};
+use crate::claims::cells::{Values, Where};
+use crate::claims::faults::Faults;
+use crate::claims::gather::{Bench, Draft, Evidence};
+use crate::claims::terms::{Terms, one};
+use crate::claims::verdict::Effect;
 use crate::stats::agreement;
 use crate::stats::bootstrap::{Bootstrapped, bootstrap};
-use crate::stats::distribution::{normal_sf, student_t_quantile};
+use crate::stats::distribution::student_t_quantile;
 use crate::stats::proportion::{Proportion, newcombe};
-use crate::stats::rank::{midranks, pearson, spearman, spearman_interval, spearman_permutation};
+use crate::stats::rank::{pearson, spearman};
 use crate::stats::summary::mean;
 use crate::stats::{length, real};
 use std::collections::BTreeMap;
 
-fn too_few(cells: usize, minimum: u64) -> Option<String> {
-    ((cells as u64) < minimum.max(4))
-        .then(|| format!("{cells} cells to compare, fewer than the minimum of {}", minimum.max(4)))
-}
-
-pub(super) fn correlation(bench: &Bench<'_>, form: &Correlation) -> Draft {
-    let ratio =
-        form.ratio_to.as_ref().map(|base| format!(" as log ratio to ({base})")).unwrap_or_default();
-    let about = format!(
-        "{}{ratio} against published `{}`: correlation at least {}",
-        form.metric.0.join(" and "),
-        form.published,
-        form.at_least
-    );
-    let mut paired = pair_up(bench, &form.metric, &form.published, form.scale, &form.r#where);
-    let mut notes = paired.notes;
-    let evidence = paired.pairs.and_then(|pairs| {
-        let points = match &form.ratio_to {
-            None => pairs
-                .iter()
-                .map(|p| Point { runs: &p.pins, x: p.published, y: p.ours.summary.mean, of: None })
-                .collect(),
-            Some(base) => {
-                let (points, lost) = log_ratios(&pairs, base);
-                if lost > 0 {
-                    notes.push(format!("{lost} cells have no positive base to take a ratio to"));
-                }
-                points
-            }
-        };
-        too_few(points.len(), form.minimum_n).map_or(Ok(()), Err)?;
-        correlated(bench, &about, &points, form.at_least)
-    });
-    paired.cells.truncate(MOST_CELLS);
-    Draft { about, test: "spearman", cells: paired.cells, conditions: Vec::new(), evidence, notes }
-}
-
-/// More cells than any paper prints; a bound on what a verdict lists.
-const MOST_CELLS: usize = 1000;
-
-/// Evidence that the rank correlation reaches a level: its interval (Bonett and Wright 2000) above the level,
-/// and a permutation p-value against none at all. Cells that are measured on the same runs count as one in both:
-/// the interval has the width that independent ones of their number would give, and their mean ranks are permuted.
-fn correlated(
-    bench: &Bench<'_>,
-    about: &str,
-    points: &[Point<'_>],
-    level: f64,
-) -> Result<Evidence, String> {
-    let (x, y): (Vec<f64>, Vec<f64>) = points.iter().map(|p| (p.x, p.y)).unzip();
-    let (x, y) = (&x[..], &y[..]);
-    let r = spearman(x, y);
-    if r.is_nan() {
-        return Err("one side is the same in every cell, so there is no correlation".to_owned());
+form! {
+    /// `rmse-with-published`.
+    pub struct Rmse {
+        /// What is measured; several where the published table has a `metric` column.
+        pub metric: Values,
+        /// Name of the published table.
+        pub published: String,
+        /// Published values times this are in the metric's unit (0.01 for percent).
+        #[serde(default = "one")]
+        pub scale: f64,
+        /// Which of the published cells; default all.
+        #[serde(default)]
+        pub r#where: Where,
+        /// If given, log ratios to the cell with these factors replaced are compared.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub ratio_to: Option<Where>,
+        /// Root mean square difference claimed, in the metric's unit; with `ratio-to`, of the log ratios.
+        pub at_most: f64,
+        /// Factors whose published means are the guess that skill is counted over.
+        #[serde(default)]
+        pub baseline: Vec<String>,
     }
-    let clusters = clusters(points.iter().map(|p| p.runs));
-    if clusters.len() < 4 {
-        return Err(format!(
-            "the cells are of {} independent conditions, fewer than the 4 that a correlation needs",
-            clusters.len()
-        ));
+    terms {
+        alpha,
+        /// Published cells without which nothing is judged.
+        minimum_n,
+        censored,
     }
-    let mean_ranks = |values: &[f64]| -> Vec<f64> {
-        let ranks = midranks(values);
-        let of = |places: &Vec<usize>| mean(&places.iter().map(|&i| ranks[i]).collect::<Vec<_>>());
-        clusters.iter().map(of).collect()
-    };
-    let mut stream = bench.stream(about);
-    let permuted = spearman_permutation(
-        &mean_ranks(x),
-        &mean_ranks(y),
-        bench.context.permutations,
-        &mut stream,
-    )
-    .greater;
-    let fisher = |r: f64| 0.5 * ln((1.0 + r) / (1.0 - r));
-    let standard_error = ((1.0 + r * r / 2.0) / (length(&clusters) - 3.0)).sqrt();
-    let z = (fisher(r) - fisher(level)) / standard_error;
-    let (mx, my) = (mean(x), mean(y));
-    let xy: f64 = x.iter().zip(y).map(|(a, b)| (a - mx) * (b - my)).sum();
-    let xx: f64 = x.iter().map(|a| (a - mx) * (a - mx)).sum();
-    Ok(Evidence {
-        p_for: normal_sf(z).max(permuted),
-        p_against: normal_sf(-z),
-        statistics: vec![
-            ("cells", length(x)),
-            ("independent-cells", length(&clusters)),
-            ("permutation-p", permuted),
-            ("pearson", pearson(x, y)),
-            ("slope", xy / xx),
-        ],
-        effect: Some(Effect {
-            name: "spearman",
-            value: r,
-            interval: spearman_interval(r, clusters.len() as u64, bench.confidence()),
-            standardised: None,
-        }),
-    })
 }
 
-pub(super) fn rmse(bench: &Bench<'_>, form: &Rmse) -> Draft {
-    let ratio =
-        form.ratio_to.as_ref().map(|base| format!(" as log ratio to ({base})")).unwrap_or_default();
-    let about = format!(
-        "{}{ratio} against published `{}`: root mean square difference at most {}",
-        form.metric.0.join(" and "),
-        form.published,
-        form.at_most
-    );
-    let mut paired = pair_up(bench, &form.metric, &form.published, form.scale, &form.r#where);
-    let mut notes = paired.notes;
-    let evidence = paired.pairs.and_then(|pairs| match &form.ratio_to {
-        None => {
-            too_few(pairs.len(), form.minimum_n).map_or(Ok(()), Err)?;
-            Ok(distance(bench, &about, &pairs, form))
+impl Rmse {
+    fn compared(&self) -> Compared<'_> {
+        Compared {
+            metric: &self.metric,
+            published: &self.published,
+            scale: self.scale,
+            only: &self.r#where,
+            ratio_to: self.ratio_to.as_ref(),
+            minimum_n: self.minimum_n,
         }
-        Some(base) => {
-            let (points, lost) = log_ratios(&pairs, base);
-            if lost > 0 {
-                notes.push(format!("{lost} cells have no positive base to take a ratio to"));
+    }
+}
+
+impl Form for Rmse {
+    /// What is counted are published cells: one of ours needs one run.
+    fn terms(&self) -> Terms {
+        Terms { minimum_runs: 1, ..self.shared_terms() }
+    }
+
+    fn measured(&self) -> Vec<(String, &str)> {
+        self.metric.as_metrics()
+    }
+
+    fn published(&self) -> Option<&str> {
+        Some(&self.published)
+    }
+
+    fn selections(&self) -> Vec<(String, &Where)> {
+        self.compared().selections()
+    }
+
+    fn pools(&self) -> Vec<Where> {
+        vec![Where::default()]
+    }
+
+    fn check<'a>(&'a self, faults: &mut Faults<'a>) {
+        faults.margin("/scale", self.scale);
+        faults.margin("/at-most", self.at_most);
+        self.compared().check(faults);
+        faults.unless(self.ratio_to.is_none() || self.baseline.is_empty(), "/baseline", || {
+            "skill over log ratios is counted over their mean; leave `baseline` out".to_owned()
+        });
+        for (i, factor) in self.baseline.iter().enumerate() {
+            if faults.values_of(factor).is_none() {
+                faults.unknown_factor(&format!("/baseline/{i}"), factor, false);
             }
-            too_few(points.len(), form.minimum_n).map_or(Ok(()), Err)?;
-            Ok(distance_of_ratios(bench, &about, &points, base, form.at_most))
         }
-    });
-    paired.cells.truncate(MOST_CELLS);
-    let cells = paired.cells;
-    Draft { about, test: "bootstrap-over-cells", cells, conditions: Vec::new(), evidence, notes }
+    }
+
+    fn judge(&self, bench: &Bench<'_>) -> Vec<Draft> {
+        let claimed = format!("root mean square difference at most {}", self.at_most);
+        let compared = self.compared();
+        compared.draft(bench, "bootstrap-over-cells", &claimed, |about, pairs, points| {
+            Ok(match &self.ratio_to {
+                None => distance(bench, about, pairs, self),
+                Some(base) => distance_of_ratios(bench, about, points, base, self.at_most),
+            })
+        })
+    }
 }
 
 /// The root of the mean of `squares` with its interval, `clusters` of them drawn together.

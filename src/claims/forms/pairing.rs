@@ -1,10 +1,10 @@
 //! Published cells, each with our runs of the same cell.
 
-use super::cells::{Values, Where};
-use super::gather::{Bench, Group};
-use super::metric::Metric;
-use super::published::{PublishedCell, read, selection};
-use super::verdict::CellNumbers;
+use crate::claims::cells::{Values, Where};
+use crate::claims::gather::{Bench, Group};
+use crate::claims::metric::Metric;
+use crate::claims::published::{PublishedCell, read, selection};
+use crate::claims::verdict::CellNumbers;
 use crate::math::ln;
 use crate::stats::summary::Summary;
 use std::collections::BTreeMap;
@@ -129,6 +129,13 @@ pub(super) struct Point<'a> {
     pub(super) y: f64,
     /// Of a log ratio: the two pairs it is of, that of the base last.
     pub(super) of: Option<(&'a Pair, &'a Pair)>,
+}
+
+impl<'a> Point<'a> {
+    /// A pair as it is.
+    pub(super) fn of(pair: &'a Pair) -> Self {
+        Self { runs: &pair.pins, x: pair.published, y: pair.ours.summary.mean, of: None }
+    }
 }
 
 /// The places of equal `runs`, in the order of their first: what is measured on the same runs is not independent.

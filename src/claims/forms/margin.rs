@@ -1,0 +1,28 @@
+//! Evidence that a difference lies inside a margin: what `equivalent` and `homogeneous` are made of.
+
+use super::difference::{mean_effect, share_effect};
+use crate::claims::gather::{Bench, Group, varies};
+use crate::claims::metric::Metric;
+use crate::claims::verdict::Effect;
+use crate::stats::equivalence::{Equivalence, tost_means, tost_proportions};
+use crate::stats::means::welch;
+
+/// Name of the test for a metric.
+pub(super) fn test_name(metric: &Metric) -> &'static str {
+    if metric.is_share() { "tost-newcombe" } else { "tost-welch" }
+}
+
+/// Two one-sided tests of a pair, and its difference.
+pub(super) fn pair(
+    bench: &Bench<'_>,
+    a: &Group,
+    b: &Group,
+    margin: f64,
+) -> Result<(Equivalence, Effect), String> {
+    if let Some((p, q)) = a.proportion.zip(b.proportion) {
+        return Ok((tost_proportions(p, q, margin), share_effect(p, q, bench.confidence())));
+    }
+    varies(&[a, b])?;
+    let interval = welch(a.summary, b.summary).interval(bench.confidence());
+    Ok((tost_means(a.summary, b.summary, margin), mean_effect(a, b, interval)))
+}
