@@ -269,6 +269,8 @@ fn imports(room: &str, files: &[(String, String)]) -> BTreeMap<Module, BTreeSet<
     let of = |(module, text): (&Module, &&str)| {
         let paths = Shipped::read(text).paths(module);
         let named = paths.iter().filter(|path| path.segments[0] == "crate");
+        // `pub(in crate::claims)` says who sees an item, and names none.
+        let named = named.filter(|path| !module.starts_with(&path.segments[1..]));
         let named = named.filter_map(|path| known(&path.segments[1..]));
         let children = modules.keys().filter(|child| child.split_last().unwrap().1 == &module[..]);
         let all = named.chain(children.cloned()).filter(|other| other != module);
