@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 
 mod coverage;
 mod deadline;
+mod faults;
 mod forms;
 mod levels;
 mod reporting;

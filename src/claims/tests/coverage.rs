@@ -193,7 +193,7 @@ fn faults_of_the_new_options_are_told() {
     let published = ["t".to_owned()];
     let known = Known { factors: &factors, metrics: &metrics, published: &published };
     let faults = |expect: &str| -> Vec<String> {
-        claim(expect).check(known).iter().map(rules::told).collect()
+        claim(expect).check(known).iter().map(faults::told).collect()
     };
     let less = |what: &str| {
         faults(&format!(

@@ -1,6 +1,6 @@
 //! Every documented example is judged, not only read; and the forms that count or compare within trials.
 
-use super::rules::examples;
+use super::faults::{examples, faults};
 use super::*;
 
 /// `table` with a further column, filled from the row's place.
@@ -234,7 +234,6 @@ fn coverages_of_a_published_table_are_metrics_of_ours() {
 
 #[test]
 fn faults_of_bounds_and_pools_of_outcomes_are_named() {
-    let faults = rules::faults;
     assert_eq!(
         faults("{every: {that: {metric: time-s, at-most: deadline}}}"),
         [
