@@ -3,7 +3,7 @@
 use super::{ClaimRow, Figure, ReportTable};
 use crate::plan::{Plan, Selection};
 use crate::stats::compatibility::{Agreement, Silence};
-use crate::studies::{End, Outcome, TableLayout, TrialRecord};
+use crate::studies::{Outcome, TableLayout, TrialRecord};
 
 /// One sentence each, the manifest's own first. `tables` are those of the page, in the order of the plan's requests.
 pub(super) fn limits(
@@ -34,8 +34,8 @@ pub(super) fn limits(
             counted(panicked, "trial failed", "trials failed")
         ));
     }
-    if experiment.kind.has_series() {
-        let unfinished = count(|outcome| outcome.end() != End::Success) - panicked;
+    if experiment.kind.outcomes().contains(&Outcome::EXPLORED) {
+        let unfinished = count(|outcome| outcome != Outcome::EXPLORED) - panicked;
         if unfinished > 0 {
             limits.push(format!(
                 "{unfinished} of {} trials ended before everything was explored.",

@@ -1,13 +1,14 @@
 
-// --- coverage over time; under a deadline, how much of the graph is known --------------------------------
+// --- coverage over time; under a deadline, how much of the graph is known; else the distance travelled ---
 
 const chart = element("coverage");
 const looks = [["ink", []], ["path", [7, 4]], ["chosen", [2, 3]]];
 const inset = { left: 44, right: 16, top: 10, bottom: 30 };
 const racing = trials.some((trial) => trial.deadline);
+const mapping = !racing && trials.some((trial) => trial.coverage.some((percent) => percent > 0));
 // One list of [time, value] a trial; what is known of a graph rises in steps.
 const curves = trials.map((trial) => {
-  if (!racing) return trial.time.map((t, k) => [t, trial.coverage[k]]);
+  if (!racing) return trial.time.map((t, k) => [t, (mapping ? trial.coverage : trial.distance)[k]]);
   const list = [[0, 0]];
   for (const [at, graph] of trial.graphs) {
     list.push([trial.time[at], list.at(-1)[1]], [trial.time[at], graph.vertices.length]);
@@ -15,7 +16,9 @@ const curves = trials.map((trial) => {
   list.push([trial.time.at(-1) ?? 0, list.at(-1)[1]]);
   return list;
 });
-const highest = racing ? Math.max(4, ...curves.flat().map(([, value]) => value)) : 100;
+const least = racing ? 4 : 1;
+const highest = mapping ? 100 : curves.flat().reduce((most, [, value]) => Math.max(most, value), least);
+const label = (c) => (mapping ? `${c} %` : racing ? c : `${c.toFixed(0)} m`);
 
 function drawChart() {
   const ratio = window.devicePixelRatio || 1, width = chart.clientWidth, height = chart.clientHeight;
@@ -27,13 +30,13 @@ function drawChart() {
   const py = (c) => height - inset.bottom - (height - inset.top - inset.bottom) * c / highest;
   context.font = "12px system-ui, sans-serif";
   context.textAlign = "right";
-  for (const c of racing ? [0, highest] : [0, 50, 100]) {
+  for (const c of mapping ? [0, 50, 100] : [0, highest]) {
     context.strokeStyle = colour.edge;
     context.lineWidth = 1;
     trace(context, [[0, c], [end, c]], ([t, v]) => [px(t), py(v)], false);
     context.stroke();
     context.fillStyle = colour.soft;
-    context.fillText(racing ? c : `${c} %`, inset.left - 6, py(c) + 4);
+    context.fillText(label(c), inset.left - 6, py(c) + 4);
   }
   const step = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000].find((s) => end / s <= width / 90) ?? 10000;
   context.textAlign = "center";

@@ -59,7 +59,7 @@ function panelOf(trial) {
 function drawPanel(panel) {
   const { trial } = panel, frame = frameAt(trial), view = viewport(panel), { context } = view;
   // Without a map there is nothing unknown to show.
-  context.fillStyle = trial.deadline ? colour.free : colour.unknown;
+  context.fillStyle = mapping ? colour.unknown : colour.free;
   context.fillRect(0, 0, view.width, view.height);
   const shown = (name) => document.querySelector(`[data-layer=${name}]`).checked;
   const decision = latest(trial.decisions, frame), graph = latest(trial.graphs, frame);
@@ -88,8 +88,10 @@ function tell(panel, frame, decision, graph) {
   if (frame >= 0) {
     const [time, distance, coverage] = [trial.time[frame], trial.distance[frame], trial.coverage[frame]];
     const ended = now > trial.time.at(-1) ? " · ended" : "";
-    const what = trial.deadline ? graphStatus(trial, graph?.[1], time) : `${coverage.toFixed(1)} % covered`;
-    text = `${time.toFixed(1)} s · ${distance.toFixed(2)} m · ${what}${ended}`;
+    const parts = [`${time.toFixed(1)} s`, `${distance.toFixed(2)} m`];
+    if (trial.deadline) parts.push(graphStatus(trial, graph?.[1], time));
+    else if (mapping) parts.push(`${coverage.toFixed(1)} % covered`);
+    text = `${parts.join(" · ")}${ended}`;
   }
   panel.status.textContent = text;
   panel.canvas.setAttribute("aria-label", `${trial.name}: map, frontiers, path and robot; ${text}`);

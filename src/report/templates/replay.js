@@ -84,10 +84,11 @@ element("trials").classList.toggle("one", trials.length === 1);
 element("prior-toggle").hidden = !trials.some((trial) => trial.prior);
 element("graph-toggle").hidden = !racing;
 for (const layer of ["map", "scan", "frontiers"]) {
-  document.querySelector(`[data-layer=${layer}]`).parentElement.hidden = racing;
+  document.querySelector(`[data-layer=${layer}]`).parentElement.hidden = !mapping;
 }
-if (racing) chart.setAttribute("aria-label", "Vertices known over time, of every trial");
-element("chart-title").textContent = racing ? "vertices known" : "coverage";
+const charted = racing ? "vertices known" : mapping ? "coverage" : "distance travelled";
+element("chart-title").textContent = charted;
+chart.setAttribute("aria-label", `${charted[0].toUpperCase()}${charted.slice(1)} over time, of every trial`);
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", restyle);
 window.addEventListener("resize", draw);
 window.addEventListener("hashchange", () => seek(fromAddress()));
