@@ -4,7 +4,7 @@
 use super::content::{Author, BundleContent, Citation, SealedCondition, SealedInput};
 use super::{figures, format, wall_time};
 use crate::claims::{self, Observations, Verdict};
-use crate::manifest::Input;
+use crate::manifest::{Input, InputKind};
 use crate::plan::{ENGINE_VERSION, Plan, Selection};
 use crate::studies::{Dictionary, Findings, Outcome, TableLayout, TrialRecord, coverage_tables};
 use crate::table::{DescribedTable, Table};
@@ -253,31 +253,35 @@ fn described_inputs(plan: &Plan) -> Vec<DescribedTable> {
     let mut described: Vec<DescribedTable> = Vec::new();
     for input in &plan.experiment.inputs {
         let path = format!("{}{}", format::INPUTS, input.name);
-        let is_table = format::media_type(&path) == "text/csv";
-        if !is_table || described.iter().any(|known| known.path == path) {
+        // Two paths may lead to one file.
+        if format::media_type(&path) != "text/csv" || described.iter().any(|t| t.path == path) {
             continue;
         }
-        let Some(table) =
-            std::str::from_utf8(&input.bytes).ok().and_then(|text| Table::from_csv(text).ok())
-        else {
-            continue;
-        };
-        let calibration =
-            table.columns.iter().all(|name| Dictionary::of_calibration(name).is_some());
-        let varied = table.columns.iter().all(|name| Dictionary::of_sensitivity(name).is_some());
-        let passages = table.columns.iter().all(|name| Dictionary::of_passages(name).is_some());
-        described.push(if passages {
-            let words = ("Passages of the calibration", "one isolated passage, in plan order");
-            DescribedTable::of(&table, path, words, Dictionary::of_passages)
-        } else if varied {
-            let words = ("Claims at other values of the assumptions", "one claim at one value");
-            DescribedTable::of(&table, path, words, Dictionary::of_sensitivity)
-        } else if calibration {
-            let words = ("Calibration of the maneuvers", "one maneuver");
-            DescribedTable::of(&table, path, words, Dictionary::of_calibration)
-        } else {
-            let words = ("Numbers that the paper prints", "one printed number");
-            DescribedTable::of(&table, path, words, |name| dictionary.of_published(name))
+        let text = std::str::from_utf8(&input.bytes).ok();
+        let Some(table) = text.and_then(|text| Table::from_csv(text).ok()) else { continue };
+        described.push(match input.kind {
+            InputKind::Passages => {
+                let words = ("Passages of the calibration", "one isolated passage, in plan order");
+                DescribedTable::of(&table, path, words, Dictionary::of_passages)
+            }
+            InputKind::Maneuvers => {
+                let words = ("Calibration of the maneuvers", "one maneuver");
+                DescribedTable::of(&table, path, words, Dictionary::of_calibration)
+            }
+            InputKind::Robustness => {
+                let words = ("Claims at other values of the assumptions", "one claim at one value");
+                DescribedTable::of(&table, path, words, Dictionary::of_sensitivity)
+            }
+            // Nothing else is read as a CSV; what a calibration reads so are the paper's numbers, too.
+            InputKind::PublishedNumbers
+            | InputKind::Calibration
+            | InputKind::Settings
+            | InputKind::Robot
+            | InputKind::World
+            | InputKind::Prior => {
+                let words = ("Numbers that the paper prints", "one printed number");
+                DescribedTable::of(&table, path, words, |name| dictionary.of_published(name))
+            }
         });
     }
     described
