@@ -2,6 +2,7 @@
 //!
 //! Writes `capsule.rs` to `OUT_DIR`: an array of (path, bytes) that the compiler reads from the files themselves.
 
+use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -21,7 +22,8 @@ const FILES: [&str; 8] = [
 ];
 
 fn main() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    // Asked for at run time: a checkout that was moved with its target folder runs the script that was built before.
+    let root = PathBuf::from(from_cargo("CARGO_MANIFEST_DIR"));
     let mut files: Vec<(String, PathBuf)> =
         FILES.iter().map(|file| ((*file).to_owned(), root.join(file))).collect();
     // A package from a registry holds a rewritten manifest beside the one that was written: the same source must give the
@@ -43,12 +45,17 @@ fn main() {
         text.push_str(&format!("    ({name:?}, include_bytes!({path:?}) as &[u8]),\n"));
     }
     text.push_str("]\n");
-    #[expect(
-        clippy::disallowed_methods,
-        reason = "cargo tells build scripts where to write by the environment"
-    )]
-    let out = std::env::var_os("OUT_DIR").expect("cargo sets OUT_DIR");
+    let out = from_cargo("OUT_DIR");
     fs::write(Path::new(&out).join("capsule.rs"), text).expect("OUT_DIR can be written");
+}
+
+/// What cargo tells a build script by the variable `name` of its environment.
+#[expect(
+    clippy::disallowed_methods,
+    reason = "cargo tells build scripts where things lie by the environment"
+)]
+fn from_cargo(name: &str) -> OsString {
+    std::env::var_os(name).unwrap_or_else(|| panic!("cargo sets {name}"))
 }
 
 /// Every file below `folder`, called `name` from the root on; hidden files and editors' copies are not source.
