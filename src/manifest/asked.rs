@@ -22,10 +22,9 @@ pub(super) struct Asked<'r, 'a> {
 }
 
 impl ConditionAsWritten for Asked<'_, '_> {
-    fn parameters(&mut self) -> Option<Value> {
-        let Resolver { doc, .. } = *self.resolver;
-        let value_of = |factor: &str| self.condition.value(factor);
-        Some(doc.parameters.for_condition(doc.study, &value_of))
+    fn parameters(&self) -> Value {
+        let doc = self.resolver.doc;
+        doc.parameters.for_condition(doc.study, &|factor| self.condition.value(factor))
     }
 
     fn refuse_parameters(&mut self, reason: String) {
@@ -33,7 +32,7 @@ impl ConditionAsWritten for Asked<'_, '_> {
         self.resolver.faults.at_key("/parameters", reason, &label);
     }
 
-    fn surroundings(&mut self) -> Option<Surroundings> {
+    fn surroundings(&self) -> Option<Surroundings> {
         self.parts.as_ref().map(|parts| Surroundings {
             robot: Arc::clone(&parts.robot),
             world: Arc::clone(&parts.world.world),

@@ -69,7 +69,6 @@ pub(super) fn check_requests(
     }
 }
 
-/// A layout that only the study `kind` has.
 /// Tells where the layout at `pointer` is another study's.
 pub(super) fn foreign(doc: &ManifestDoc, pointer: &str, faults: &mut Faults<'_>) {
     let layout = pointer.rsplit('/').next().unwrap_or_default();

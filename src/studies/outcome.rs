@@ -7,7 +7,7 @@ use std::borrow::Cow;
 use std::fmt;
 
 /// What kind of end a trial came to, the best first.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum End {
     /// The robot did what it was sent for.
     Success,

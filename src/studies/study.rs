@@ -58,7 +58,7 @@ pub trait Study: Sync {
     /// Returns what the measure `name` is; `None` where no trial of this study has it.
     fn measure(&self, name: &str) -> Option<Column>;
 
-    /// Returns the prefix of measures that parameters make, where a condition may ask for some.
+    /// Returns whether `name` is that of a measure which parameters may ask for.
     fn is_further_measure(&self, _name: &str) -> bool {
         false
     }
@@ -99,14 +99,14 @@ pub enum Prior {
 
 /// A condition as the manifest has it. What cannot be had is told by whoever is asked, and is then `None`.
 pub trait ConditionAsWritten {
-    /// Returns the study's parameters for this condition; `None` where they are none.
-    fn parameters(&mut self) -> Option<Value>;
+    /// Returns what the manifest writes as the study's parameters, for this condition.
+    fn parameters(&self) -> Value;
 
-    /// Tells that the parameters are none, for this `reason`.
+    /// Tells that those are no parameters of the study, for this `reason`.
     fn refuse_parameters(&mut self, reason: String);
 
     /// Returns robot, world and start.
-    fn surroundings(&mut self) -> Option<Surroundings>;
+    fn surroundings(&self) -> Option<Surroundings>;
 
     /// Returns the prior knowledge that the manifest chooses, `Some(None)` where it chooses none.
     fn prior(&mut self, own: &prior_map::Parameters) -> Option<Option<Prior>>;
@@ -124,8 +124,7 @@ pub trait ConditionAsWritten {
 
 /// Reads the parameters of a condition.
 pub(super) fn parameters<P: DeserializeOwned>(condition: &mut dyn ConditionAsWritten) -> Option<P> {
-    let written = condition.parameters()?;
-    match serde_json::from_value(written) {
+    match serde_json::from_value(condition.parameters()) {
         Ok(parameters) => Some(parameters),
         Err(error) => {
             condition.refuse_parameters(error.to_string());

@@ -121,3 +121,66 @@ impl Swept {
         f64::from(self.count) * side * side
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::digest::{Sha256Digest, TrialKey};
+    use crate::document::Source;
+    use crate::geometry::Pose;
+    use crate::rng::Seeds;
+    use crate::robot::urdf;
+    use crate::studies::wander::{Driving, Mission, Parameters};
+    use crate::studies::{self, Condition, reenact};
+    use crate::world::document;
+    use std::sync::Arc;
+
+    /// Trial `number` of two seconds from (3, 2) m in our small apartment, at `linear_m_s`.
+    fn spec(number: u32, linear_m_s: f64) -> TrialSpec {
+        let file = |name: &str, text: &str| Source::new(name, text);
+        let robot = file("kobuki.urdf", include_str!("../../../robots/kobuki.urdf"));
+        let world = file("basic.yaml", include_str!("../../../worlds/basic.yaml"));
+        let setup = Setup {
+            world: Arc::new(document::read(&world, None).unwrap()),
+            robot: Arc::new(urdf::read(&robot).unwrap().0),
+            start: Pose::new(3.0, 2.0, 0.0),
+            parameters: Parameters {
+                driving: Driving { linear_m_s, ..Driving::default() },
+                // Cells so small that areas are those of the geometry.
+                mission: Mission { time_limit_s: 2.0, cell_m: 0.01 },
+            },
+        };
+        TrialSpec {
+            key: TrialKey(Sha256Digest::of(number.to_le_bytes())),
+            condition: Condition(Vec::new()),
+            trial: number,
+            seeds: Seeds::new(1, vec![("trial".to_owned(), number.to_string())]),
+            setup: studies::Setup::new(setup),
+        }
+    }
+
+    #[test]
+    fn a_trial_ends_at_its_limit_and_measures_its_way_and_the_floor_under_it() {
+        let record = studies::execute(&spec(0, 0.4));
+        assert_eq!((record.outcome, record.sim_seconds), (Outcome::TIME_LIMIT, 2.0));
+        let measure = |name: &str| record.measures[name].unwrap();
+        // The first scan comes at 0.1 s at the latest, and the body takes its time to speed up.
+        let way = measure("distance-m");
+        assert!((0.6..=0.8).contains(&way), "{way} m at 0.4 m/s in 2 s");
+        // A disc of radius r that goes straight covers πr² + 2r·way.
+        let radius = spec(0, 0.4).setup.robot().circumscribed_radius();
+        let covered = std::f64::consts::PI * radius * radius + 2.0 * radius * way;
+        let found = measure("coverage-m2");
+        assert!((found / covered - 1.0).abs() < 0.03, "{found} of {covered} m²");
+        assert_eq!((measure("turns"), measure("contacts")), (0.0, 0.0));
+    }
+
+    #[test]
+    fn a_replay_sees_the_trial_that_was_run() {
+        let (record, recording) = reenact(&spec(1, 0.2));
+        assert_eq!(record, studies::execute(&spec(1, 0.2)));
+        let last = recording.frames.last().unwrap();
+        assert_eq!(Some(last.distance_m), record.measures["distance-m"]);
+        assert_eq!(last.time_s, 2.0);
+    }
+}
