@@ -52,7 +52,7 @@ elsewhere() {
 }
 # Built as a side effect of a test, whose dependencies are those that `cargo test` has built already; `cargo build` would
 # select other features and build them again.
-build_dev() { cargo test --quiet --no-run --test architecture; }
+build_dev() { cargo test --quiet --no-run --test integration; }
 # Optimised a little, with debug assertions and overflow checks.
 dev() {
   build_dev && keep dev "$target/debug/reenact" && digest "$work/reenact-dev" run --no-cache

@@ -2,38 +2,25 @@
 //!
 //! Every attack is made here, from an honest bundle that the program under test has just run or from raw bytes, and goes
 //! through `reenact verify` as a process of its own, in a sandbox: it must end with the right exit code at the right rung,
-//! write nothing anywhere, and take no more than 200 MB. What is said is compared whole (`snapshots/adversary__*.snap`;
-//! digests and measured numbers left out). `cargo test --test adversary -- --nocapture` prints the table.
+//! write nothing anywhere, and take no more than 200 MB. What is said is compared whole
+//! (`snapshots/integration__adversary__*.snap`; digests and measured numbers left out). `cargo test --test integration
+//! adversary:: -- --nocapture` prints the table.
 
-#[path = "adversary/archives.rs"]
 mod archives;
-#[path = "adversary/attested.rs"]
 mod attested;
-#[path = "adversary/case.rs"]
 mod case;
-#[path = "adversary/checked.rs"]
 mod checked;
-#[path = "adversary/files.rs"]
 mod files;
-#[path = "adversary/forged.rs"]
 mod forged;
-#[path = "adversary/forger.rs"]
-mod forger;
-#[path = "adversary/raw_zip.rs"]
+pub(crate) mod forger;
 mod raw_zip;
-#[path = "adversary/readers.rs"]
 mod readers;
-#[path = "adversary/sandbox.rs"]
-mod sandbox;
-#[path = "adversary/study.rs"]
-mod study;
-#[path = "adversary/texts.rs"]
+pub(crate) mod study;
 mod texts;
 
+use crate::sandbox::Sandbox;
 use case::{Case, run_all};
 use reenact::bundle::{Form, archive};
-use sandbox::Sandbox;
-use std::fs;
 use study::HONEST;
 
 #[test]
@@ -102,9 +89,9 @@ fn texts_that_cost_more_than_they_are_long() {
 fn honest_bundles_are_not_refused() {
     let holds = |what: &str, level: &str, bundle: &[u8]| {
         let sandbox = Sandbox::new();
-        fs::write(sandbox.path("bundle"), bundle).unwrap();
-        let answer = sandbox.reenact(&["verify", "bundle", "--level", level]);
-        assert_eq!((answer.stderr.as_str(), answer.code), ("", Some(0)), "{what}: {answer:?}");
+        sandbox.write("bundle", bundle);
+        let answer = sandbox.run_reading(&["verify", "bundle", "--level", level]);
+        assert_eq!((answer.stderr.as_str(), answer.code), ("", 0), "{what}: {answer:?}");
     };
     holds("as it was run", "5", &HONEST.zip);
     for form in [Form::Bag, Form::Flat, Form::Crate] {
@@ -176,8 +163,8 @@ fn another_question_is_another_study() {
     let (old, new) = (forger::text(&HONEST.tree, forger::INFO), forger::text(&tree, forger::INFO));
     assert_ne!(digest(&old), digest(&new));
     let sandbox = Sandbox::new();
-    fs::write(sandbox.path("bundle"), archive::write(&tree, "tiny", Form::Bag)).unwrap();
-    assert_eq!(sandbox.reenact(&["verify", "bundle"]).code, Some(0));
+    sandbox.write("bundle", archive::write(&tree, "tiny", Form::Bag));
+    assert_eq!(sandbox.run_reading(&["verify", "bundle"]).code, 0);
 }
 
 /// Every command that reads a bundle meets the same attacker.
@@ -189,7 +176,7 @@ fn no_command_is_led_out_of_its_folder() {
     });
     forger::reseal(&mut tree);
     let sandbox = Sandbox::new();
-    fs::write(sandbox.path("bundle"), archive::write(&tree, "tiny", Form::Bag)).unwrap();
+    sandbox.write("bundle", archive::write(&tree, "tiny", Form::Bag));
     let says = "error: bundle: the bundle is not what it says: reached level 1 (fixity) of level 3 (derived)\nerror at level 2: \
                 data/study.resolved.json: expected a name of A-Z a-z 0-9 . _ - at /name, found a path that climbs out of its \
                 folder\n`reenact verify bundle` tells everything\n";
@@ -200,20 +187,20 @@ fn no_command_is_led_out_of_its_folder() {
         &["report", "bundle"],
         &["replay", "bundle", "none/0", "--svg", "x.svg"],
     ] {
-        let answer = sandbox.reenact(words);
+        let answer = sandbox.run_reading(words);
         assert_eq!(answer.stdout, "", "{words:?}");
-        assert_eq!((answer.stderr.as_str(), answer.code), (says, Some(1)), "{words:?}");
+        assert_eq!((answer.stderr.as_str(), answer.code), (says, 1), "{words:?}");
     }
     let slip = [
         raw_zip::Entry::stored("bag/bagit.txt", ""),
         raw_zip::Entry::stored("bag/../../evil", "evil"),
     ];
-    fs::write(sandbox.path("bundle"), raw_zip::zip(&slip)).unwrap();
+    sandbox.write("bundle", raw_zip::zip(&slip));
     let says = "error: bundle: the bundle is not what it says: reached no level of level 3 (derived)\nerror at level 0: \
                 bag/../../evil: expected a safe relative path, found a path that climbs out of its folder\n`reenact verify \
                 bundle` tells everything\n";
-    let answer = sandbox.reenact(&["export", "bundle", "--dir"]);
-    assert_eq!((answer.stderr.as_str(), answer.code), (says, Some(1)));
+    let answer = sandbox.run_reading(&["export", "bundle", "--dir"]);
+    assert_eq!((answer.stderr.as_str(), answer.code), (says, 1));
 }
 
 /// A table of attacks is worth what it holds: no name twice, and as many as were promised.

@@ -3,13 +3,13 @@
 //!
 //! Reads `src/` as text, without `#[cfg(test)]` items and files. Says where, which rule, and what to do.
 
-#[path = "architecture/source.rs"]
 mod source;
 
+use crate::sandbox::repository;
 use source::{NamedPath, Shipped};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Modules from the lowest layer up. A module imports lower layers only, never its own.
 const LAYERS: [(&str, &[&str]); 9] = [
@@ -304,10 +304,6 @@ fn circle(imports: &BTreeMap<Module, BTreeSet<Module>>) -> Option<String> {
     }
 }
 
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).to_owned()
-}
-
 /// The shipped files below `src/`, by path, with their text.
 fn shipped_files() -> Vec<(String, String)> {
     fn walk(folder: &Path, src: &Path, files: &mut Vec<(String, String)>) {
@@ -323,7 +319,7 @@ fn shipped_files() -> Vec<(String, String)> {
             }
         }
     }
-    let src = root().join("src");
+    let src = repository().join("src");
     let mut files = Vec::new();
     walk(&src, &src, &mut files);
     let tests: Vec<Vec<String>> = files
@@ -339,7 +335,7 @@ fn shipped_files() -> Vec<(String, String)> {
 }
 
 fn studies() -> Vec<String> {
-    std::fs::read_dir(root().join("src/studies"))
+    std::fs::read_dir(repository().join("src/studies"))
         .unwrap()
         .map(|entry| entry.unwrap().path())
         .filter(|path| path.is_dir())
@@ -370,7 +366,7 @@ fn every_module_has_a_layer_and_every_dependency_a_door() {
             "src/{file}: `{top}` has no layer; give it one in tests/architecture.rs"
         );
     }
-    let manifest = std::fs::read_to_string(root().join("Cargo.toml")).unwrap();
+    let manifest = std::fs::read_to_string(repository().join("Cargo.toml")).unwrap();
     let dependencies =
         manifest.split("[dependencies]").nth(1).unwrap().split("\n[").next().unwrap();
     for line in dependencies.lines().filter(|l| !l.starts_with('#') && l.contains('=')) {
@@ -383,7 +379,7 @@ fn every_module_has_a_layer_and_every_dependency_a_door() {
     for (name, doors) in DOORS {
         for door in *doors {
             assert!(
-                root().join("src").join(door).exists(),
+                repository().join("src").join(door).exists(),
                 "the door of `{name}`, src/{door}, does not exist"
             );
         }
@@ -424,7 +420,7 @@ fn a_circle_is_found_through_other_modules_and_through_the_parent() {
 
 #[test]
 fn main_only_opens_the_command_line() {
-    let text = std::fs::read_to_string(root().join("src/main.rs")).unwrap();
+    let text = std::fs::read_to_string(repository().join("src/main.rs")).unwrap();
     assert!(
         text.lines().count() <= 30,
         "src/main.rs has more than 30 lines; move the rest into src/cli"

@@ -1,34 +1,20 @@
 //! Claims from the command line: their power before a run, their verdicts after it, and where each is kept.
 
-use assert_cmd::Command;
-use std::path::Path;
-use tempfile::TempDir;
+use crate::sandbox::{Answer, PINNED, Sandbox};
 
-/// What a command wrote to stdout; it must have ended well and said nothing else.
-fn reenact(folder: &Path, words: &[&str], pinned: bool) -> String {
-    let mut command = Command::cargo_bin("reenact").unwrap();
-    command.args(words).current_dir(folder).env("REENACT_STORE", folder.join("store"));
-    if pinned {
-        command.env("SOURCE_DATE_EPOCH", "1600000000");
-    } else {
-        command.env_remove("SOURCE_DATE_EPOCH");
-    }
-    let output = command.output().unwrap();
-    assert_eq!(
-        (String::from_utf8_lossy(&output.stderr).as_ref(), output.status.code()),
-        ("", Some(0))
-    );
-    String::from_utf8(output.stdout).unwrap()
+/// What the program wrote to stdout with its clock pinned; it must have ended well and said nothing else.
+fn done_pinned(desk: &Sandbox, words: &[&str]) -> String {
+    let answer = Answer::of(desk.command(words).env("SOURCE_DATE_EPOCH", PINNED));
+    assert_eq!((answer.stderr.as_str(), answer.code), ("", 0));
+    answer.stdout
 }
 
 /// A starter study of two trials that makes these claims.
-fn study(claims: &str) -> TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    reenact(folder.path(), &["init", "demo"], true);
-    let manifest = folder.path().join("demo/demo.yaml");
-    let text = std::fs::read_to_string(&manifest).unwrap();
-    std::fs::write(&manifest, format!("{text}claims:\n{claims}")).unwrap();
-    folder
+fn study(claims: &str) -> Sandbox {
+    let desk = Sandbox::new().with_demo();
+    let text = desk.read("demo/demo.yaml");
+    desk.write("demo/demo.yaml", format!("{text}claims:\n{claims}"));
+    desk
 }
 
 const PAGE: &str = include_str!("../docs/claims.md");
@@ -37,15 +23,14 @@ const PAGE: &str = include_str!("../docs/claims.md");
 fn power_is_answered_as_documented() {
     let blocks = PAGE.split("\n```yaml\n").skip(1).filter_map(|rest| rest.split_once("\n```\n"));
     let example = blocks.map(|(block, _)| block).find(|block| block.contains("power:")).unwrap();
-    let folder = study(&format!("{example}\n"));
-    let answer = reenact(folder.path(), &["plan", "demo/demo.yaml", "--power"], true);
+    let desk = study(&format!("{example}\n"));
+    let answer = done_pinned(&desk, &["plan", "demo/demo.yaml", "--power"]);
     assert!(
         PAGE.contains(&format!("\n```\n{answer}```\n")),
         "docs/claims.md should show:\n{answer}"
     );
     let words = ["plan", "demo/demo.yaml", "--power", "--format", "json"];
-    let line: serde_json::Value =
-        serde_json::from_str(&reenact(folder.path(), &words, true)).unwrap();
+    let line: serde_json::Value = serde_json::from_str(&done_pinned(&desk, &words)).unwrap();
     assert_eq!((&line["planned"], &line["studies"]), (&5.into(), &200.into()));
     let claim = &line["claims"][0];
     assert_eq!((&claim["id"], &claim["enough"]), (&"P1".into(), &20.into()));
@@ -66,16 +51,15 @@ const CLAIMS: &str = "\
 ";
 
 /// The bytes of a file of a bundle that was exported as a folder.
-fn sealed(folder: &Path, bundle: &str, path: &str) -> Option<String> {
-    std::fs::read_to_string(folder.join(bundle).join("data").join(path)).ok()
+fn sealed(desk: &Sandbox, bundle: &str, path: &str) -> Option<String> {
+    std::fs::read_to_string(desk.path(bundle).join("data").join(path)).ok()
 }
 
 #[test]
 fn claims_about_the_machine_are_circumstances() {
     let desk = study(CLAIMS);
-    let folder = desk.path();
     let words = ["run", "demo/demo.yaml", "--set", "trials=1"];
-    let measured = reenact(folder, &words, false);
+    let measured = desk.done(&words);
     let told = "\
 Claims of the paper
   claim  we find           paper's table
@@ -90,26 +74,26 @@ Claims of the paper about the machine (not among the results)
 ";
     assert!(measured.contains(told), "{measured}");
     let bundle = measured.lines().last().unwrap();
-    let exported = reenact(folder, &["export", bundle, "--dir", "-o", "measured"], false);
+    let exported = desk.done(&["export", bundle, "--dir", "-o", "measured"]);
     let exported = exported.lines().last().unwrap();
-    let results = sealed(folder, exported, "results/claims.json").unwrap();
+    let results = sealed(&desk, exported, "results/claims.json").unwrap();
     assert!(results.contains("\"id\":\"P1\"") && !results.contains("P21"), "{results}");
-    let verdicts = sealed(folder, exported, "circumstances/claims.json").unwrap();
+    let verdicts = sealed(&desk, exported, "circumstances/claims.json").unwrap();
     assert!(verdicts.contains("\"id\":\"P21\"") && !verdicts.contains("\"P1\""), "{verdicts}");
-    let times = sealed(folder, exported, "circumstances/wall-times.csv").unwrap();
+    let times = sealed(&desk, exported, "circumstances/wall-times.csv").unwrap();
     let head = "key,prior,trial,outcome,wall-time-s,wall-time-s-per-selection,wall-time-s-longest-selection";
     assert_eq!((times.lines().next(), times.lines().count()), (Some(head), 3));
     // Verification derives everything else and says that it cannot derive this.
-    let answer = reenact(folder, &["verify", bundle], false);
+    let answer = desk.done(&["verify", bundle]);
     let note = "note at level 3: data/circumstances/: expected what follows from the records, found what the machine of \
                 the run measured, and verdicts on it (no part of the results; checksums hold it, nothing can derive it again)";
     assert!(answer.contains(note), "{answer}");
-    reenact(folder, &["report", bundle, "-o", "page.html"], false);
-    let page = std::fs::read_to_string(folder.join("page.html")).unwrap();
+    desk.done(&["report", bundle, "-o", "page.html"]);
+    let page = desk.read("page.html");
     assert!(page.contains("id=\"claims\"") && page.contains("id=\"machine-claims\""));
 
     // From the store nothing is measured, and what was not measured is not passed over.
-    let stored = reenact(folder, &words, false);
+    let stored = desk.done(&words);
     let unmeasured = "  P21    cannot-be-tested  silent
          2 of 2 runs of (all trials) never reached wall-time-s-per-selection;
          say with `censored` whether those that did are compared (reached-only)
@@ -118,8 +102,8 @@ Claims of the paper about the machine (not among the results)
     assert!(stored.contains(unmeasured), "{stored}");
 
     // Pinned neither, and the results are the same; a lock, whatever it blesses, changes no score.
-    std::fs::write(folder.join("demo/demo.lock"), "verdicts: {P1: supported}\n").unwrap();
-    let pinned = reenact(folder, &words, true);
+    desk.write("demo/demo.lock", "verdicts: {P1: supported}\n");
+    let pinned = done_pinned(&desk, &words);
     let unmeasured = "  P21    cannot-be-tested  silent
          wall times are not measured where SOURCE_DATE_EPOCH is set
 ";
@@ -130,10 +114,10 @@ Claims of the paper about the machine (not among the results)
     let digest = |answer: &str| answer.lines().rev().nth(1).map(str::to_owned);
     assert_eq!(digest(&pinned), digest(&measured));
     let bundle = pinned.lines().last().unwrap();
-    let exported = reenact(folder, &["export", bundle, "--dir", "-o", "pinned"], true);
+    let exported = done_pinned(&desk, &["export", bundle, "--dir", "-o", "pinned"]);
     let exported = exported.lines().last().unwrap();
-    assert_eq!(sealed(folder, exported, "circumstances/wall-times.csv"), None);
-    assert_eq!(sealed(folder, exported, "results/claims.json"), Some(results));
+    assert_eq!(sealed(&desk, exported, "circumstances/wall-times.csv"), None);
+    assert_eq!(sealed(&desk, exported, "results/claims.json"), Some(results));
 }
 
 #[test]
@@ -150,8 +134,6 @@ fn verdicts_that_hang_on_an_assumption_are_found_sealed_and_told() {
 parameters:
   mission: {time-limit-s: {value: 600, range: [5, 900], why: nobody says when to give up}}
 ");
-    let folder = desk.path();
-    let manifest = folder.join("demo/demo.yaml");
     let words = ["vary", "demo/demo.yaml", "--trials", "3"];
     let told = "\
 parameters.mission.time-limit-s 600 -> 5:
@@ -160,24 +142,21 @@ parameters.mission.time-limit-s 600 -> 900: no verdict changes
 wrote demo/demo.sensitivity.csv: 2 claims judged at 2 other values of 1 setting, 3 trials per condition
 add `sensitivity: demo.sensitivity.csv` to the manifest, so that bundles and reports tell it
 ";
-    assert_eq!(reenact(folder, &words, true), told);
-    let table = std::fs::read_to_string(folder.join("demo/demo.sensitivity.csv")).unwrap();
+    assert_eq!(done_pinned(&desk, &words), told);
+    let table = desk.read("demo/demo.sensitivity.csv");
     assert_eq!(table.lines().count(), 5, "{table}");
 
-    let text = std::fs::read_to_string(&manifest).unwrap() + "sensitivity: demo.sensitivity.csv\n";
-    std::fs::write(&manifest, &text).unwrap();
-    let again = reenact(folder, &words, true);
+    let text = desk.read("demo/demo.yaml") + "sensitivity: demo.sensitivity.csv\n";
+    desk.write("demo/demo.yaml", &text);
+    let again = done_pinned(&desk, &words);
     assert!(!again.contains("add `sensitivity"), "{again}");
-    assert_eq!(std::fs::read_to_string(folder.join("demo/demo.sensitivity.csv")).unwrap(), table);
-    reenact(folder, &["check", "demo/demo.yaml"], true);
+    assert_eq!(desk.read("demo/demo.sensitivity.csv"), table);
+    done_pinned(&desk, &["check", "demo/demo.yaml"]);
 
     // What was tried around another value is out of date: said, and not shown.
-    std::fs::write(&manifest, text.replace("value: 600", "value: 700")).unwrap();
-    let mut check = Command::cargo_bin("reenact").unwrap();
-    let output = check.args(["check", "demo/demo.yaml"]).current_dir(folder).output().unwrap();
+    desk.edit("demo/demo.yaml", "value: 600", "value: 700");
+    let answer = desk.run(&["check", "demo/demo.yaml"]);
     let expected = "\
 warning: `demo.sensitivity.csv` is out of date: parameters.mission.time-limit-s was tried around 600, it is 700 now";
-    let stderr = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(stderr.lines().next(), Some(expected), "{stderr}");
-    assert_eq!(output.status.code(), Some(0));
+    assert_eq!((answer.stderr.lines().next(), answer.code), (Some(expected), 0), "{answer:?}");
 }

@@ -4,10 +4,8 @@
 //! The bundles are of one trial of one condition. Calibrations are shortened to the ten passages a maneuver that they need, and
 //! trials to twenty seconds where the study lets them; tables of robustness have a test of their own (`derived_inputs.rs`).
 
-#[path = "adversary/forger.rs"]
-#[expect(dead_code, reason = "the adversary's table uses the rest")]
-mod forger;
-
+use crate::adversary::forger;
+use crate::sandbox::{Answer, Sandbox, repository};
 use reenact::bundle::{
     Archive, Bundle, Class, Form, Limits, Tree, archive, class_of, results_digest,
 };
@@ -20,29 +18,24 @@ use reenact::verify::{
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 /// Our manifests with their surroundings, and the calibration's passages fewer.
 struct Shipped {
-    folder: tempfile::TempDir,
+    sandbox: Sandbox,
 }
 
 impl Shipped {
     fn new() -> Self {
-        let (folder, root) = (tempfile::tempdir().unwrap(), Path::new(env!("CARGO_MANIFEST_DIR")));
+        let sandbox = Sandbox::new();
         for part in ["manifests", "robots", "worlds"] {
-            copy(&root.join(part), &folder.path().join(part));
+            copy(&repository().join(part), &sandbox.path(part));
         }
-        let calibration = folder.path().join("manifests/deadline-calibration.yaml");
-        let text = fs::read_to_string(&calibration).unwrap();
-        let fewer = text.replace("trials: 2000", "trials: 10");
-        assert_ne!(fewer, text);
-        fs::write(calibration, fewer).unwrap();
-        Self { folder }
+        sandbox.edit("manifests/deadline-calibration.yaml", "trials: 2000", "trials: 10");
+        Self { sandbox }
     }
 
     fn manifests(&self) -> Vec<PathBuf> {
-        let entries = fs::read_dir(self.folder.path().join("manifests")).unwrap();
+        let entries = fs::read_dir(self.sandbox.path("manifests")).unwrap();
         let paths = entries.map(|entry| entry.unwrap().path());
         let mut paths: Vec<_> =
             paths.filter(|p| p.extension().is_some_and(|e| e == "yaml")).collect();
@@ -62,8 +55,8 @@ impl Shipped {
         };
         let chosen = levels.clone().find(from_a_map).or_else(|| levels.clone().next()).unwrap();
         let out = tempfile::tempdir().unwrap();
-        let mut command = Command::new(assert_cmd::cargo::cargo_bin!("reenact"));
-        command.current_dir(self.folder.path()).arg("run").arg(manifest);
+        let mut command = self.sandbox.command(&["run"]);
+        command.arg(manifest);
         command.args(["--no-cache", "--trials", "1", "--out"]).arg(out.path());
         for (factor, value) in chosen {
             command.arg("--only").arg(format!("{factor}={value}"));
@@ -71,8 +64,8 @@ impl Shipped {
         if experiment.kind.has_series() {
             command.args(["--set", "parameters.mission.time-limit-s=20"]);
         }
-        let output = command.output().unwrap();
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let answer = Answer::of(&mut command);
+        assert_eq!(answer.code, 0, "{}", answer.stderr);
         let path = fs::read_dir(out.path()).unwrap().next().unwrap().unwrap().path();
         Bundle::read(&fs::read(path).unwrap(), &Limits::default()).unwrap()
     }
@@ -328,7 +321,7 @@ fn every_file_of_every_manifests_bundle_is_refused_where_its_class_says() {
 #[test]
 fn a_walk_changes_what_readers_read() {
     let shipped = Shipped::new();
-    let quickstart = shipped.folder.path().join("manifests/quickstart.yaml");
+    let quickstart = shipped.sandbox.path("manifests/quickstart.yaml");
     let bundle = shipped.bundle(&quickstart);
     let zip = archive::write(bundle.tree(), "b", Form::Bag);
     assert_eq!(archive::read(&zip, &Limits::default()).unwrap().tree, *bundle.tree());

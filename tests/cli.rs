@@ -1,59 +1,17 @@
 //! The command line as people meet it: whole texts and exit codes.
 
-use assert_cmd::Command;
+use crate::sandbox::Sandbox;
 use std::path::PathBuf;
-use tempfile::TempDir;
 
-/// A folder with a starter study in it, and a store of its own.
-struct Desk {
-    folder: TempDir,
+/// A folder with the starter study in it.
+fn desk() -> Sandbox {
+    Sandbox::pinned().with_demo()
 }
 
-/// What a command answered.
-#[derive(Debug, PartialEq)]
-struct Answer {
-    stdout: String,
-    stderr: String,
-    code: i32,
-}
-
-impl Desk {
-    fn new() -> Self {
-        let desk = Self { folder: tempfile::tempdir().unwrap() };
-        assert_eq!(desk.run(&["init", "demo"]).stdout, "reenact run demo/demo.yaml\n");
-        desk
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.folder.path().join(name)
-    }
-
-    fn write(&self, name: &str, text: &str) {
-        std::fs::write(self.path(name), text).unwrap();
-    }
-
-    fn run(&self, words: &[&str]) -> Answer {
-        let output = Command::cargo_bin("reenact")
-            .unwrap()
-            .args(words)
-            .current_dir(self.folder.path())
-            .env("REENACT_STORE", self.path("store"))
-            .env("SOURCE_DATE_EPOCH", "1600000000")
-            .output()
-            .unwrap();
-        Answer {
-            stdout: String::from_utf8(output.stdout).unwrap(),
-            stderr: String::from_utf8(output.stderr).unwrap(),
-            code: output.status.code().unwrap(),
-        }
-    }
-
-    /// Runs one short trial and gives its bundle.
-    fn bundle(&self) -> String {
-        let answer = self.run(&["run", "demo/demo.yaml", "--only", "prior=none", "--trials", "1"]);
-        assert_eq!((answer.stderr.as_str(), answer.code), ("", 0));
-        answer.stdout.lines().last().unwrap().to_owned()
-    }
+/// Runs one short trial and gives its bundle.
+fn bundle_on(desk: &Sandbox) -> String {
+    let words = ["run", "demo/demo.yaml", "--only", "prior=none", "--trials", "1"];
+    desk.done(&words).lines().last().unwrap().to_owned()
 }
 
 /// `text` with every number of wall time and every digest replaced, widths kept.
@@ -85,7 +43,7 @@ fn redacted(text: &str) -> String {
 
 #[test]
 fn a_run_prints_the_table_the_digest_and_the_bundle() {
-    let desk = Desk::new();
+    let desk = desk();
     let answer = desk.run(&["run", "demo/demo.yaml", "--only", "prior=none", "--trials", "1"]);
     assert_eq!((answer.stderr.as_str(), answer.code), ("", 0));
     insta::assert_snapshot!(redacted(&answer.stdout));
@@ -98,8 +56,8 @@ fn a_run_prints_the_table_the_digest_and_the_bundle() {
 
 #[test]
 fn json_is_one_line_with_the_documented_keys_and_a_second_run_is_cached() {
-    let desk = Desk::new();
-    let bundle = desk.bundle();
+    let desk = desk();
+    let bundle = bundle_on(&desk);
     let words =
         ["run", "demo/demo.yaml", "--only", "prior=none", "--trials", "1", "--format", "json"];
     let answer = desk.run(&words);
@@ -132,43 +90,35 @@ fn json_is_one_line_with_the_documented_keys_and_a_second_run_is_cached() {
 
 #[test]
 fn a_bundle_verifies_to_the_top_and_replays_to_the_same_record() {
-    let desk = Desk::new();
-    let bundle = desk.bundle();
+    let desk = desk();
+    let bundle = bundle_on(&desk);
     let answer = desk.run(&["verify", &bundle, "--level", "5"]);
     assert_eq!(answer.code, 0, "{answer:?}");
     insta::assert_snapshot!(redacted(&answer.stdout));
     let answer =
         desk.run(&["replay", &bundle, "none/0", "--html", "replay.html", "--svg", "still.svg"]);
-    assert_eq!(
-        answer,
-        Answer {
-            stdout: "checked to level 3 (derived): the bundle is what it says\nnone/0: the re-enacted record equals the archived \
-                     one\n"
-                .into(),
-            stderr: "wrote replay.html\nwrote still.svg\n".into(),
-            code: 0,
-        }
-    );
+    let says = "checked to level 3 (derived): the bundle is what it says\nnone/0: the re-enacted record equals the archived \
+                one\n";
+    assert_eq!((answer.stdout.as_str(), answer.code), (says, 0));
+    assert_eq!(answer.stderr, "wrote replay.html\nwrote still.svg\n");
     let answer = desk.run(&["report", &bundle, "-o", "report.html"]);
     let says = "checked to level 3 (derived): the bundle is what it says\nreport.html\n";
     assert_eq!((answer.stdout.as_str(), answer.code), (says, 0));
     for (page, holds) in
         [("replay.html", "<canvas"), ("report.html", "Distance travelled"), ("still.svg", "<svg")]
     {
-        let text = std::fs::read_to_string(desk.path(page)).unwrap();
+        let text = desk.read(page);
         assert!(text.contains(holds), "{page}");
     }
 }
 
 #[test]
 fn a_changed_number_is_found_and_named() {
-    let desk = Desk::new();
-    let bundle = desk.bundle();
+    let desk = desk();
+    let bundle = bundle_on(&desk);
     let exported = desk.run(&["export", &bundle, "--dir", "-o", "out"]).stdout;
     let folder = exported.lines().last().unwrap().to_owned();
-    let table = desk.path(&folder).join("data/results/trials.csv");
-    let text = std::fs::read_to_string(&table).unwrap();
-    std::fs::write(&table, text.replace("explored", "stuck")).unwrap();
+    desk.edit(&format!("{folder}/data/results/trials.csv"), "explored", "stuck");
     let answer = desk.run(&["verify", &folder]);
     assert_eq!(answer.code, 1);
     let last: Vec<&str> = answer.stdout.lines().rev().take(2).collect();
@@ -184,12 +134,9 @@ fn a_changed_number_is_found_and_named() {
 
 #[test]
 fn every_fault_of_a_manifest_is_told_at_its_place() {
-    let desk = Desk::new();
-    let manifest = std::fs::read_to_string(desk.path("demo/demo.yaml")).unwrap();
-    desk.write(
-        "demo/demo.yaml",
-        &manifest.replace("trials: 5", "trails: 5").replace("floor-plan-of:", "floor-plan-off:"),
-    );
+    let desk = desk();
+    desk.edit("demo/demo.yaml", "trials: 5", "trails: 5");
+    desk.edit("demo/demo.yaml", "floor-plan-of:", "floor-plan-off:");
     let answer = desk.run(&["check", "demo/demo.yaml"]);
     assert_eq!((answer.stdout.as_str(), answer.code), ("", 2));
     insta::assert_snapshot!(answer.stderr);
@@ -197,7 +144,7 @@ fn every_fault_of_a_manifest_is_told_at_its_place() {
 
 #[test]
 fn requests_that_are_not_understood_end_with_2() {
-    let desk = Desk::new();
+    let desk = desk();
     for (words, says) in [
         (vec!["check", "nope.yaml"], "error: cannot read `nope.yaml`: no such file\n"),
         (vec!["verify", "nope.zip"], "error: cannot read `nope.zip`: no such file\n"),
@@ -226,7 +173,7 @@ fn requests_that_are_not_understood_end_with_2() {
 
 #[test]
 fn an_unreadable_archive_is_an_answer_not_a_failure() {
-    let desk = Desk::new();
+    let desk = desk();
     desk.write("x.zip", "hello");
     let answer = desk.run(&["verify", "x.zip"]);
     assert_eq!(answer.code, 1);
@@ -235,16 +182,16 @@ fn an_unreadable_archive_is_an_answer_not_a_failure() {
 
 #[test]
 fn show_says_what_was_understood() {
-    let desk = Desk::new();
+    let desk = desk();
     let answer = desk.run(&["show", "demo/apartment.yaml", "-o", "world.svg"]);
     assert_eq!((answer.stderr.as_str(), answer.code), ("wrote world.svg\n", 0));
     insta::assert_snapshot!(redacted(&answer.stdout));
-    assert!(std::fs::read_to_string(desk.path("world.svg")).unwrap().contains("</svg>"));
+    assert!(desk.read("world.svg").contains("</svg>"));
 }
 
 #[test]
 fn a_generated_building_is_drawn_and_written_as_a_world() {
-    let desk = Desk::new();
+    let desk = desk();
     let generated = ["show", "--generate", "office-floor", "--seed", "3"];
     let answer = desk.run(&[&generated[..], &["-o", "b.yaml"]].concat());
     assert_eq!((answer.stderr.as_str(), answer.code), ("wrote b.yaml\n", 0));
@@ -253,8 +200,7 @@ fn a_generated_building_is_drawn_and_written_as_a_world() {
     assert_eq!((again.stdout, again.code), (answer.stdout, 0));
     let drawn = desk.run(&generated);
     assert_eq!((drawn.stderr.as_str(), drawn.code), ("wrote office-floor-3.svg\n", 0));
-    let read = |name: &str| std::fs::read_to_string(desk.path(name)).unwrap();
-    assert_eq!(read("office-floor-3.svg"), read("b.svg"));
+    assert_eq!(desk.read("office-floor-3.svg"), desk.read("b.svg"));
     let refused = desk.run(&["show", "b.yaml", "-o", "c.yaml"]);
     assert_eq!(
         (refused.stderr.as_str(), refused.code),
@@ -267,7 +213,7 @@ fn a_generated_building_is_drawn_and_written_as_a_world() {
 
 #[test]
 fn a_constrained_mdp_is_solved_refused_or_infeasible() {
-    let desk = Desk::new();
+    let desk = desk();
     let problem = r#"{"states": ["here", "goal"], "actions": ["walk", "run"], "absorbing": [1], "initial": [[0, 1.0]],
  "transitions": [[0, 0, 1, 1.0], [0, 1, 1, 1.0]], "primary": [[0, 0, 4.0], [0, 1, 1.0]],
  "secondary": [{"name": "risk", "bound": 0.5, "costs": [[0, 1, 1.0]]}]}"#;
@@ -276,10 +222,10 @@ fn a_constrained_mdp_is_solved_refused_or_infeasible() {
     let solved =
         r#"{"status":"optimal","primary":2.5,"secondary":[0.5],"policy":[[0,0,0.5],[0,1,0.5]]}"#;
     assert_eq!((answer.stdout.trim_end(), answer.code), (solved, 0));
-    desk.write("i.json", &problem.replace("[[0, 1, 1.0]]}", "[[0, 0, 1.0], [0, 1, 1.0]]}"));
+    desk.write("i.json", problem.replace("[[0, 1, 1.0]]}", "[[0, 0, 1.0], [0, 1, 1.0]]}"));
     let answer = desk.run(&["solve-cmdp", "i.json"]);
     assert!(answer.stdout.contains(r#""status":"infeasible""#) && answer.code == 0, "{answer:?}");
-    desk.write("b.json", &problem.replace("\"absorbing\": [1]", "\"absorbing\": [7]"));
+    desk.write("b.json", problem.replace("\"absorbing\": [1]", "\"absorbing\": [7]"));
     let answer = desk.run(&["solve-cmdp", "b.json"]);
     let says = "error: b.json: absorbing[0]: state 7 does not exist; expected an index below 2\n";
     assert_eq!((answer.stderr.as_str(), answer.code), (says, 2));
@@ -287,7 +233,7 @@ fn a_constrained_mdp_is_solved_refused_or_infeasible() {
 
 #[test]
 fn a_derived_prior_laid_over_its_world_lies_on_it() {
-    let desk = Desk::new();
+    let desk = desk();
     let world = "demo/apartment.yaml";
     let derived = desk.run(&["show", world, "--derive", "floor-plan", "-o", "plan.png"]);
     assert_eq!((derived.stderr.as_str(), derived.code), ("wrote plan.png\n", 0));
@@ -296,7 +242,7 @@ fn a_derived_prior_laid_over_its_world_lies_on_it() {
     let cells = line("occupied: ").split(' ').next().unwrap();
     desk.write(
         "plan.yaml",
-        &format!(
+        format!(
             "image: plan.png\nresolution: 0.1\norigin: [{origin}, 0.0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
         ),
     );

@@ -1,133 +1,71 @@
 //! What a study rests on and other runs made: a forged table of robustness, a poisoned store and a calibration of itself are told,
 //! by the program as its users run it.
 
+use crate::sandbox::{Answer, Sandbox, TINY};
 use reenact::runner::TrialStore;
 use reenact::store::DirectoryStore;
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::path::Path;
 
-/// Two cells of three trials of 20 simulated seconds, one assumption with another value, a claim.
-const STUDY: &str = "
-reenact: 1
-name: tiny
-title: A tiny study
-authors: [{name: A. Researcher}]
-license: CC-BY-4.0
-study: prior-map
-seed: 7
-trials: 3
-robot: robots/kobuki.urdf
-world: {file: worlds/basic.yaml, layers: [walls]}
-start: {x-m: 3, y-m: 2, heading-deg: 0}
-factors:
-  prior: [none, floor-plan]
-prior-maps:
-  floor-plan: {floor-plan-of: world}
-parameters:
-  mission: {time-limit-s: 20}
-  sensing: {range-noise-sd-m: {value: 0.01, why: unstated, range: [0.05]}}
+/// The tiny study with another value of one assumption, and a claim.
+fn study() -> String {
+    format!(
+        "{TINY}  sensing: {{range-noise-sd-m: {{value: 0.01, why: unstated, range: [0.05]}}}}
 claims:
   - id: T1
     says: within 20 s the robot drives at least 5 m
     paper-table: silent
-    expect: {between: {metric: distance-m, where: {prior: none}, low: 5, minimum-n: 3}}
-";
-
-struct Workplace {
-    folder: tempfile::TempDir,
+    expect: {{between: {{metric: distance-m, where: {{prior: none}}, low: 5, minimum-n: 3}}}}
+"
+    )
 }
 
-/// Exit code, stdout and stderr.
-type Answer = (Option<i32>, String, String);
-
-impl Workplace {
-    fn new() -> Self {
-        let (folder, root) = (tempfile::tempdir().unwrap(), Path::new(env!("CARGO_MANIFEST_DIR")));
-        for file in [
-            "robots/kobuki.urdf",
-            "robots/pioneer3at.urdf",
-            "worlds/basic.yaml",
-            "worlds/engineering-building.yaml",
-            "manifests/settings/deadline.yaml",
-        ] {
-            let copy = folder.path().join(file);
-            fs::create_dir_all(copy.parent().unwrap()).unwrap();
-            fs::copy(root.join(file), copy).unwrap();
-        }
-        Self { folder }
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.folder.path().join(name)
-    }
-
-    fn reenact(&self, words: &[&str]) -> Answer {
-        let output = Command::new(assert_cmd::cargo::cargo_bin!("reenact"))
-            .current_dir(self.folder.path())
-            .env("REENACT_STORE", self.path("store"))
-            .env("SOURCE_DATE_EPOCH", "1600000000")
-            .args(words)
-            .output()
-            .unwrap();
-        let text = |bytes| String::from_utf8(bytes).unwrap();
-        (output.status.code(), text(output.stdout), text(output.stderr))
-    }
-
-    /// The bundle of a run, which must succeed.
-    fn sealed(&self, words: &[&str]) -> String {
-        let (code, stdout, stderr) = self.reenact(words);
-        assert_eq!(code, Some(0), "{stderr}");
-        stdout.lines().last().unwrap().to_owned()
-    }
-}
-
-fn last(text: &str) -> &str {
-    text.lines().last().unwrap_or_default()
+/// The bundle of a run, which must succeed.
+fn sealed(at: &Sandbox, words: &[&str]) -> String {
+    let answer = at.run(words);
+    assert_eq!(answer.code, 0, "{}", answer.stderr);
+    answer.last_line().to_owned()
 }
 
 #[test]
 fn a_robustness_table_is_the_authors_word_until_its_runs_are_done_again() {
-    let at = Workplace::new();
-    let named = format!("{STUDY}sensitivity: tiny.sensitivity.csv\n");
-    fs::write(at.path("tiny.yaml"), &named).unwrap();
-    let (code, _, stderr) = at.reenact(&["vary", "tiny.yaml"]);
-    assert_eq!(code, Some(0), "{stderr}");
-    let honest = fs::read_to_string(at.path("tiny.sensitivity.csv")).unwrap();
-    let bundle = at.sealed(&["run", "tiny.yaml"]);
+    let named = study() + "sensitivity: tiny.sensitivity.csv\n";
+    let at = Sandbox::pinned().with_study(&named);
+    let varied = at.run(&["vary", "tiny.yaml"]);
+    assert_eq!(varied.code, 0, "{}", varied.stderr);
+    let honest = at.read("tiny.sensitivity.csv");
+    let bundle = sealed(&at, &["run", "tiny.yaml"]);
     let verify = |bundle: &str, more: &[&str]| {
         let words: Vec<&str> = ["verify", bundle, "--sample-seed", "5"]
             .into_iter()
             .chain(more.iter().copied())
             .collect();
-        at.reenact(&words)
+        at.run(&words)
     };
-    let (code, stdout, _) = verify(&bundle, &[]);
+    let answer = verify(&bundle, &[]);
     assert_eq!(
-        (code, last(&stdout)),
+        (answer.code, answer.last_line()),
         (
-            Some(0),
+            0,
             "reached level 3 (derived) of level 3 (derived): the bundle is what it says; the robustness table is the author's \
              word"
         )
     );
-    let (code, stdout, _) = verify(&bundle, &["--level", "4"]);
+    let answer = verify(&bundle, &["--level", "4"]);
     assert_eq!(
-        (code, last(&stdout)),
+        (answer.code, answer.last_line()),
         (
-            Some(0),
+            0,
             "reached level 4 (sampled) of level 4 (sampled): the bundle is what it says; the robustness table is the author's \
              word but for 1 of its 2 rows"
         )
     );
-    let (code, stdout, _) = verify(&bundle, &["--level", "4", "--robustness", "all"]);
-    assert_eq!(code, Some(0));
-    assert!(
-        stdout.contains("\nall 2 rows of the robustness table gave the same again\n"),
-        "{stdout}"
-    );
+    let answer = verify(&bundle, &["--level", "4", "--robustness", "all"]);
+    assert_eq!(answer.code, 0);
+    let says = "\nall 2 rows of the robustness table gave the same again\n";
+    assert!(answer.stdout.contains(says), "{answer:?}");
     assert_eq!(
-        last(&stdout),
+        answer.last_line(),
         "reached level 4 (sampled) of level 4 (sampled): the bundle is what it says"
     );
 
@@ -157,13 +95,13 @@ fn a_robustness_table_is_the_authors_word_until_its_runs_are_done_again() {
         ),
     ] {
         assert_ne!(forged, honest);
-        fs::write(at.path("tiny.sensitivity.csv"), forged).unwrap();
-        let bundle = at.sealed(&["run", "tiny.yaml"]);
-        let (code, stdout, _) = verify(&bundle, &["--level", "5"]);
+        at.write("tiny.sensitivity.csv", forged);
+        let bundle = sealed(&at, &["run", "tiny.yaml"]);
+        let Answer { code, stdout, .. } = verify(&bundle, &["--level", "5"]);
         let hint = "(the robustness table was not made by these runs: `reenact vary` makes it)";
         let finding =
             format!("error at level 4: data/inputs/tiny.sensitivity.csv: {says} {hint}\n");
-        assert!(code == Some(1) && stdout.contains(&finding), "{stdout}");
+        assert!(code == 1 && stdout.contains(&finding), "{stdout}");
         assert!(
             stdout.contains(
                 "\n1 of 2 rows of the robustness table gave something else than the bundle holds\n"
@@ -176,10 +114,10 @@ fn a_robustness_table_is_the_authors_word_until_its_runs_are_done_again() {
     let cells = |line: &str| line.split(',').take(7).collect::<Vec<_>>().join(",") + "\n";
     let by_hand: String = honest.lines().map(cells).collect();
     let by_hand = by_hand.replace(&format!("{found}\n"), "contradicted\n");
-    fs::write(at.path("tiny.sensitivity.csv"), by_hand).unwrap();
-    let bundle = at.sealed(&["run", "tiny.yaml"]);
-    let (code, stdout, _) = verify(&bundle, &["--level", "5"]);
-    assert!(code == Some(1) && stdout.contains(" for the claim T1, "), "{stdout}");
+    at.write("tiny.sensitivity.csv", by_hand);
+    let bundle = sealed(&at, &["run", "tiny.yaml"]);
+    let Answer { code, stdout, .. } = verify(&bundle, &["--level", "5"]);
+    assert!(code == 1 && stdout.contains(" for the claim T1, "), "{stdout}");
 }
 
 /// Every record of the honest store with its first measure changed, in another store.
@@ -196,16 +134,15 @@ fn poison(honest: &Path, other: &Path, keys: &[reenact::digest::TrialKey]) {
 
 #[test]
 fn a_poisoned_store_is_found_before_anything_is_sealed() {
-    let at = Workplace::new();
-    fs::write(at.path("tiny.yaml"), STUDY).unwrap();
-    let bundle = at.sealed(&["run", "tiny.yaml"]);
+    let at = Sandbox::pinned().with_study(&study());
+    let bundle = sealed(&at, &["run", "tiny.yaml"]);
     let zip = fs::read(at.path(&bundle)).unwrap();
     let limits = reenact::bundle::Limits::default();
     let records = reenact::bundle::Bundle::read(&zip, &limits).unwrap().records().unwrap();
     let keys: Vec<_> = records.iter().map(|record| record.key).collect();
 
-    let (code, stdout, _) = at.reenact(&["run", "tiny.yaml"]);
-    assert_eq!(code, Some(0));
+    let Answer { code, stdout, .. } = at.run(&["run", "tiny.yaml"]);
+    assert_eq!(code, 0);
     let says = "(6 from the store, 3 of them executed again: the same bytes)";
     let unwrapped = stdout.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(unwrapped.contains(says), "{stdout}");
@@ -214,14 +151,14 @@ fn a_poisoned_store_is_found_before_anything_is_sealed() {
     fs::remove_dir_all(at.path("store")).unwrap();
     fs::rename(at.path("poisoned"), at.path("store")).unwrap();
     fs::remove_file(at.path(&bundle)).unwrap();
-    let (code, _, stderr) = at.reenact(&["run", "tiny.yaml"]);
-    assert_eq!(code, Some(3), "{stderr}");
+    let Answer { code, stderr, .. } = at.run(&["run", "tiny.yaml"]);
+    assert_eq!(code, 3, "{stderr}");
     let end = "with the same states throughout; 3 of 3 records that were drawn differ: the store was changed, or another \
                program wrote it, so nothing is sealed; remove the store (`reenact cache dir` says where it is), or run with \
                --no-cache\n";
     assert!(stderr.starts_with("error: trial ") && stderr.ends_with(end), "{stderr}");
     assert!(!at.path(&bundle).exists());
-    assert_eq!(at.reenact(&["run", "tiny.yaml", "--no-cache"]).0, Some(0));
+    assert_eq!(at.run(&["run", "tiny.yaml", "--no-cache"]).code, 0);
 }
 
 /// A manifest of the deadline study that names `calibration`.
@@ -235,15 +172,19 @@ fn deadline(calibration: &str) -> String {
 
 #[test]
 fn a_calibration_of_itself_is_found_before_anything_runs() {
-    let at = Workplace::new();
-    fs::write(at.path("manifests/a.yaml"), deadline("b.yaml")).unwrap();
-    fs::write(at.path("manifests/b.yaml"), deadline("a.yaml")).unwrap();
-    fs::write(at.path("manifests/self.yaml"), deadline("self.yaml")).unwrap();
+    let at = Sandbox::new().with_files(&[
+        "robots/pioneer3at.urdf",
+        "worlds/engineering-building.yaml",
+        "manifests/settings/deadline.yaml",
+    ]);
+    at.write("manifests/a.yaml", deadline("b.yaml"));
+    at.write("manifests/b.yaml", deadline("a.yaml"));
+    at.write("manifests/self.yaml", deadline("self.yaml"));
     for (manifest, other, asks) in [("a", "b", "a"), ("self", "self", "self")] {
         let path = format!("manifests/{manifest}.yaml");
         for command in ["check", "run"] {
-            let (code, _, stderr) = at.reenact(&[command, &path]);
-            assert_eq!(code, Some(2), "{stderr}");
+            let Answer { code, stderr, .. } = at.run(&[command, &path]);
+            assert_eq!(code, 2, "{stderr}");
             let says = format!(
                 "`{other}.yaml` is read as a calibration and asks for the calibration `{asks}.yaml`"
             );

@@ -1,12 +1,9 @@
 //! Documentation that rots is worse than none: links point somewhere, and every command is mentioned.
 
+use crate::sandbox::repository;
 use reenact::document::Source;
 use reenact::{cli, world};
 use std::path::{Path, PathBuf};
-
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
 
 /// The Markdown files of `folder` and below.
 fn markdown_in(folder: &Path) -> Vec<PathBuf> {
@@ -48,8 +45,8 @@ fn links_are_found_outside_of_code() {
 #[test]
 fn every_relative_link_points_to_a_file() {
     let mut pages: Vec<PathBuf> =
-        ["README.md", "CHANGELOG.md", "CONTRIBUTING.md"].map(|name| root().join(name)).into();
-    pages.extend(markdown_in(&root().join("docs")));
+        ["README.md", "CHANGELOG.md", "CONTRIBUTING.md"].map(|name| repository().join(name)).into();
+    pages.extend(markdown_in(&repository().join("docs")));
     let mut dead = Vec::new();
     let mut followed = 0;
     for page in &pages {
@@ -61,7 +58,10 @@ fn every_relative_link_points_to_a_file() {
             }
             followed += 1;
             if !page.parent().unwrap().join(target).exists() {
-                dead.push(format!("{}: {link}", page.strip_prefix(root()).unwrap().display()));
+                dead.push(format!(
+                    "{}: {link}",
+                    page.strip_prefix(repository()).unwrap().display()
+                ));
             }
         }
     }
@@ -71,7 +71,7 @@ fn every_relative_link_points_to_a_file() {
 
 #[test]
 fn every_page_is_in_the_index() {
-    let docs = root().join("docs");
+    let docs = repository().join("docs");
     let index = std::fs::read_to_string(docs.join("README.md")).unwrap();
     let listed = links(&index);
     for page in markdown_in(&docs) {
@@ -82,7 +82,7 @@ fn every_page_is_in_the_index() {
 
 #[test]
 fn the_readme_mentions_every_command() {
-    let readme = std::fs::read_to_string(root().join("README.md")).unwrap();
+    let readme = std::fs::read_to_string(repository().join("README.md")).unwrap();
     let missing: Vec<String> = cli::command()
         .get_subcommands()
         .map(|command| command.get_name().to_owned())
@@ -93,7 +93,7 @@ fn the_readme_mentions_every_command() {
 
 #[test]
 fn the_example_of_a_world_is_one() {
-    let page = std::fs::read_to_string(root().join("docs/world.md")).unwrap();
+    let page = std::fs::read_to_string(repository().join("docs/world.md")).unwrap();
     let example = page.split("```yaml\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
     let world = world::document::read(&Source::new("docs/world.md", example), None).unwrap();
     assert_eq!(world.layers(), ["furniture", "walls"]);

@@ -1,72 +1,22 @@
 //! Locks, probes and differences as people meet them: whole texts and exit codes.
 
-use assert_cmd::Command;
+use crate::sandbox::{Answer, Sandbox, repository};
 use std::fs;
-use std::path::{Path, PathBuf};
-use tempfile::TempDir;
+use std::path::Path;
 
-/// A folder with the starter study, one trial of half a minute a condition, and a store of its own.
-struct Desk {
-    folder: TempDir,
+/// A folder with the starter study, one trial of half a minute a condition.
+fn desk() -> Sandbox {
+    let desk = Sandbox::pinned().with_demo();
+    let short = "trials: 1\nparameters: {mission: {time-limit-s: 30}}";
+    desk.edit("demo/demo.yaml", "trials: 5", short);
+    desk
 }
 
-/// What a command answered.
-#[derive(Debug, PartialEq)]
-struct Answer {
-    stdout: String,
-    stderr: String,
-    code: i32,
-}
-
-impl Desk {
-    fn new() -> Self {
-        let desk = Self { folder: tempfile::tempdir().unwrap() };
-        assert_eq!(desk.run(&["init", "demo"]).code, 0);
-        let short = "trials: 1\nparameters: {mission: {time-limit-s: 30}}";
-        desk.edit("demo/demo.yaml", "trials: 5", short);
-        desk
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.folder.path().join(name)
-    }
-
-    fn read(&self, name: &str) -> String {
-        fs::read_to_string(self.path(name)).unwrap()
-    }
-
-    fn write(&self, name: &str, text: &str) {
-        fs::write(self.path(name), text).unwrap();
-    }
-
-    fn edit(&self, name: &str, from: &str, to: &str) {
-        let text = self.read(name);
-        assert!(text.contains(from), "{from} is not in {name}");
-        self.write(name, &text.replace(from, to));
-    }
-
-    fn run(&self, words: &[&str]) -> Answer {
-        let output = Command::cargo_bin("reenact")
-            .unwrap()
-            .args(words)
-            .current_dir(self.folder.path())
-            .env("REENACT_STORE", self.path("store"))
-            .env("SOURCE_DATE_EPOCH", "1600000000")
-            .output()
-            .unwrap();
-        Answer {
-            stdout: String::from_utf8(output.stdout).unwrap(),
-            stderr: String::from_utf8(output.stderr).unwrap(),
-            code: output.status.code().unwrap(),
-        }
-    }
-
-    /// What the lock has of the condition `slug`.
-    fn locked(&self, slug: &str) -> serde_json::Value {
-        let lock: serde_json::Value = serde_json::from_str(&self.read("demo/demo.lock")).unwrap();
-        let conditions = lock["conditions"].as_array().unwrap();
-        conditions.iter().find(|c| c["slug"] == slug).unwrap().clone()
-    }
+/// What the lock has of the condition `slug`.
+fn locked(desk: &Sandbox, slug: &str) -> serde_json::Value {
+    let lock: serde_json::Value = serde_json::from_str(&desk.read("demo/demo.lock")).unwrap();
+    let conditions = lock["conditions"].as_array().unwrap();
+    conditions.iter().find(|c| c["slug"] == slug).unwrap().clone()
 }
 
 /// `text` with short digests, simulated seconds and the number of settings hidden.
@@ -89,27 +39,26 @@ fn redacted(text: &str) -> String {
     out
 }
 
-fn s(text: &str) -> String {
-    text.to_owned()
-}
-
 /// One desk goes the whole way, as its trials take a while.
 #[test]
 fn a_lock_is_written_probed_found_drifting_and_blessed_again() {
-    let desk = Desk::new();
+    let desk = desk();
 
     // Without a lock there is nothing to be held against.
     let answer = desk.run(&["run", "demo/demo.yaml", "--locked", "--probe"]);
     let says = "error: cannot read `demo/demo.lock`: no such file; `--locked` needs a lock: write it with `reenact lock \
                 demo/demo.yaml` and commit it\n";
-    assert_eq!(answer, Answer { stdout: s(""), stderr: s(says), code: 2 });
+    assert_eq!((answer.stdout.as_str(), answer.stderr.as_str(), answer.code), ("", says, 2));
 
     let answer = desk.run(&["lock", "demo/demo.yaml"]);
     let wrote = "\
 wrote demo/demo.lock: 2 trials of 2 conditions, results sha256:X
 commit it; `reenact run --locked --probe demo/demo.yaml` finds drift
 ";
-    assert_eq!((redacted(&answer.stdout), answer.stderr.as_str(), answer.code), (s(wrote), "", 0));
+    assert_eq!(
+        (redacted(&answer.stdout), answer.stderr.as_str(), answer.code),
+        (wrote.to_owned(), "", 0)
+    );
     let blessed = desk.read("demo/demo.lock");
 
     let answer = desk.run(&["lock", "demo/demo.yaml"]);
@@ -129,11 +78,11 @@ commit it; `reenact run --locked --probe demo/demo.yaml` finds drift
     assert!(bytes("free") == bytes("held"), "a lock left its mark on the bundle");
 
     // The lock's chain altered at one step: found by the probe, which does not read the store.
-    let chain = desk.locked("none")["first-trial"]["chain"][0].as_str().unwrap().to_owned();
+    let chain = locked(&desk, "none")["first-trial"]["chain"][0].as_str().unwrap().to_owned();
     let hashes: Vec<&str> = chain.split(' ').collect();
     desk.edit("demo/demo.lock", hashes[1], "00000000deadbeef");
     let answer = desk.run(&["run", "demo/demo.yaml", "--locked", "--probe"]);
-    let key = desk.locked("none")["first-trial"]["key"].as_str().unwrap()[..8].to_owned();
+    let key = locked(&desk, "none")["first-trial"]["key"].as_str().unwrap()[..8].to_owned();
     let drift = format!(
         "\
 DRIFT  none/0        time-limit after N s
@@ -189,7 +138,10 @@ same   none/0        time-limit after N s
 same   floor-plan/0  time-limit after N s
 trial 0 of every condition is as in demo/demo.lock
 ";
-    assert_eq!((redacted(&answer.stdout), answer.stderr.as_str(), answer.code), (s(same), "", 0));
+    assert_eq!(
+        (redacted(&answer.stdout), answer.stderr.as_str(), answer.code),
+        (same.to_owned(), "", 0)
+    );
     let probe = [
         "run",
         "demo/demo.yaml",
@@ -213,7 +165,7 @@ trial 0 of every condition is as in demo/demo.lock
     assert_eq!(answer.code, 0);
 
     // What a merge left behind is no lock, and is written anew.
-    desk.write("demo/demo.lock", &format!("<<<<<<< ours\n{blessed}=======\n>>>>>>> theirs\n"));
+    desk.write("demo/demo.lock", format!("<<<<<<< ours\n{blessed}=======\n>>>>>>> theirs\n"));
     let answer = desk.run(&["lock", "demo/demo.yaml"]);
     let wrote = "wrote demo/demo.lock anew: the old one could not be read; the reason belongs in CHANGELOG.md, in the same \
                  commit\n";
@@ -223,7 +175,7 @@ trial 0 of every condition is as in demo/demo.lock
 
 #[test]
 fn a_parameter_that_changed_is_named_by_probe_and_run_and_the_bundles_are_told_apart() {
-    let desk = Desk::new();
+    let desk = desk();
     assert_eq!(desk.run(&["lock", "demo/demo.yaml"]).code, 0);
     let range = ["--set", "parameters.sensing.range-m=6"];
     let probe = [
@@ -281,7 +233,7 @@ fn a_parameter_that_changed_is_named_by_probe_and_run_and_the_bundles_are_told_a
 
 #[test]
 fn requests_about_drift_that_are_not_understood_end_with_2() {
-    let desk = Desk::new();
+    let desk = desk();
     desk.write("new.lock", "{\"lock-format\": 7}\n");
     desk.write("demo/demo.lock", "{\"lock-format\": 7}\n");
     desk.write("x.zip", "hello");
@@ -325,7 +277,7 @@ fn requests_about_drift_that_are_not_understood_end_with_2() {
 
 #[test]
 fn every_trial_twice_gives_the_same_bytes() {
-    let desk = Desk::new();
+    let desk = desk();
     let answer = desk.run(&["run", "demo/demo.yaml", "--only", "prior=none", "--twice"]);
     assert_eq!((answer.stderr.as_str(), answer.code), ("", 0));
     assert!(
@@ -346,7 +298,7 @@ fn every_shipped_manifest_has_a_lock_that_is_current() {
     use reenact::document::Source;
     use reenact::plan::ENGINE_VERSION;
 
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("manifests");
+    let folder = repository().join("manifests");
     let digest = |path: &Path| FileDigest(Sha256Digest::of(fs::read(path).unwrap()));
     let mut manifests = 0;
     for entry in fs::read_dir(&folder).unwrap() {

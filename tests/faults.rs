@@ -2,128 +2,53 @@
 //!
 //! `.ci/kill-and-resume.sh` adds a hundred random kills.
 
-use assert_cmd::cargo::cargo_bin;
+use crate::sandbox::{Answer, PROGRAM, Sandbox, TINY, skipped};
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use std::sync::LazyLock;
-use tempfile::TempDir;
 
-/// Two cells of three trials of 20 simulated seconds.
-const STUDY: &str = "
-reenact: 1
-name: tiny
-title: A tiny study
-license: CC-BY-4.0
-study: prior-map
-seed: 7
-trials: 3
-robot: robots/kobuki.urdf
-world: {file: worlds/basic.yaml, layers: [walls]}
-start: {x-m: 3, y-m: 2, heading-deg: 0}
-factors:
-  prior: [none, floor-plan]
-prior-maps:
-  floor-plan: {floor-plan-of: world}
-parameters:
-  mission: {time-limit-s: 20}
-";
-
-/// A folder of its own with the study.
-struct Place {
-    folder: TempDir,
+fn place() -> Sandbox {
+    Sandbox::new().with_study(TINY)
 }
 
-/// What a command answered, the folder's name replaced.
-#[derive(Debug, PartialEq)]
-struct Answer {
-    stdout: String,
-    stderr: String,
-    code: Option<i32>,
+/// A run of the study with this store and this place for bundles.
+fn command(place: &Sandbox, store: &str, out: &str) -> Command {
+    let mut command = place.command(&["run", "tiny.yaml", "--format", "json", "--out", out]);
+    command.env("REENACT_STORE", place.path(store));
+    command
 }
 
-impl Place {
-    fn new() -> Self {
-        let place = Self { folder: tempfile::tempdir().unwrap() };
-        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-        for file in ["robots/kobuki.urdf", "worlds/basic.yaml"] {
-            let copy = place.path(file);
-            fs::create_dir_all(copy.parent().unwrap()).unwrap();
-            fs::copy(root.join(file), copy).unwrap();
-        }
-        fs::write(place.path("tiny.yaml"), STUDY).unwrap();
-        place
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.folder.path().join(name)
-    }
-
-    fn command(&self, store: &str, out: &str) -> Command {
-        let mut command = Command::new(cargo_bin!("reenact"));
-        command.current_dir(self.folder.path()).env("REENACT_STORE", self.path(store)).args([
-            "run",
-            "tiny.yaml",
-            "--format",
-            "json",
-            "--out",
-            out,
-        ]);
-        command
-    }
-
-    fn run(&self, store: &str, out: &str) -> Answer {
-        let output = self.command(store, out).output().unwrap();
-        let text = |bytes: Vec<u8>| {
-            let folder = self.folder.path().display().to_string();
-            String::from_utf8(bytes).unwrap().replace(&folder, "HERE")
-        };
-        Answer {
-            stdout: text(output.stdout),
-            stderr: text(output.stderr),
-            code: output.status.code(),
-        }
-    }
-
-    /// Every file below a folder.
-    fn files(&self, below: &str) -> Vec<PathBuf> {
-        let (mut found, mut folders) = (Vec::new(), vec![self.path(below)]);
-        while let Some(folder) = folders.pop() {
-            for entry in fs::read_dir(folder).into_iter().flatten() {
-                let path = entry.unwrap().path();
-                if path.is_dir() {
-                    folders.push(path);
-                } else {
-                    found.push(path);
-                }
-            }
-        }
-        found.sort();
-        found
-    }
+/// What that run answers, the folder's name replaced.
+fn run(place: &Sandbox, store: &str, out: &str) -> Answer {
+    let mut answer = Answer::of(&mut command(place, store, out));
+    answer.stderr = answer.stderr.replace(&here(place), "HERE");
+    answer
 }
 
-fn failed(message: &str) -> Answer {
-    Answer { stdout: String::new(), stderr: format!("error: {message}\n"), code: Some(3) }
+fn here(place: &Sandbox) -> String {
+    place.path("").display().to_string().trim_end_matches('/').to_owned()
+}
+
+/// Asserts that a run ended with this error and no result.
+#[track_caller]
+fn failed(answer: &Answer, message: &str) {
+    let says = format!("error: {message}\n");
+    let told = (answer.stdout.as_str(), answer.stderr.as_str(), answer.code);
+    assert_eq!(told, ("", says.as_str(), 3));
 }
 
 /// What a run that came to its end says: its results, and how many trials it found in the store.
 #[track_caller]
 fn finished(answer: &Answer) -> (String, u64) {
-    assert_eq!((answer.stderr.as_str(), answer.code), ("", Some(0)), "{answer:?}");
+    assert_eq!((answer.stderr.as_str(), answer.code), ("", 0), "{answer:?}");
     let told: serde_json::Value = serde_json::from_str(&answer.stdout).unwrap();
     let results = told["results_digest"].as_str().unwrap().to_owned();
     (results, told["cached"].as_u64().unwrap())
 }
 
 /// The results of a run that nothing disturbed.
-static UNDISTURBED: LazyLock<String> =
-    LazyLock::new(|| finished(&Place::new().run("store", "out")).0);
-
-#[expect(clippy::print_stderr, reason = "whoever runs the tests must know what they did not test")]
-fn skipped(why: &str) {
-    eprintln!("SKIPPED: {why}");
-}
+static UNDISTURBED: LazyLock<String> = LazyLock::new(|| finished(&run(&place(), "store", "out")).0);
 
 /// A file system of its own on a folder, of so many KiB or for reading only; taken away at the end.
 struct Mounted(PathBuf);
@@ -156,36 +81,36 @@ impl Drop for Mounted {
 
 #[test]
 fn a_store_that_is_no_folder_is_told_and_nothing_is_run() {
-    let place = Place::new();
+    let place = place();
     fs::write(place.path("file"), "").unwrap();
     let says = "trial store: cannot read `HERE/file/store`: a part of its path is a file; free some space, allow writing, or \
                 choose another place with REENACT_STORE";
-    assert_eq!(place.run("file/store", "out"), failed(says));
+    failed(&run(&place, "file/store", "out"), says);
     assert_eq!(place.files("out"), [] as [PathBuf; 0]);
 }
 
 #[test]
 fn a_store_for_reading_only_is_told_and_serves_what_it_has() {
-    let place = Place::new();
+    let place = place();
     let Some(store) = Mounted::tmpfs(place.path("store"), "size=1m") else { return };
     store.remount("ro");
     let says = "trial store: cannot write to `HERE/store`: the file system is for reading only; free some space, allow \
                 writing, or choose another place with REENACT_STORE";
-    assert_eq!(place.run("store", "out"), failed(says));
+    failed(&run(&place, "store", "out"), says);
     assert_eq!(place.files("out"), [] as [PathBuf; 0]);
     store.remount("rw");
-    assert_eq!(finished(&place.run("store", "out")), (UNDISTURBED.clone(), 0));
+    assert_eq!(finished(&run(&place, "store", "out")), (UNDISTURBED.clone(), 0));
     store.remount("ro");
-    assert_eq!(finished(&place.run("store", "again")), (UNDISTURBED.clone(), 6));
+    assert_eq!(finished(&run(&place, "store", "again")), (UNDISTURBED.clone(), 6));
 }
 
 #[test]
 fn a_full_disk_ends_the_run_and_loses_no_finished_trial() {
-    let place = Place::new();
+    let place = place();
     let Some(store) = Mounted::tmpfs(place.path("store"), "size=12k") else { return };
     let says = "trial store: cannot write to `HERE/store`: the disk is full; free some space, allow writing, or choose \
                 another place with REENACT_STORE";
-    assert_eq!(place.run("store", "out"), failed(says));
+    failed(&run(&place, "store", "out"), says);
     let stored = place.files("store");
     assert!((1..6).contains(&stored.len()), "{stored:?}");
     assert!(
@@ -194,40 +119,40 @@ fn a_full_disk_ends_the_run_and_loses_no_finished_trial() {
     );
     assert_eq!(place.files("out"), [] as [PathBuf; 0]);
     store.remount("size=1m");
-    let resumed = finished(&place.run("store", "out"));
+    let resumed = finished(&run(&place, "store", "out"));
     assert_eq!(resumed, (UNDISTURBED.clone(), stored.len() as u64));
 }
 
 #[test]
 fn a_full_disk_leaves_no_half_bundle_and_the_trials_stay() {
-    let place = Place::new();
+    let place = place();
     let Some(out) = Mounted::tmpfs(place.path("out"), "size=8k") else { return };
     let results = UNDISTURBED.strip_prefix("sha256:").unwrap();
     let says = format!("cannot write `out/tiny-{}.zip`: the disk is full", &results[..8]);
-    assert_eq!(place.run("store", "out"), failed(&says));
+    failed(&run(&place, "store", "out"), &says);
     assert_eq!(place.files("out"), [] as [PathBuf; 0]);
     out.remount("size=1m");
-    assert_eq!(finished(&place.run("store", "out")), (UNDISTURBED.clone(), 6));
+    assert_eq!(finished(&run(&place, "store", "out")), (UNDISTURBED.clone(), 6));
 }
 
 #[test]
 fn a_place_for_bundles_that_cannot_be_written_is_told_and_the_trials_stay() {
-    let place = Place::new();
+    let place = place();
     let results = UNDISTURBED.strip_prefix("sha256:").unwrap();
     let name = format!("tiny-{}.zip", &results[..8]);
     fs::write(place.path("file"), "").unwrap();
     let says = format!("cannot write `file/out/{name}`: a part of its path is a file");
-    assert_eq!(place.run("store", "file/out"), failed(&says));
+    failed(&run(&place, "store", "file/out"), &says);
     // A folder stands where the bundle should.
     fs::create_dir_all(place.path("out").join(&name).join("x")).unwrap();
     let says = format!("cannot write `out/{name}`: it is a folder");
-    assert_eq!(place.run("store", "out"), failed(&says));
+    failed(&run(&place, "store", "out"), &says);
     assert_eq!(fs::read_dir(place.path("out")).unwrap().count(), 1, "a part stays behind");
     if let Some(_locked) = Mounted::tmpfs(place.path("locked"), "ro") {
         let says = format!("cannot write `locked/{name}`: the file system is for reading only");
-        assert_eq!(place.run("store", "locked"), failed(&says));
+        failed(&run(&place, "store", "locked"), &says);
     }
-    assert_eq!(finished(&place.run("store", "elsewhere")), (UNDISTURBED.clone(), 6));
+    assert_eq!(finished(&run(&place, "store", "elsewhere")), (UNDISTURBED.clone(), 6));
 }
 
 /// Permissions do not bind root, so the program is run as nobody where the tests run as root.
@@ -235,7 +160,7 @@ fn a_place_for_bundles_that_cannot_be_written_is_told_and_the_trials_stay() {
 #[test]
 fn missing_permissions_are_told() {
     use std::os::unix::fs::PermissionsExt as _;
-    let place = Place::new();
+    let place = place();
     let mode = |name: &str, mode| {
         fs::create_dir_all(place.path(name)).unwrap();
         fs::set_permissions(place.path(name), fs::Permissions::from_mode(mode)).unwrap();
@@ -243,23 +168,19 @@ fn missing_permissions_are_told() {
     mode("store", 0o555);
     mode("out", 0o777);
     mode(".", 0o755);
+    mode("..", 0o755);
     let is_root = Command::new("id").arg("-u").output().is_ok_and(|o| o.stdout == b"0\n");
-    let plain = place.command("store", "out");
-    let mut command = if is_root {
-        // The program may lie in a folder that is root's alone.
+    let mut command = command(&place, "store", "out");
+    if is_root {
+        // The program may lie in a folder that is root's alone. Another process copies it: of a file that this one has open
+        // for writing, children of tests beside this one inherit the handle, and then it cannot be executed.
         let copy = place.path("reenact");
-        fs::copy(cargo_bin!("reenact"), &copy).unwrap();
-        let mut command = Command::new("setpriv");
-        command
-            .args(["--reuid", "65534", "--regid", "65534", "--clear-groups"])
-            .arg(copy)
-            .args(plain.get_args())
-            .current_dir(place.folder.path())
-            .env("REENACT_STORE", place.path("store"));
-        command
-    } else {
-        plain
-    };
+        assert!(Command::new("cp").arg(PROGRAM).arg(&copy).status().unwrap().success());
+        let mut as_nobody = Command::new("setpriv");
+        place.dress(&mut as_nobody).args(["--reuid", "65534", "--regid", "65534"]);
+        as_nobody.arg("--clear-groups").arg(copy).args(command.get_args());
+        command = as_nobody;
+    }
     let Ok(output) = command.output() else {
         skipped("missing permissions take `setpriv` where the tests run as root");
         return;
@@ -267,15 +188,15 @@ fn missing_permissions_are_told() {
     let says = "error: trial store: cannot write to `HERE/store`: no permission; free some space, allow writing, or choose \
                 another place with REENACT_STORE\n";
     let stderr = String::from_utf8(output.stderr).unwrap();
-    let stderr = stderr.replace(&place.folder.path().display().to_string(), "HERE");
+    let stderr = stderr.replace(&here(&place), "HERE");
     assert_eq!((stderr.as_str(), output.status.code()), (says, Some(3)));
     assert_eq!(place.files("out"), [] as [PathBuf; 0]);
 }
 
 #[test]
 fn records_that_a_crash_left_damaged_are_run_again() {
-    let place = Place::new();
-    finished(&place.run("store", "out"));
+    let place = place();
+    finished(&run(&place, "store", "out"));
     let records = place.files("store");
     assert_eq!(records.len(), 6);
     let whole: Vec<Vec<u8>> = records.iter().map(|file| fs::read(file).unwrap()).collect();
@@ -289,7 +210,7 @@ fn records_that_a_crash_left_damaged_are_run_again() {
     fs::write(&records[3], flipped).unwrap();
     // And what a killed process had not finished.
     fs::write(records[0].with_file_name(".partial-abc"), &whole[0][..half]).unwrap();
-    assert_eq!(finished(&place.run("store", "again")), (UNDISTURBED.clone(), 2));
+    assert_eq!(finished(&run(&place, "store", "again")), (UNDISTURBED.clone(), 2));
     for (file, whole) in records.iter().zip(&whole) {
         assert_eq!(fs::read(file).unwrap(), *whole, "{}", file.display());
     }
@@ -297,30 +218,22 @@ fn records_that_a_crash_left_damaged_are_run_again() {
 
 #[test]
 fn another_record_under_a_trial_s_key_is_not_believed() {
-    let place = Place::new();
-    finished(&place.run("store", "out"));
+    let place = place();
+    finished(&run(&place, "store", "out"));
     let records = place.files("store");
     fs::copy(&records[0], &records[1]).unwrap();
-    assert_eq!(finished(&place.run("store", "again")), (UNDISTURBED.clone(), 5));
+    assert_eq!(finished(&run(&place, "store", "again")), (UNDISTURBED.clone(), 5));
 }
 
 #[test]
 fn two_processes_share_one_store() {
-    let place = Place::new();
-    let run = |out: &str| {
-        let mut command = place.command("store", out);
-        command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
-    };
-    let both = [run("one"), run("two"), run("three")];
-    for child in both {
-        let output = child.wait_with_output().unwrap();
-        let answer = Answer {
-            stdout: String::from_utf8(output.stdout).unwrap(),
-            stderr: String::from_utf8(output.stderr).unwrap(),
-            code: output.status.code(),
-        };
-        assert_eq!(finished(&answer).0, *UNDISTURBED);
-    }
+    let place = &place();
+    std::thread::scope(|scope| {
+        let run = |out| scope.spawn(move || run(place, "store", out));
+        for answer in ["one", "two", "three"].map(run) {
+            assert_eq!(finished(&answer.join().unwrap()).0, *UNDISTURBED);
+        }
+    });
     assert_eq!(place.files("store").len(), 6, "{:?}", place.files("store"));
 }
 
@@ -328,9 +241,9 @@ fn two_processes_share_one_store() {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_behind_stdout_is_told() {
-    let place = Place::new();
+    let place = place();
     let full = fs::File::options().write(true).open("/dev/full").unwrap();
-    let output = place.command("store", "out").stdout(full).output().unwrap();
+    let output = command(&place, "store", "out").stdout(full).output().unwrap();
     let says = "error: cannot write the result: the disk is full\n";
     assert_eq!(
         (String::from_utf8(output.stderr).unwrap().as_str(), output.status.code()),

@@ -1,14 +1,14 @@
 //! The three plans drawn from memory after the department: their errors lie where those of the prior-knowledge study's own
 //! drawings lie, which are measured in the same way where `REENACT_ORIGINAL_WORLDS` is set, and written down in
-//! `worlds/README.md`. `cargo test --test hand_drawn -- --nocapture` prints the measurements.
+//! `worlds/README.md`. `cargo test --test integration hand_drawn:: -- --nocapture` prints the measurements.
 #![expect(
     clippy::print_stdout,
     reason = "a skipped test says so, and measurements are for reading"
 )]
 
-#[path = "hand_drawn/sketch.rs"]
 mod sketch;
 
+use crate::sandbox::repository;
 use reenact::document::Source;
 use reenact::grid::OccupancyGrid;
 use reenact::provenance::Environment;
@@ -16,7 +16,6 @@ use reenact::world::floor_plan::{Plan, floor_plan};
 use reenact::world::map_server::{self, Options};
 use reenact::world::{World, document};
 use sketch::{Errors, Sketch};
-use std::path::Path;
 
 /// What the three released drawings measure (`worlds/README.md`), by the names of [`measures`].
 const RELEASED: [(&str, [f64; 3]); 18] = [
@@ -48,7 +47,7 @@ const LIDAR: f64 = 0.1602;
 
 /// The plan of our world `name` with walls and `layers`.
 fn plan_of(name: &str, layers: &[&str]) -> OccupancyGrid {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("worlds/{name}.yaml"));
+    let path = repository().join(format!("worlds/{name}.yaml"));
     let layers: Vec<String> = layers.iter().map(|layer| (*layer).to_owned()).collect();
     let source = Source::new(name, std::fs::read_to_string(path).unwrap());
     let world: World = document::read(&source, Some(&layers)).unwrap_or_else(|faults| {

@@ -1,49 +1,18 @@
 //! Inputs that are no files, files of another kind, secrets, names that steer a terminal, and interrupts: an error at once, in
 //! little memory, and nothing of what was read by a slip is shown.
 
-#[path = "adversary/sandbox.rs"]
-mod sandbox;
-
-use sandbox::{Answer, MOST_SECONDS, Sandbox};
+use crate::sandbox::{Answer, MOST_SECONDS, Sandbox, TINY};
 use std::fs;
-use std::path::Path;
 use std::process::Command;
 
-/// A study of two cells of three trials of 20 simulated seconds.
-const STUDY: &str = "
-reenact: 1
-name: tiny
-title: A tiny study
-license: CC-BY-4.0
-study: prior-map
-seed: 7
-trials: 3
-robot: kobuki.urdf
-world: {file: basic.yaml, layers: [walls]}
-start: {x-m: 3, y-m: 2, heading-deg: 0}
-factors:
-  prior: [none, floor-plan]
-prior-maps:
-  floor-plan: {floor-plan-of: world}
-parameters:
-  mission: {time-limit-s: 20}
-";
-
 fn with_study() -> Sandbox {
-    let sandbox = Sandbox::new();
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    for file in ["robots/kobuki.urdf", "worlds/basic.yaml"] {
-        let name = Path::new(file).file_name().unwrap().to_str().unwrap();
-        fs::copy(root.join(file), sandbox.path(name)).unwrap();
-    }
-    fs::write(sandbox.path("tiny.yaml"), STUDY).unwrap();
-    sandbox
+    Sandbox::new().with_study(TINY)
 }
 
 /// Asserts that `answer` is a refusal of a request that was not understood, and quick; gives what it said.
 #[track_caller]
 fn refused(answer: &Answer) -> &str {
-    assert_eq!((answer.stdout.as_str(), answer.code), ("", Some(2)), "{answer:?}");
+    assert_eq!((answer.stdout.as_str(), answer.code), ("", 2), "{answer:?}");
     assert!(answer.seconds < MOST_SECONDS, "{} s", answer.seconds);
     &answer.stderr
 }
@@ -51,12 +20,12 @@ fn refused(answer: &Answer) -> &str {
 #[test]
 fn of_two_hundred_thousand_faults_a_hundred_are_told_and_the_others_counted() {
     let sandbox = with_study();
-    let mut text = STUDY.to_owned();
+    let mut text = TINY.to_owned();
     for i in 0..200_000 {
         text.push_str(&format!("k{i}: 1\n"));
     }
-    fs::write(sandbox.path("tiny.yaml"), text).unwrap();
-    let answer = sandbox.reenact(&["check", "tiny.yaml"]);
+    sandbox.write("tiny.yaml", text);
+    let answer = sandbox.run_reading(&["check", "tiny.yaml"]);
     let told = refused(&answer);
     assert_eq!(told.matches("error: unknown key `k").count(), 100);
     let (_, end) = told.split_once("error: unknown key `k99`\n").unwrap();
@@ -73,8 +42,8 @@ fn of_two_hundred_thousand_faults_a_hundred_are_told_and_the_others_counted() {
 fn many_names_cost_no_more_than_they_are_long() {
     let sandbox = with_study();
     let check = |from: &str, to: String, ends: &str| {
-        fs::write(sandbox.path("tiny.yaml"), STUDY.replace(from, &to)).unwrap();
-        let answer = sandbox.reenact(&["check", "tiny.yaml"]);
+        sandbox.write("tiny.yaml", TINY.replace(from, &to));
+        let answer = sandbox.run_reading(&["check", "tiny.yaml"]);
         let told = refused(&answer);
         assert!(told.ends_with(ends), "{}", &told[told.len().saturating_sub(500)..]);
     };
@@ -127,9 +96,9 @@ fn inputs_that_are_no_files_are_refused_before_they_are_opened() {
         ("circle", "expected a file, found a symbolic link that leads nowhere"),
         ("huge.urdf", "it is too large: expected at most 67108864 bytes, found 1099511627776"),
     ] {
-        let text = STUDY.replace("kobuki.urdf", robot);
-        fs::write(sandbox.path("tiny.yaml"), text).unwrap();
-        let answer = sandbox.reenact(&["check", "tiny.yaml"]);
+        let text = TINY.replace("robots/kobuki.urdf", robot);
+        sandbox.write("tiny.yaml", text);
+        let answer = sandbox.run_reading(&["check", "tiny.yaml"]);
         let carets = "^".repeat(robot.len());
         let says = format!(
             "error: cannot read `{robot}`\n --> tiny.yaml:9:8\n  |\n9 | robot: {robot}\n  |        {carets} {found}\n  |\n  = \
@@ -143,7 +112,7 @@ fn inputs_that_are_no_files_are_refused_before_they_are_opened() {
             &["solve-cmdp", robot],
             &["verify", "tiny.yaml", "--trust", robot],
         ] {
-            let answer = sandbox.reenact(words);
+            let answer = sandbox.run_reading(words);
             assert!(refused(&answer).starts_with("error: cannot read `"), "{words:?}: {answer:?}");
         }
     }
@@ -164,18 +133,18 @@ fn nothing_is_shown_of_files_of_another_kind() {
         "PuTTY-User-Key-File-3: ssh-ed25519\nComment: hunter2\nPrivate-Lines: 1\nhunter2\n",
     ];
     let as_part = |part: &str| match part {
-        "robot" => STUDY.replace("kobuki.urdf", "secret.urdf"),
-        "world" => STUDY.replace("{file: basic.yaml, layers: [walls]}", "{file: secret}"),
-        "sensitivity" => format!("{STUDY}sensitivity: secret\n"),
-        _ => format!("{STUDY}published:\n  numbers: secret\n"),
+        "robot" => TINY.replace("robots/kobuki.urdf", "secret.urdf"),
+        "world" => TINY.replace("{file: worlds/basic.yaml, layers: [walls]}", "{file: secret}"),
+        "sensitivity" => format!("{TINY}sensitivity: secret\n"),
+        _ => format!("{TINY}published:\n  numbers: secret\n"),
     };
     for secret in secrets {
         for name in ["secret", "secret.urdf", "secret.lock"] {
-            fs::write(sandbox.path(name), secret).unwrap();
+            sandbox.write(name, secret);
         }
         for part in ["robot", "world", "sensitivity", "published"] {
-            fs::write(sandbox.path("part.yaml"), as_part(part)).unwrap();
-            let answer = sandbox.reenact(&["check", "part.yaml"]);
+            sandbox.write("part.yaml", as_part(part));
+            let answer = sandbox.run_reading(&["check", "part.yaml"]);
             let told = refused(&answer).to_lowercase();
             assert!(told.contains("secret"), "{part}: the file is named: {told}");
             assert!(!told.contains("hunter2"), "{part}: {told}");
@@ -187,7 +156,7 @@ fn nothing_is_shown_of_files_of_another_kind() {
             &["diff", "secret.lock", "secret.lock"],
             &["verify", "tiny.yaml", "--trust", "secret"],
         ] {
-            let answer = sandbox.reenact(words);
+            let answer = sandbox.run_reading(words);
             let told = refused(&answer).to_lowercase();
             assert!(told.contains("secret"), "{words:?}: the file is named: {told}");
             assert!(!told.contains("hunter2"), "{words:?}: {told}");
@@ -200,8 +169,8 @@ fn a_private_key_is_no_key_to_trust_and_none_of_it_is_printed() {
     let sandbox = Sandbox::new();
     let key =
         "-----BEGIN OPENSSH PRIVATE KEY-----\nb3BlbnNzaC1rZXk\n-----END OPENSSH PRIVATE KEY-----\n";
-    fs::write(sandbox.path("id_ed25519"), key).unwrap();
-    let answer = sandbox.reenact(&["verify", "bundle", "--trust", "id_ed25519"]);
+    sandbox.write("id_ed25519", key);
+    let answer = sandbox.run_reading(&["verify", "bundle", "--trust", "id_ed25519"]);
     assert_eq!(
         refused(&answer),
         "error: `id_ed25519`: expected public keys, found an OpenSSH private key\n |\n = help: give the public key, which \
@@ -213,10 +182,10 @@ fn a_private_key_is_no_key_to_trust_and_none_of_it_is_printed() {
 fn what_a_manifest_calls_itself_steers_no_terminal() {
     let sandbox = with_study();
     let title = "title: \"A \\e[2J study \\u202e of \\x9b31m nothing\"";
-    fs::write(sandbox.path("tiny.yaml"), STUDY.replace("title: A tiny study", title)).unwrap();
+    sandbox.write("tiny.yaml", TINY.replace("title: A tiny study", title));
     let words = ["run", "tiny.yaml", "--no-cache", "--only", "prior=none", "--trials", "1"];
-    let answer = sandbox.reenact_that_writes(&words);
-    assert_eq!((answer.stderr.as_str(), answer.code), ("", Some(0)), "{answer:?}");
+    let answer = sandbox.run_bounded(&words);
+    assert_eq!((answer.stderr.as_str(), answer.code), ("", 0), "{answer:?}");
     let first = answer.stdout.lines().next().unwrap();
     assert_eq!(first, "A \\u{1b}[2J study \\u{202e} of \\u{9b}31m nothing");
 }
@@ -226,27 +195,19 @@ fn what_a_manifest_calls_itself_steers_no_terminal() {
 fn a_store_whose_name_is_no_text_is_told() {
     use std::os::unix::ffi::OsStrExt as _;
     let sandbox = with_study();
-    let output = Command::new(assert_cmd::cargo::cargo_bin!("reenact"))
-        .args(["run", "tiny.yaml"])
-        .current_dir(sandbox.path("."))
-        .env("REENACT_STORE", std::ffi::OsStr::from_bytes(b"st\xffre"))
-        .output()
-        .unwrap();
-    assert_eq!(
-        (String::from_utf8(output.stderr).unwrap().as_str(), output.status.code()),
-        (
-            "error: REENACT_STORE: expected a path in UTF-8, found `st\u{fffd}re`, which is none\n",
-            Some(2)
-        )
-    );
+    let store = std::ffi::OsStr::from_bytes(b"st\xffre");
+    let answer = Answer::of(sandbox.command(&["run", "tiny.yaml"]).env("REENACT_STORE", store));
+    let says =
+        "error: REENACT_STORE: expected a path in UTF-8, found `st\u{fffd}re`, which is none\n";
+    assert_eq!((answer.stderr.as_str(), answer.code), (says, 2));
 }
 
 #[test]
 fn threads_that_nobody_needs_are_not_started() {
     let sandbox = with_study();
     let words = ["run", "tiny.yaml", "--no-cache", "--trials", "1", "--jobs", "100000"];
-    let answer = sandbox.reenact_that_writes(&words);
-    assert_eq!(answer.code, Some(0), "{answer:?}");
+    let answer = sandbox.run_bounded(&words);
+    assert_eq!(answer.code, 0, "{answer:?}");
     let processors = std::thread::available_parallelism().map_or(1, usize::from);
     let most = (4 * processors).max(64);
     let s = if processors == 1 { "" } else { "s" };

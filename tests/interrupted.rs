@@ -2,95 +2,43 @@
 //! what stands in a record's place without being one is left alone.
 #![cfg(unix)]
 
-use assert_cmd::cargo::cargo_bin;
+use crate::sandbox::{Answer, Sandbox, TINY};
 use std::fs;
 use std::os::unix::process::ExitStatusExt as _;
-use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
+use std::path::PathBuf;
+use std::process::{Child, Command, Stdio};
 use std::time::Duration;
-use tempfile::TempDir;
 
-/// Forty trials of 20 simulated seconds: enough that a run is never over before it is interrupted.
-const STUDY: &str = "
-reenact: 1
-name: tiny
-title: A tiny study
-license: CC-BY-4.0
-study: prior-map
-seed: 7
-trials: 40
-robot: kobuki.urdf
-world: {file: basic.yaml, layers: [walls]}
-start: {x-m: 3, y-m: 2, heading-deg: 0}
-factors:
-  prior: [none]
-parameters:
-  mission: {time-limit-s: 20}
-";
+/// The tiny study with forty trials of one cell: enough that a run is never over before it is interrupted.
+fn place() -> Sandbox {
+    let cells = "prior: [none, floor-plan]\nprior-maps:\n  floor-plan: {floor-plan-of: world}\n";
+    let study = TINY.replace("trials: 3", "trials: 40").replace(cells, "prior: [none]\n");
+    Sandbox::new().with_study(&study)
+}
 
-struct Place(TempDir);
+/// Files below a folder with this in their names.
+fn named(place: &Sandbox, below: &str, part: &str) -> Vec<PathBuf> {
+    let mut files = place.files(below);
+    files.retain(|file| file.file_name().unwrap().to_string_lossy().contains(part));
+    files
+}
 
-impl Place {
-    fn new() -> Self {
-        let place = Self(tempfile::tempdir().unwrap());
-        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-        fs::copy(root.join("robots/kobuki.urdf"), place.path("kobuki.urdf")).unwrap();
-        fs::copy(root.join("worlds/basic.yaml"), place.path("basic.yaml")).unwrap();
-        fs::write(place.path("tiny.yaml"), STUDY).unwrap();
-        place
+/// Records in the store.
+fn stored(place: &Sandbox) -> Vec<PathBuf> {
+    let mut files = place.files("store");
+    files.retain(|file| file.extension().is_some_and(|extension| extension == "json"));
+    files
+}
+
+/// Begins `command` and waits until a few trials are in the store.
+fn begun(place: &Sandbox, command: &str) -> Child {
+    let mut command = place.command(&[command, "tiny.yaml", "--jobs", "1"]);
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    while stored(place).len() < 3 {
+        assert!(child.try_wait().unwrap().is_none(), "it ended by itself");
+        std::thread::sleep(Duration::from_millis(5));
     }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
-
-    fn command(&self, words: &[&str]) -> Command {
-        let mut command = Command::new(cargo_bin!("reenact"));
-        command
-            .current_dir(self.0.path())
-            .env("REENACT_STORE", self.path("store"))
-            .args(words)
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped());
-        command
-    }
-
-    fn run(&self, words: &[&str]) -> Output {
-        self.command(words).output().unwrap()
-    }
-
-    /// Files of the store whose names end so.
-    fn stored(&self, ending: &str) -> Vec<PathBuf> {
-        let folders = fs::read_dir(self.path("store")).into_iter().flatten();
-        let files = folders.flat_map(|folder| fs::read_dir(folder.unwrap().path()).unwrap());
-        let mut files: Vec<_> = files.map(|file| file.unwrap().path()).collect();
-        files.retain(|file| file.to_string_lossy().ends_with(ending));
-        files.sort();
-        files
-    }
-
-    /// Everything with this in its name below the folder.
-    fn named(&self, part: &str) -> Vec<PathBuf> {
-        let (mut found, mut folders) = (Vec::new(), vec![self.0.path().to_owned()]);
-        while let Some(folder) = folders.pop() {
-            for entry in fs::read_dir(folder).unwrap() {
-                let path = entry.unwrap().path();
-                found.extend(path.to_string_lossy().contains(part).then(|| path.clone()));
-                folders.extend(path.is_dir().then_some(path));
-            }
-        }
-        found
-    }
-
-    /// Begins `command` and waits until a few trials are in the store.
-    fn begun(&self, command: &str) -> Child {
-        let mut child = self.command(&[command, "tiny.yaml", "--jobs", "1"]).spawn().unwrap();
-        while self.stored(".json").len() < 3 {
-            assert!(child.try_wait().unwrap().is_none(), "it ended by itself");
-            std::thread::sleep(Duration::from_millis(5));
-        }
-        child
-    }
+    child
 }
 
 fn send(signal: &str, child: &Child) {
@@ -106,8 +54,8 @@ fn text(bytes: Vec<u8>) -> String {
 fn an_interrupted_run_says_how_to_go_on_and_leaves_nothing_half_written() {
     for (command, signal, number) in [("run", "-INT", 2), ("run", "-TERM", 15), ("lock", "-INT", 2)]
     {
-        let place = Place::new();
-        let child = place.begun(command);
+        let place = place();
+        let child = begun(&place, command);
         send(signal, &child);
         let output = child.wait_with_output().unwrap();
         let (stdout, stderr) = (text(output.stdout), text(output.stderr));
@@ -122,10 +70,10 @@ fn an_interrupted_run_says_how_to_go_on_and_leaves_nothing_half_written() {
             })
             .and_then(|kept| kept.parse::<usize>().ok())
             .unwrap_or_else(|| panic!("{stderr}"));
-        let stored = place.stored(".json").len();
+        let stored = stored(&place).len();
         assert!((3..=40).contains(&kept) && kept <= stored, "{kept} told, {stored} kept");
-        assert_eq!(place.named(".partial-"), [] as [PathBuf; 0]);
-        let plan = text(place.run(&["plan", "tiny.yaml"]).stdout);
+        assert_eq!(named(&place, "", ".partial-"), [] as [PathBuf; 0]);
+        let plan = place.run(&["plan", "tiny.yaml"]).stdout;
         let says = format!("40 trials: {stored} done, {} to do", 40 - stored);
         assert!(plan.contains(&says), "every stored trial is taken up again: {plan}");
     }
@@ -133,11 +81,11 @@ fn an_interrupted_run_says_how_to_go_on_and_leaves_nothing_half_written() {
 
 #[test]
 fn what_killed_runs_left_half_written_is_swept_and_nothing_else() {
-    let place = Place::new();
-    let child = place.begun("run");
+    let place = place();
+    let child = begun(&place, "run");
     send("-KILL", &child);
     child.wait_with_output().unwrap();
-    let stored = place.stored(".json");
+    let stored = stored(&place);
     // As one that was at its file just then leaves it, and one of another machine that may still be at work.
     let folder = stored[0].parent().unwrap();
     let (old, live) = (folder.join(".partial-aBcDeF"), folder.join(".partial-0badcafe-aBcDeF"));
@@ -145,24 +93,23 @@ fn what_killed_runs_left_half_written_is_swept_and_nothing_else() {
     fs::write(&live, "half").unwrap();
     let long_ago = std::time::SystemTime::UNIX_EPOCH;
     fs::File::options().write(true).open(&old).unwrap().set_modified(long_ago).unwrap();
-    let output = place.run(&["run", "tiny.yaml", "--trials", "3", "--format", "json"]);
-    assert_eq!((text(output.stderr).as_str(), output.status.code()), ("", Some(0)));
-    let told: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let answer = place.done(&["run", "tiny.yaml", "--trials", "3", "--format", "json"]);
+    let told: serde_json::Value = serde_json::from_str(&answer).unwrap();
     assert_eq!(told["cached"], 3, "a kill loses nothing that was finished");
-    assert_eq!(place.named(".partial-"), [live]);
+    assert_eq!(named(&place, "", ".partial-"), [live]);
 }
 
 /// Every shape but a file, in the places of finished records: each is named, its trial is run again and not kept.
 #[test]
 fn what_is_no_file_in_a_record_s_place_is_named_and_left_alone() {
-    let place = Place::new();
+    let place = place();
     let words = ["run", "tiny.yaml", "--trials", "4", "--format", "json"];
-    let results = |output: &Output| {
-        let told: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let results = |answer: &Answer| {
+        let told: serde_json::Value = serde_json::from_str(&answer.stdout).unwrap();
         (told["results_digest"].clone(), told["cached"].as_u64().unwrap())
     };
     let (undisturbed, _) = results(&place.run(&words));
-    let records = place.stored(".json");
+    let records = stored(&place);
     assert_eq!(records.len(), 4);
     for record in &records[..3] {
         fs::remove_file(record).unwrap();
@@ -171,9 +118,8 @@ fn what_is_no_file_in_a_record_s_place_is_named_and_left_alone() {
     fs::create_dir(&records[1]).unwrap();
     std::os::unix::fs::symlink(&records[2], &records[2]).unwrap();
     for _ in 0..2 {
-        let output = place.run(&words);
-        assert_eq!(results(&output), (undisturbed.clone(), 1));
-        assert_eq!(output.status.code(), Some(0));
+        let answer = place.run(&words);
+        assert_eq!((results(&answer), answer.code), ((undisturbed.clone(), 1), 0));
         let found = ["a pipe", "a folder", "a symbolic link that leads nowhere"];
         let says: Vec<String> = records
             .iter()
@@ -186,6 +132,6 @@ fn what_is_no_file_in_a_record_s_place_is_named_and_left_alone() {
                 )
             })
             .collect();
-        assert_eq!(text(output.stderr), says.concat());
+        assert_eq!(answer.stderr, says.concat());
     }
 }

@@ -1,5 +1,6 @@
 //! Manifests from the outside: faults told whole, and identities that depend on nothing but meaning.
 
+use crate::sandbox::repository;
 use proptest::prelude::*;
 use reenact::bundle::assemble;
 use reenact::document::{Diagnostic, Source};
@@ -45,20 +46,16 @@ impl Inputs for InMemory {
     }
 }
 
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
-
 type Resolved = Result<(Experiment, Vec<Diagnostic>), Vec<Diagnostic>>;
 
 /// Resolves the manifest in `folder`, with the overrides that its first comments name.
 fn resolve_file(folder: &str, file: &str) -> Resolved {
-    let path = root().join(folder).join(file);
+    let path = repository().join(folder).join(file);
     let text = std::fs::read_to_string(&path).unwrap();
     let overrides: Vec<String> =
         text.lines().filter_map(|l| l.strip_prefix("# --set ")).map(str::to_owned).collect();
     let source = Source::new(format!("{folder}/{file}"), text);
-    manifest::resolve(&source, &overrides, &Beside(root().join(folder)))
+    manifest::resolve(&source, &overrides, &Beside(repository().join(folder)))
 }
 
 fn told(faults: &[Diagnostic]) -> String {
@@ -66,7 +63,7 @@ fn told(faults: &[Diagnostic]) -> String {
 }
 
 fn manifests_in(folder: &str) -> Vec<String> {
-    let mut names: Vec<String> = std::fs::read_dir(root().join(folder))
+    let mut names: Vec<String> = std::fs::read_dir(repository().join(folder))
         .unwrap()
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
         .filter(|name| Path::new(name).extension().is_some_and(|e| e == "yaml"))
@@ -78,7 +75,7 @@ fn manifests_in(folder: &str) -> Vec<String> {
 
 fn snapshots(folder: &str) -> insta::Settings {
     let mut settings = insta::Settings::clone_current();
-    settings.set_snapshot_path(root().join(folder));
+    settings.set_snapshot_path(repository().join(folder));
     settings.set_prepend_module_to_snapshot(false);
     settings.set_omit_expression(true);
     settings
@@ -213,7 +210,7 @@ fn the_quickstart_is_twenty_trials_in_two_conditions() {
     let keys: std::collections::BTreeSet<_> = plan.trials.iter().map(|t| t.key).collect();
     assert_eq!(keys.len(), 20, "no two trials are the same");
     let resolved = plan.resolved_text();
-    assert!(!resolved.contains(root().to_str().unwrap()), "nothing of this machine");
+    assert!(!resolved.contains(repository().to_str().unwrap()), "nothing of this machine");
 }
 
 #[test]
@@ -365,7 +362,7 @@ fn generated_buildings_are_named_by_seeds_and_told_apart() {
 }
 
 fn resolve_text(text: &str, overrides: &[String]) -> Resolved {
-    let file = |path: &str| std::fs::read_to_string(root().join(path)).unwrap();
+    let file = |path: &str| std::fs::read_to_string(repository().join(path)).unwrap();
     let files = InMemory(BTreeMap::from([
         ("kobuki.urdf", file("robots/kobuki.urdf")),
         ("basic.yaml", file("worlds/basic.yaml")),
@@ -484,7 +481,7 @@ fn schemas_name_every_key() {
 
 #[test]
 fn the_reference_tells_every_parameter_with_its_default() {
-    let reference = std::fs::read_to_string(root().join("docs/manifest.md")).unwrap();
+    let reference = std::fs::read_to_string(repository().join("docs/manifest.md")).unwrap();
     let defaults =
         serde_json::to_value(reenact::studies::prior_map::Parameters::default()).unwrap();
     for (group, values) in defaults.as_object().unwrap() {

@@ -2,12 +2,13 @@
 //! `REENACT_ORIGINAL_WORLDS` to the folder that holds `worlds/` and `priors/`. They are never part of this
 //! repository.
 
+use crate::sandbox::repository;
 use reenact::document::Source;
 use reenact::manifest::{self, Inputs, WrittenIn};
 use reenact::plan::{Plan, Selection};
 use reenact::provenance::Environment;
 use reenact::studies::{self, Outcome};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 struct Disk(PathBuf);
 
@@ -32,7 +33,7 @@ fn the_original_basic_world_is_explored_with_and_without_its_own_floor_plan() {
         }
         return;
     };
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = repository();
     let text = std::fs::read_to_string(root.join("manifests/quickstart.yaml")).unwrap();
     let file = |name: &str| originals.join(name).display().to_string();
     let world = file("worlds/basic_no_furniture.world");

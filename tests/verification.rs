@@ -1,95 +1,36 @@
 //! A reviewer's afternoon, from the outside: who signed it, does it hold with fresh seeds, what can be signed, what remains in
 //! ten years.
 
+use crate::sandbox::{Answer, Sandbox, repository, skipped};
 use reenact::bundle::{Archive, Form, Limits, archive};
 use reenact::digest::Sha256Digest;
 use reenact::plan::ENGINE_VERSION;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Command, Stdio};
-use tempfile::TempDir;
-
-/// A folder to work in.
-struct Desk {
-    folder: TempDir,
-}
-
-/// What a command answered.
-#[derive(Debug)]
-struct Answer {
-    stdout: String,
-    stderr: String,
-    code: i32,
-}
-
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
 
 /// The bundle that the repository keeps.
 fn published() -> PathBuf {
-    root().join("artifacts/quickstart-published.zip")
+    repository().join("artifacts/quickstart-published.zip")
 }
 
-impl Desk {
-    fn new() -> Self {
-        Self { folder: tempfile::tempdir().unwrap() }
-    }
+/// A folder with the short study in it.
+fn with_study() -> Sandbox {
+    Sandbox::pinned().with_study(STUDY)
+}
 
-    fn path(&self, name: &str) -> PathBuf {
-        self.folder.path().join(name)
-    }
-
-    fn read(&self, name: &str) -> String {
-        std::fs::read_to_string(self.path(name)).unwrap()
-    }
-
-    /// A desk with the short study on it.
-    fn with_study() -> Self {
-        let desk = Self::new();
-        for file in ["robots/kobuki.urdf", "worlds/basic.yaml"] {
-            let name = file.rsplit('/').next().unwrap();
-            std::fs::copy(root().join(file), desk.path(name)).unwrap();
+/// `ssh-keygen` in this folder; `false` where the machine has none.
+fn ssh_keygen(desk: &Sandbox, words: &[&str]) -> bool {
+    let mut command = Command::new("ssh-keygen");
+    command.args(words).current_dir(desk.path("")).stdin(Stdio::null());
+    match command.output() {
+        Ok(output) => {
+            let told = String::from_utf8_lossy(&output.stderr);
+            assert!(output.status.success(), "ssh-keygen {words:?}: {told}");
+            true
         }
-        std::fs::write(desk.path("short.yaml"), STUDY).unwrap();
-        desk
-    }
-
-    fn run(&self, words: &[&str]) -> Answer {
-        self.run_in("", words)
-    }
-
-    fn run_in(&self, folder: &str, words: &[&str]) -> Answer {
-        let output = Command::new(assert_cmd::cargo::cargo_bin!("reenact"))
-            .args(words)
-            .current_dir(self.path(folder))
-            .env("REENACT_STORE", self.path("store"))
-            .env("SOURCE_DATE_EPOCH", "1600000000")
-            .output()
-            .unwrap();
-        Answer {
-            stdout: String::from_utf8(output.stdout).unwrap(),
-            stderr: String::from_utf8(output.stderr).unwrap(),
-            code: output.status.code().unwrap(),
-        }
-    }
-
-    /// `ssh-keygen` in this folder; `false` where the machine has none.
-    fn ssh_keygen(&self, words: &[&str]) -> bool {
-        let mut command = Command::new("ssh-keygen");
-        command.args(words).current_dir(self.folder.path()).stdin(Stdio::null());
-        match command.output() {
-            Ok(output) => {
-                let told = String::from_utf8_lossy(&output.stderr);
-                assert!(output.status.success(), "ssh-keygen {words:?}: {told}");
-                true
-            }
-            Err(error) => {
-                #[expect(clippy::print_stdout, reason = "a skipped test says so")]
-                {
-                    println!("skipped: no ssh-keygen to sign with on this machine ({error})");
-                }
-                false
-            }
+        Err(error) => {
+            skipped(&format!("no ssh-keygen to sign with on this machine ({error})"));
+            false
         }
     }
 }
@@ -97,20 +38,19 @@ impl Desk {
 /// As docs/verification.md tells authors and readers, with keys made for the occasion.
 #[test]
 fn a_bundle_signed_with_openssh_verifies_by_its_allowed_signers() {
-    let desk = Desk::new();
+    let desk = Sandbox::pinned();
     let bundle = published().to_str().unwrap().to_owned();
     for key in ["author", "stranger"] {
-        if !desk.ssh_keygen(&["-q", "-t", "ed25519", "-N", "", "-C", key, "-f", key]) {
+        if !ssh_keygen(&desk, &["-q", "-t", "ed25519", "-N", "", "-C", key, "-f", key]) {
             return;
         }
     }
     let opened = archive::read(&std::fs::read(published()).unwrap(), &Limits::default()).unwrap();
-    std::fs::write(desk.path("tagmanifest-sha256.txt"), &opened.tree["tagmanifest-sha256.txt"])
-        .unwrap();
-    desk.ssh_keygen(&["-Y", "sign", "-f", "author", "-n", "reenact", "tagmanifest-sha256.txt"]);
+    desk.write("tagmanifest-sha256.txt", &opened.tree["tagmanifest-sha256.txt"]);
+    ssh_keygen(&desk, &["-Y", "sign", "-f", "author", "-n", "reenact", "tagmanifest-sha256.txt"]);
     let trusting = |key: &str, file: &str| {
         let line = format!("a@example.org namespaces=\"reenact\" {}", desk.read(key));
-        std::fs::write(desk.path(file), line).unwrap();
+        desk.write(file, line);
     };
     trusting("author.pub", "signers");
     trusting("stranger.pub", "strangers");
@@ -138,7 +78,7 @@ fn a_bundle_signed_with_openssh_verifies_by_its_allowed_signers() {
     assert!(none.stdout.contains("found no signature (if its author signed it"), "{none:?}");
     // By SOURCE_DATE_EPOCH, which these commands are given, the key would still be trusted.
     let line = desk.read("signers").replace(" namespaces", " valid-before=\"20210101\",namespaces");
-    std::fs::write(desk.path("expired"), line).unwrap();
+    desk.write("expired", line);
     let expired = desk.run(&["verify", "--trust", "expired", signed]);
     assert_eq!(expired.code, 1);
     assert!(
@@ -153,7 +93,7 @@ fn a_bundle_signed_with_openssh_verifies_by_its_allowed_signers() {
     let Archive { form: Form::Bag, mut tree } = opened else { panic!("a bag") };
     let list = tree.get_mut("tagmanifest-sha256.txt").unwrap();
     list[0] = if list[0] == b'0' { b'1' } else { b'0' };
-    std::fs::write(desk.path("changed.zip"), archive::write(&tree, "changed", Form::Bag)).unwrap();
+    desk.write("changed.zip", archive::write(&tree, "changed", Form::Bag));
     let words = [
         "verify",
         "changed.zip",
@@ -172,9 +112,9 @@ fn a_bundle_signed_with_openssh_verifies_by_its_allowed_signers() {
 
 #[test]
 fn requests_about_signatures_that_make_no_sense_are_refused() {
-    let desk = Desk::new();
+    let desk = Sandbox::pinned();
     let bundle = published().to_str().unwrap().to_owned();
-    std::fs::write(desk.path("signers"), "a@example.org ssh-ed25519 AAAA\n").unwrap();
+    desk.write("signers", "a@example.org ssh-ed25519 AAAA\n");
     let bad = desk.run(&["verify", &bundle, "--trust", "signers"]);
     assert_eq!((bad.code, bad.stdout.as_str()), (2, ""));
     assert_eq!(
@@ -207,14 +147,14 @@ fn requests_about_signatures_that_make_no_sense_are_refused() {
 /// Two short trials, and a claim that any run bears out.
 const STUDY: &str = "
 reenact: 1
-name: short
+name: tiny
 title: A short study
 license: CC-BY-4.0
 study: prior-map
 seed: 7
 trials: 2
-robot: kobuki.urdf
-world: {file: basic.yaml, layers: [walls]}
+robot: robots/kobuki.urdf
+world: {file: worlds/basic.yaml, layers: [walls]}
 start: {x-m: 3, y-m: 2, heading-deg: 0}
 parameters: {mission: {time-limit-s: 20}}
 claims:
@@ -226,15 +166,15 @@ claims:
 
 #[test]
 fn a_study_with_its_engine_sealed_in_replicates_and_is_attested() {
-    let desk = Desk::with_study();
+    let desk = with_study();
     let digest = |words: &[&str]| {
         let run = desk.run(words);
         assert_eq!((run.stderr.as_str(), run.code), ("", 0));
         let lines: Vec<String> = run.stdout.lines().rev().take(2).map(str::to_owned).collect();
         (lines[1].clone(), lines[0].clone())
     };
-    let (without, _) = digest(&["run", "short.yaml", "--out", "plain"]);
-    let (with, bundle) = digest(&["run", "short.yaml", "--out", "sealed", "--capsule"]);
+    let (without, _) = digest(&["run", "tiny.yaml", "--out", "plain"]);
+    let (with, bundle) = digest(&["run", "tiny.yaml", "--out", "sealed", "--capsule"]);
     assert_eq!(without, with, "the capsule lies outside of the results");
 
     let words = [
@@ -276,13 +216,13 @@ fn a_study_with_its_engine_sealed_in_replicates_and_is_attested() {
     assert_eq!(attested["bundleId"], id);
 
     // As docs/verification.md tells reviewers and readers, with a key made for the occasion.
-    if desk.ssh_keygen(&["-q", "-t", "ed25519", "-N", "", "-C", "reviewer", "-f", "reviewer"]) {
-        desk.ssh_keygen(&["-Y", "sign", "-f", "reviewer", "-n", "reenact", "a.json.pae"]);
+    if ssh_keygen(&desk, &["-q", "-t", "ed25519", "-N", "", "-C", "reviewer", "-f", "reviewer"]) {
+        ssh_keygen(&desk, &["-Y", "sign", "-f", "reviewer", "-n", "reenact", "a.json.pae"]);
         let signed = desk.run(&["attest", "a.json", "--signature", "a.json.pae.sig"]);
         assert_eq!((signed.stderr.as_str(), signed.code), ("", 0));
         assert!(signed.stdout.starts_with("a.json: signed with the key SHA256:"), "{signed:?}");
         let line = format!("r@example.org namespaces=\"reenact\" {}", desk.read("reviewer.pub"));
-        std::fs::write(desk.path("signers"), line).unwrap();
+        desk.write("signers", line);
         let words = ["verify", &bundle, "--trust", "signers", "--attestation", "a.json"];
         let read = desk.run(&words);
         assert_eq!((read.stderr.as_str(), read.code), ("", 0), "{read:?}");
@@ -302,7 +242,7 @@ fn a_study_with_its_engine_sealed_in_replicates_and_is_attested() {
     );
 
     std::fs::remove_file(desk.path("a.json")).unwrap();
-    std::fs::write(desk.path("broken.zip"), &bytes[..bytes.len() / 2]).unwrap();
+    desk.write("broken.zip", &bytes[..bytes.len() / 2]);
     let broken = desk.run(&["verify", "broken.zip", "--attest", "a.json"]);
     let why = "error: wrote no `a.json`: the bundle holds to no level and not to level 3 (derived), as was asked\n";
     assert_eq!((broken.stderr.as_str(), broken.code), (why, 1));
@@ -335,8 +275,8 @@ fn commands_are_found_in_fenced_blocks_alone() {
 /// README's folder, checksums in the folder above it.
 #[test]
 fn every_command_that_a_bundle_and_its_page_print_works_as_printed() {
-    let desk = Desk::with_study();
-    let run = desk.run(&["run", "short.yaml", "--out", "bundles"]);
+    let desk = with_study();
+    let run = desk.run(&["run", "tiny.yaml", "--out", "bundles"]);
     assert_eq!(run.code, 0, "{}", run.stderr);
     let bundle = run.stdout.lines().last().unwrap().to_owned();
     let report = desk.run(&["report", &bundle, "-o", "page.html"]);
@@ -358,11 +298,11 @@ fn every_command_that_a_bundle_and_its_page_print_works_as_printed() {
     commands.extend(of_readme);
     for line in &commands {
         let words: Vec<&str> = line.split(' ').skip(1).collect();
-        let answer = desk.run_in("bundles", &words);
+        let answer = Answer::of(desk.command(&words).current_dir(desk.path("bundles")));
         assert_eq!(answer.code, 0, "{line}\n{}{}", answer.stdout, answer.stderr);
     }
     let words: Vec<&str> = again[0].split(' ').skip(1).collect();
-    let answer = desk.run_in(bag.join("data").to_str().unwrap(), &words);
+    let answer = Answer::of(desk.command(&words).current_dir(bag.join("data")));
     assert_eq!(answer.code, 0, "{}\n{}{}", again[0], answer.stdout, answer.stderr);
     let results =
         |told: &str| told.lines().find(|line| line.starts_with("results ")).map(str::to_owned);
@@ -393,7 +333,7 @@ fn every_command_that_a_bundle_and_its_page_print_works_as_printed() {
 /// ours; after that as far as any program can, with the way to climb the rest.
 #[test]
 fn the_published_quickstart_bundle_still_verifies() {
-    let desk = Desk::new();
+    let desk = Sandbox::pinned();
     let bundle = published().to_str().unwrap().to_owned();
     let answer = desk.run(&["verify", &bundle, "--level", "5", "--format", "json"]);
     let report: serde_json::Value = serde_json::from_str(&answer.stdout).unwrap();

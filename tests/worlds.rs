@@ -1,15 +1,15 @@
 //! The worlds of this repository: that they can be driven through as described, and, where the prior-knowledge study's
 //! own worlds are at hand, how well ours agree with them: set `REENACT_ORIGINAL_WORLDS` to the folder that holds
-//! `worlds/` and `priors/`. They are never part of this repository. `cargo test --test worlds -- --nocapture` prints the
-//! measurements.
+//! `worlds/` and `priors/`. They are never part of this repository. `cargo test --test integration worlds:: --
+//! --nocapture` prints the measurements.
 #![expect(
     clippy::print_stdout,
     reason = "a skipped test says so, and measurements are for reading"
 )]
 
-#[path = "worlds/floor.rs"]
 mod floor;
 
+use crate::sandbox::repository;
 use floor::{Floor, Passage};
 use reenact::document::Source;
 use reenact::geometry::{Outline, Point};
@@ -22,7 +22,7 @@ use std::path::{Path, PathBuf};
 
 /// Our world `name` with its walls and `layers`.
 fn ours(name: &str, layers: &[&str]) -> World {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("worlds/{name}.yaml"));
+    let path = repository().join(format!("worlds/{name}.yaml"));
     let layers: Vec<String> = layers.iter().map(|layer| (*layer).to_owned()).collect();
     let source = Source::new(name, std::fs::read_to_string(path).unwrap());
     document::read(&source, Some(&layers)).unwrap_or_else(|faults| {
@@ -104,8 +104,8 @@ fn the_maps_of_the_comparison_have_ten_starts_and_one_floor() {
 fn our_topo_metric_maps_lie_in_their_worlds() {
     for name in ["map-2", "map-4"] {
         let solids = ours(name, &[]).contact(0.0, 0.43);
-        let path = format!("{}/worlds/topo-metric/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
-        let map = tour::read(&text(Path::new(&path))).unwrap();
+        let path = repository().join(format!("worlds/topo-metric/{name}.yaml"));
+        let map = tour::read(&text(&path)).unwrap();
         let clear = |at: Point| solids.iter().all(|solid| solid.distance(at) > 0.25);
         for at in map.positions() {
             assert!(clear(at), "{name}: a node at {at:?}");

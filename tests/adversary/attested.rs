@@ -1,8 +1,8 @@
 //! Attestations: made, signed, read back, and whatever an attacker may hand over in their place.
 
 use super::forger;
-use super::sandbox::{Answer, Sandbox};
 use super::study::HONEST;
+use crate::sandbox::{Answer, Sandbox};
 use base64ct::{Base64, Encoding as _};
 use reenact::bundle::{Form, archive};
 use serde_json::{Value, json};
@@ -19,11 +19,11 @@ static REVIEWER: LazyLock<String> = LazyLock::new(|| fingerprint(1));
 /// The envelope that a check to level 5 of the honest bundle wrote, and the bytes to sign.
 static MADE: LazyLock<(Value, Vec<u8>)> = LazyLock::new(|| {
     let sandbox = Sandbox::new();
-    fs::write(sandbox.path("bundle"), &HONEST.zip).unwrap();
+    sandbox.write("bundle", &HONEST.zip);
     let words = ["verify", "bundle", "--level", "5", "--attest", "review.json"];
-    let answer = sandbox.reenact_that_writes(&words);
+    let answer = sandbox.run_bounded(&words);
     let says = "wrote review.json, unsigned, and review.json.pae, the bytes to sign\n";
-    assert_eq!((answer.stderr.as_str(), answer.code), (says, Some(0)), "{answer:?}");
+    assert_eq!((answer.stderr.as_str(), answer.code), (says, 0), "{answer:?}");
     let envelope = fs::read(sandbox.path("review.json")).unwrap();
     let to_sign = fs::read(sandbox.path("review.json.pae")).unwrap();
     (serde_json::from_slice(&envelope).unwrap(), to_sign)
@@ -76,12 +76,12 @@ fn signed_with(change: impl FnOnce(&mut Value)) -> String {
 /// The answer of a reader who trusts the reviewer with `limits`, and has `attestation` of `bundle`.
 fn read(limits: &str, bundle: &[u8], attestation: &str) -> Answer {
     let sandbox = Sandbox::new();
-    fs::write(sandbox.path("bundle"), bundle).unwrap();
-    fs::write(sandbox.path("review.json"), attestation).unwrap();
+    sandbox.write("bundle", bundle);
+    sandbox.write("review.json", attestation);
     let public = key(1).public_key().to_openssh().unwrap();
     let line = format!("reviewer@example.org {limits} {public}\n");
-    fs::write(sandbox.path("signers"), line).unwrap();
-    sandbox.reenact(&["verify", "bundle", "--trust", "signers", "--attestation", "review.json"])
+    sandbox.write("signers", line);
+    sandbox.run_reading(&["verify", "bundle", "--trust", "signers", "--attestation", "review.json"])
 }
 
 #[test]
@@ -116,7 +116,7 @@ fn an_attestation_is_a_statement_in_an_envelope() {
 #[test]
 fn a_signed_attestation_is_read_back() {
     let answer = read("", &HONEST.zip, &signed(&payload()));
-    assert_eq!((answer.stderr.as_str(), answer.code), ("", Some(0)), "{answer:?}");
+    assert_eq!((answer.stderr.as_str(), answer.code), ("", 0), "{answer:?}");
     let statement: Value = serde_json::from_slice(&payload()).unwrap();
     let date = statement["predicate"]["date"].as_str().unwrap();
     let reviewer = &*REVIEWER;
@@ -144,7 +144,7 @@ fn a_signed_attestation_is_read_back() {
         predicate["program"] = json!("reenact\u{1b}[1A 9");
     });
     let answer = read("", &HONEST.zip, &noted);
-    assert_eq!(answer.code, Some(0));
+    assert_eq!(answer.code, 0);
     let says = "attested: note at level 3: data/x: expected a\\u{1b}[2J, found b reached level 6 (\\u{202e}c)\nattested: not \
                 checked: the host\\u{7}\nreached level 3";
     assert!(answer.stdout.contains(says), "{}", answer.stdout);
@@ -154,7 +154,7 @@ fn a_signed_attestation_is_read_back() {
     let to_sign = pae(TYPE, &payload());
     let two = [sign(2, "reenact", &to_sign), sign(1, "reenact", &to_sign)];
     let answer = read("namespaces=\"reenact\"", &HONEST.zip, &envelope(TYPE, &payload(), &two));
-    assert_eq!(answer.code, Some(0), "{answer:?}");
+    assert_eq!(answer.code, 0, "{answer:?}");
     let says = "\nattested: said to be signed with the key SHA256:";
     assert!(answer.stdout.contains(says), "{}", answer.stdout);
 }
@@ -315,7 +315,7 @@ fn an_endless_attestation_is_no_attestation() {
         "error: cannot read `review.json`: it is too large: expected at most 1048576 bytes, found ",
         "\n",
     );
-    assert_eq!((answer.stdout.as_str(), answer.code), ("", Some(2)));
+    assert_eq!((answer.stdout.as_str(), answer.code), ("", 2));
     let found = answer.stderr.strip_prefix(begin).and_then(|rest| rest.strip_suffix(end));
     assert!(found.is_some_and(|bytes| bytes.parse::<u64>().unwrap() > 1 << 20), "{answer:?}");
 }
@@ -324,7 +324,7 @@ fn an_endless_attestation_is_no_attestation() {
 fn nothing_but_a_signed_attestation_of_this_bundle_passes() {
     for (name, attestation, says) in attacks() {
         let answer = read("", &HONEST.zip, &attestation);
-        assert_eq!((answer.stderr.as_str(), answer.code), ("", Some(1)), "{name}: {answer:?}");
+        assert_eq!((answer.stderr.as_str(), answer.code), ("", 1), "{name}: {answer:?}");
         let line = answer.stdout.lines().rev().nth(1).unwrap();
         assert!(line.starts_with("attestation refused: review.json: expected "), "{name}: {line}");
         assert!(format!("{line}\n").contains(&says), "{name}: {line}");
@@ -350,7 +350,7 @@ fn keys_are_trusted_for_a_time_and_a_purpose() {
         ),
     ] {
         let answer = read(limits, &HONEST.zip, &honest);
-        assert_eq!(answer.code, Some(1));
+        assert_eq!(answer.code, 1);
         let line = answer.stdout.lines().rev().nth(1).unwrap();
         assert!(line.starts_with("attestation refused: review.json: expected a signature by a key of `signers`, found one by "));
         assert!(line.contains(says), "{line}");
@@ -365,7 +365,7 @@ fn an_attestation_is_of_one_bundle_only() {
     let tree = forger::rederive(tree);
     let other = archive::write(&tree, "tiny", Form::Bag);
     let answer = read("", &other, &honest);
-    assert_eq!(answer.code, Some(1));
+    assert_eq!(answer.code, 1);
     let id = |tree: &reenact::bundle::Tree| {
         reenact::digest::Sha256Digest::of(&tree["tagmanifest-sha256.txt"])
     };
@@ -380,7 +380,7 @@ fn an_attestation_is_of_one_bundle_only() {
     let mut changed = HONEST.tree.clone();
     forger::replace(&mut changed, "data/README.md", "A tiny study", "A vast study");
     let answer = read("", &archive::write(&changed, &HONEST.root, Form::Bag), &honest);
-    assert_eq!(answer.code, Some(1));
+    assert_eq!(answer.code, 1);
     let says = "\nattestation refused: review.json: expected a bundle whose files are those of its lists, found one that does not \
                 hold to level 1 (fixity)\nreached level 0 (safe) of level 3 (derived): the bundle is not what it says\n";
     assert!(answer.stdout.ends_with(says), "{}", answer.stdout);
@@ -389,14 +389,14 @@ fn an_attestation_is_of_one_bundle_only() {
 #[test]
 fn programs_and_ci_read_who_attests() {
     let sandbox = Sandbox::new();
-    fs::write(sandbox.path("bundle"), &HONEST.zip).unwrap();
+    sandbox.write("bundle", &HONEST.zip);
     let public = key(1).public_key().to_openssh().unwrap();
-    fs::write(sandbox.path("signers"), format!("r@example.org {public}\n")).unwrap();
+    sandbox.write("signers", format!("r@example.org {public}\n"));
     let words =
         ["verify", "bundle", "--trust", "signers", "--attestation", "review.json", "--format"];
     let told = |attestation: &str, format: &str| {
-        fs::write(sandbox.path("review.json"), attestation).unwrap();
-        sandbox.reenact(&[&words[..], &[format]].concat())
+        sandbox.write("review.json", attestation);
+        sandbox.run_reading(&[&words[..], &[format]].concat())
     };
     let good = told(&signed(&payload()), "json");
     let json: Value = serde_json::from_str(&good.stdout).unwrap();
@@ -404,7 +404,7 @@ fn programs_and_ci_read_who_attests() {
     assert_eq!((&json["attestation"]["level"], &json["verdict"]), (&json!(5), &json!("holds")));
     let bad = told(&MADE.0.to_string(), "json");
     let json: Value = serde_json::from_str(&bad.stdout).unwrap();
-    assert_eq!((bad.code, &json["verdict"]), (Some(1), &json!("not-attested")));
+    assert_eq!((bad.code, &json["verdict"]), (1, &json!("not-attested")));
     assert!(json["attestation"]["refused"].as_str().unwrap().contains("found none (sign it "));
     for (attestation, failures) in [(signed(&payload()), 0), (MADE.0.to_string(), 1)] {
         let junit = told(&attestation, "junit").stdout;
@@ -420,16 +420,16 @@ fn a_signature_is_put_into_an_attestation_that_it_fits() {
     let sandbox = Sandbox::new();
     let words = ["attest", "review.json", "--signature", "review.json.pae.sig"];
     let given = |signature: &str| {
-        fs::write(sandbox.path("review.json"), MADE.0.to_string()).unwrap();
-        fs::write(sandbox.path("review.json.pae.sig"), signature).unwrap();
-        sandbox.reenact_that_writes(&words)
+        sandbox.write("review.json", MADE.0.to_string());
+        sandbox.write("review.json.pae.sig", signature);
+        sandbox.run_bounded(&words)
     };
     let (signature, reviewer) = (sign(1, "reenact", &MADE.1), &*REVIEWER);
     let answer = given(&signature);
     let says = format!("review.json: signed with the key {reviewer}\n");
     assert_eq!(
         (answer.stdout.as_str(), answer.stderr.as_str(), answer.code),
-        (says.as_str(), "", Some(0))
+        (says.as_str(), "", 0)
     );
     let read = || -> Value {
         serde_json::from_slice(&fs::read(sandbox.path("review.json")).unwrap()).unwrap()
@@ -437,10 +437,10 @@ fn a_signature_is_put_into_an_attestation_that_it_fits() {
     let inside = json!([{"keyid": *REVIEWER, "sig": Base64::encode_string(signature.as_bytes())}]);
     assert_eq!(read()["signatures"], inside);
     // Once more, and it stands there once; another's comes beside it.
-    assert_eq!(sandbox.reenact_that_writes(&words).code, Some(0));
+    assert_eq!(sandbox.run_bounded(&words).code, 0);
     assert_eq!(read()["signatures"], inside);
-    fs::write(sandbox.path("review.json.pae.sig"), sign(2, "reenact", &MADE.1)).unwrap();
-    assert_eq!(sandbox.reenact_that_writes(&words).code, Some(0));
+    sandbox.write("review.json.pae.sig", sign(2, "reenact", &MADE.1));
+    assert_eq!(sandbox.run_bounded(&words).code, 0);
     assert_eq!(read()["signatures"].as_array().unwrap().len(), 2);
 
     for (signature, code, says) in [
@@ -461,12 +461,12 @@ fn a_signature_is_put_into_an_attestation_that_it_fits() {
         ),
     ] {
         let answer = given(&signature);
-        assert_eq!((answer.stderr.as_str(), answer.code), (says.as_str(), Some(code)));
+        assert_eq!((answer.stderr.as_str(), answer.code), (says.as_str(), code));
         assert_eq!(read(), MADE.0, "it stays as it was");
     }
-    fs::write(sandbox.path("review.json"), "{}").unwrap();
-    let answer = sandbox.reenact(&words);
+    sandbox.write("review.json", "{}");
+    let answer = sandbox.run_reading(&words);
     let says = "error: review.json: expected a DSSE envelope, which `reenact verify --attest` writes, found missing field `payload` \
                 at line 1 column 2\n";
-    assert_eq!((answer.stderr.as_str(), answer.code), (says, Some(2)));
+    assert_eq!((answer.stderr.as_str(), answer.code), (says, 2));
 }

@@ -1,7 +1,7 @@
 //! One attack, and what the program must say to it.
 
-use super::sandbox::{MOST_SECONDS, Sandbox};
 use super::study::HONEST;
+use crate::sandbox::{MOST_SECONDS, Sandbox};
 use reenact::bundle::{Form, Tree, archive};
 use std::fs;
 use std::path::Path;
@@ -80,7 +80,7 @@ fn zip(tree: &Tree) -> Vec<u8> {
 
 fn as_file(case: &Case, bytes: &[u8]) -> (String, f64) {
     let sandbox = Sandbox::new();
-    fs::write(sandbox.path("bundle"), bytes).unwrap();
+    sandbox.write("bundle", bytes);
     verify(case, &sandbox)
 }
 
@@ -97,9 +97,10 @@ fn as_folder(case: &Case, tree: &Tree, add: &dyn Fn(&Path)) -> (String, f64) {
 
 fn verify(case: &Case, sandbox: &Sandbox) -> (String, f64) {
     let level = case.level.to_string();
-    let answer = sandbox.reenact(&["verify", "bundle", "--level", &level, "--sample-seed", "1"]);
+    let answer =
+        sandbox.run_reading(&["verify", "bundle", "--level", &level, "--sample-seed", "1"]);
     let name = case.name;
-    assert_eq!((answer.stderr.as_str(), answer.code), ("", Some(case.exit)), "{name}: {answer:?}");
+    assert_eq!((answer.stderr.as_str(), answer.code), ("", case.exit), "{name}: {answer:?}");
     let state = |line: &str| line.starts_with("  ").then(|| line.as_bytes().get(2).copied());
     let states: Vec<&str> = answer
         .stdout

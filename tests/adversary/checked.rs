@@ -2,11 +2,10 @@
 
 use super::case::redacted;
 use super::forger;
-use super::sandbox::Sandbox;
-use super::study::HONEST;
+use super::study::{HONEST, STUDY};
+use crate::sandbox::{Answer, PROGRAM, Sandbox};
 use reenact::bundle::{Form, Tree, archive};
 use std::fs;
-use std::path::Path;
 use std::process::Command;
 
 /// The honest bundle with one verdict turned, and every digest made right.
@@ -29,8 +28,8 @@ fn of_another_engine() -> Tree {
 
 fn with(name: &str, tree: &Tree) -> Sandbox {
     let sandbox = Sandbox::new();
-    fs::write(sandbox.path("honest"), &HONEST.zip).unwrap();
-    fs::write(sandbox.path(name), archive::write(tree, &HONEST.root, Form::Bag)).unwrap();
+    sandbox.write("honest", &HONEST.zip);
+    sandbox.write(name, archive::write(tree, &HONEST.root, Form::Bag));
     sandbox
 }
 
@@ -61,9 +60,9 @@ fn a_turned_verdict_is_not_shown_compared_or_handed_on() {
                 data/results/claims.json: expected `\"supported\"` at /0/verdict, as the records give, found \
                 `\"contradicted\"`\n`reenact verify turned` tells everything; `--unchecked` goes on all the same\n";
     for words in COMMANDS {
-        let answer = sandbox.reenact(words);
+        let answer = sandbox.run_reading(words);
         assert_eq!(answer.stdout, "", "{words:?}");
-        assert_eq!((answer.stderr.as_str(), answer.code), (says, Some(1)), "{words:?}");
+        assert_eq!((answer.stderr.as_str(), answer.code), (says, 1), "{words:?}");
     }
 }
 
@@ -72,7 +71,7 @@ fn what_is_wanted_unchecked_stands_under_a_banner() {
     let banner = "NOT WHAT IT SAYS: 1 fault, reached level 2 (coherent) of level 3 (derived)";
     let sandbox = with("turned", &turned());
     for words in COMMANDS {
-        let answer = sandbox.reenact_that_writes(&[words, &["--unchecked"]].concat());
+        let answer = sandbox.run_bounded(&[words, &["--unchecked"]].concat());
         let is_data = words.contains(&"json");
         let told = if is_data { &answer.stderr } else { &answer.stdout };
         let first = told.lines().find(|line| line.contains("NOT WHAT IT SAYS")).unwrap();
@@ -84,9 +83,9 @@ fn what_is_wanted_unchecked_stands_under_a_banner() {
             assert_eq!(begin, 0, "{words:?}: {told}");
         }
         let expected = i32::from(is_diff);
-        assert_eq!(answer.code, Some(expected), "{words:?}: {answer:?}");
+        assert_eq!(answer.code, expected, "{words:?}: {answer:?}");
         if words.contains(&"page.html") {
-            let page = fs::read_to_string(sandbox.path("page.html")).unwrap();
+            let page = sandbox.read("page.html");
             let body = page.split_once("<body>\n").unwrap().1;
             assert!(body.starts_with("<p class=\"banner\" role=\"alert\""), "{words:?}");
             assert!(
@@ -95,7 +94,7 @@ fn what_is_wanted_unchecked_stands_under_a_banner() {
             );
         }
     }
-    let still = fs::read_to_string(sandbox.path("still.svg")).unwrap();
+    let still = sandbox.read("still.svg");
     assert!(still.contains(">NOT WHAT IT SAYS</text>"), "{still}");
     let bag = fs::read(sandbox.path("bag.mcap")).unwrap();
     assert!(bag.windows(banner.len()).any(|window| window == banner.as_bytes()));
@@ -120,14 +119,14 @@ fn what_holds_is_said_to_hold_and_carries_no_banner() {
         (&["export", "honest", "--dir", "-o", "out"], format!("{line}\nout/{}\n", HONEST.root), 0),
     ] {
         for unchecked in [&[][..], &["--unchecked"]] {
-            let answer = sandbox.reenact_that_writes(&[words, unchecked].concat());
+            let answer = sandbox.run_bounded(&[words, unchecked].concat());
             // Circumstances are told as such where the bundle has some.
             let told = answer.stdout.lines().next().unwrap();
             assert!(says.starts_with(told.split(';').next().unwrap()), "{words:?}: {told}");
             assert_eq!(answer.stdout.lines().count(), says.lines().count(), "{}", answer.stdout);
-            assert_eq!(answer.code, Some(code), "{words:?}: {answer:?}");
+            assert_eq!(answer.code, code, "{words:?}: {answer:?}");
             if words.contains(&"page.html") {
-                let page = fs::read_to_string(sandbox.path("page.html")).unwrap();
+                let page = sandbox.read("page.html");
                 assert!(!page.contains("class=\"banner\""), "{words:?}");
             }
         }
@@ -139,19 +138,19 @@ fn what_another_engine_ran_is_shown_with_how_far_it_was_checked() {
     let sandbox = with("older", &of_another_engine());
     let banner =
         "checked to level 2 (coherent): this program cannot derive the results of engine 0";
-    let answer = sandbox.reenact_that_writes(&["report", "older", "-o", "page.html"]);
+    let answer = sandbox.run_bounded(&["report", "older", "-o", "page.html"]);
     let says = format!("{banner}\npage.html\n");
     assert_eq!(
         (answer.stdout.as_str(), answer.stderr.as_str(), answer.code),
-        (says.as_str(), "", Some(0))
+        (says.as_str(), "", 0)
     );
-    let page = fs::read_to_string(sandbox.path("page.html")).unwrap();
+    let page = sandbox.read("page.html");
     assert!(
         page.contains("<p class=\"banner\" role=\"alert\"")
             && page.contains(&format!(">{banner}</p>"))
     );
-    let answer = sandbox.reenact_that_writes(&["export", "older", "--dir"]);
-    assert_eq!((answer.stdout.lines().next(), answer.code), (Some(banner), Some(0)));
+    let answer = sandbox.run_bounded(&["export", "older", "--dir"]);
+    assert_eq!((answer.stdout.lines().next(), answer.code), (Some(banner), 0));
 }
 
 #[test]
@@ -163,8 +162,8 @@ fn many_faults_are_counted_and_a_strangers_words_are_kept_in_place() {
     }
     forger::reseal(&mut tree);
     let sandbox = with("many", &tree);
-    let answer = sandbox.reenact(&["report", "many"]);
-    assert_eq!(answer.code, Some(1));
+    let answer = sandbox.run_reading(&["report", "many"]);
+    assert_eq!(answer.code, 1);
     let lines: Vec<&str> = answer.stderr.lines().collect();
     assert_eq!(lines.len(), 13, "{}", answer.stderr);
     assert_eq!(lines[11], "... and 2 more", "{}", answer.stderr);
@@ -181,13 +180,10 @@ fn a_level_that_executed_nothing_is_not_passed() {
     let says = "error: `--sample` must be 1 or more, found 0: a level that executes nothing shows nothing; `--level 3` is the highest \
                 that needs no execution\n";
     for level in ["3", "4", "5"] {
-        let answer = sandbox.reenact(&[
+        let answer = sandbox.run_reading(&[
             "verify", "honest", "--level", level, "--sample", "0", "--attest", "a.json",
         ]);
-        assert_eq!(
-            (answer.stdout.as_str(), answer.stderr.as_str(), answer.code),
-            ("", says, Some(2))
-        );
+        assert_eq!((answer.stdout.as_str(), answer.stderr.as_str(), answer.code), ("", says, 2));
     }
 }
 
@@ -202,8 +198,8 @@ fn a_trial_that_differs_fails_the_sample_and_the_whole() {
     });
     let tree = forger::rederive(tree);
     let sandbox = with("made-up", &tree);
-    let human = sandbox.reenact(&["verify", "made-up", "--level", "6"]);
-    assert_eq!(human.code, Some(1));
+    let human = sandbox.run_reading(&["verify", "made-up", "--level", "6"]);
+    assert_eq!(human.code, 1);
     let states: Vec<&str> = human.stdout.lines().filter(|line| line.starts_with("  ")).collect();
     assert_eq!(
         &states[3..7],
@@ -214,12 +210,13 @@ fn a_trial_that_differs_fails_the_sample_and_the_whole() {
             "  6 replicated not judged"
         ]
     );
-    let json = sandbox.reenact(&["verify", "made-up", "--level", "5", "--format", "json"]);
+    let json = sandbox.run_reading(&["verify", "made-up", "--level", "5", "--format", "json"]);
     let json: serde_json::Value = serde_json::from_str(&json.stdout).unwrap();
     let states: Vec<_> =
         json["levels"].as_array().unwrap().iter().map(|l| l["state"].as_str().unwrap()).collect();
     assert_eq!(states, ["passed", "passed", "passed", "passed", "failed", "failed"]);
-    let junit = sandbox.reenact(&["verify", "made-up", "--level", "5", "--format", "junit"]).stdout;
+    let junit =
+        sandbox.run_reading(&["verify", "made-up", "--level", "5", "--format", "junit"]).stdout;
     let document = roxmltree::Document::parse(&junit).unwrap();
     let told: Vec<_> = document
         .descendants()
@@ -230,39 +227,16 @@ fn a_trial_that_differs_fails_the_sample_and_the_whole() {
     assert_eq!(told[1], ("full", "1 of 6 trials gave other bytes than the bundle holds"));
 }
 
-/// Files below `folder`, and a manifest that is run there with `words`; the bundle.
-fn run(folder: &Path, words: &[&str]) -> std::process::Output {
-    Command::new(assert_cmd::cargo::cargo_bin!("reenact"))
-        .current_dir(folder)
-        .env("SOURCE_DATE_EPOCH", "1600000000")
-        .env("REENACT_STORE", folder.join("store"))
-        .args(words)
-        .output()
-        .unwrap()
-}
-
-fn results_of(output: &std::process::Output) -> String {
-    assert!(output.status.success(), "{output:?}");
-    let text = String::from_utf8(output.stdout.clone()).unwrap();
-    text.lines().rev().nth(1).unwrap().to_owned()
+/// The line of the results digest of a run, which must have ended well.
+fn results_of(answer: &Answer) -> String {
+    assert_eq!(answer.code, 0, "{answer:?}");
+    answer.stdout.lines().rev().nth(1).unwrap().to_owned()
 }
 
 #[test]
 fn a_bundles_readme_gives_the_command_that_yields_it() {
-    let folder = tempfile::tempdir().unwrap();
-    let author = folder.path().join("author");
-    for (path, bytes) in &HONEST.tree {
-        let path = match path.strip_prefix("data/") {
-            Some("study.yaml") => author.join("tiny.yaml"),
-            Some("inputs/kobuki.urdf") => author.join("robots/kobuki.urdf"),
-            Some("inputs/basic.yaml") => author.join("worlds/basic.yaml"),
-            _ => continue,
-        };
-        fs::create_dir_all(path.parent().unwrap()).unwrap();
-        fs::write(path, bytes).unwrap();
-    }
-    let robot = author.join("my robot.urdf");
-    fs::copy(author.join("robots/kobuki.urdf"), &robot).unwrap();
+    let author = Sandbox::pinned().with_study(STUDY);
+    fs::copy(author.path("robots/kobuki.urdf"), author.path("my robot.urdf")).unwrap();
     let told = [
         (&[][..], "reenact run study.yaml --out ../../again", None),
         (
@@ -289,13 +263,10 @@ fn a_bundles_readme_gives_the_command_that_yields_it() {
         ),
     ];
     for (words, command, departs) in told {
-        let ran = run(&author, &[&["run", "tiny.yaml", "--out", "sealed"], words].concat());
-        let results = results_of(&ran);
-        let bundle = String::from_utf8(ran.stdout).unwrap().lines().last().unwrap().to_owned();
-        let exported = run(&author, &["export", &bundle, "--dir", "--out", "../stranger"]);
-        let exported =
-            String::from_utf8(exported.stdout).unwrap().lines().last().unwrap().to_owned();
-        let data = author.join(exported).join("data");
+        let ran = author.run(&[&["run", "tiny.yaml", "--out", "sealed"], words].concat());
+        let (results, bundle) = (results_of(&ran), ran.last_line());
+        let exported = author.run(&["export", bundle, "--dir", "--out", "../stranger"]);
+        let data = author.path(exported.last_line()).join("data");
         let readme = fs::read_to_string(data.join("README.md")).unwrap();
         assert!(readme.contains(&format!("\n```\n{command}\n```\n")), "{readme}");
         let said = departs.map(|words| format!("How it was run: `{words}`."));
@@ -303,46 +274,38 @@ fn a_bundles_readme_gives_the_command_that_yields_it() {
         assert!(said.is_none_or(|said| readme.contains(&said)), "{readme}");
 
         // As it stands there, by a shell, where nothing of the author's is.
-        let program = assert_cmd::cargo::cargo_bin!("reenact");
         let script = command.replacen("reenact", "\"$REENACT\"", 1);
-        let again = Command::new("sh")
-            .args(["-c", &script])
-            .current_dir(&data)
-            .env("REENACT", program)
-            .env("REENACT_STORE", folder.path().join("other-store"))
-            .output()
-            .unwrap();
+        let (mut shell, store) = (Command::new("sh"), author.path("other-store"));
+        author.dress(&mut shell).args(["-c", &script]).current_dir(&data);
+        let again = Answer::of(shell.env("REENACT", PROGRAM).env("REENACT_STORE", store));
         assert_eq!(results_of(&again), results, "{command}");
-        let note = String::from_utf8(again.stderr.clone()).unwrap();
-        assert!(note.contains("inputs are those that the bundle holds in `inputs/`"), "{note}");
+        let says = "inputs are those that the bundle holds in `inputs/`";
+        assert!(again.stderr.contains(says), "{again:?}");
 
         // And verify says how the run departs from the manifest, in all its forms.
-        let human = String::from_utf8(run(&author, &["verify", &bundle]).stdout).unwrap();
+        let human = author.run(&["verify", bundle]).stdout;
         let name = departs.map_or("tiny".to_owned(), |words| format!("tiny ({words})"));
         assert!(human.starts_with(&format!("study    {name}\n")), "{human}");
-        let json = run(&author, &["verify", &bundle, "--format", "json"]);
-        let json: serde_json::Value = serde_json::from_slice(&json.stdout).unwrap();
+        let json = author.run(&["verify", bundle, "--format", "json"]);
+        let json: serde_json::Value = serde_json::from_str(&json.stdout).unwrap();
         assert_eq!(json["partial"], departs.is_some());
         assert_eq!(json["selection"].is_null(), departs.is_none(), "{json}");
         let set: Vec<_> =
             words.windows(2).filter(|pair| pair[0] == "--set").map(|pair| pair[1]).collect();
         assert_eq!(json["overrides"], serde_json::json!(set));
-        let junit =
-            String::from_utf8(run(&author, &["verify", &bundle, "--format", "junit"]).stdout)
-                .unwrap();
+        let junit = author.run(&["verify", bundle, "--format", "junit"]).stdout;
         let partial = format!("<property name=\"partial\" value=\"{}\"/>", departs.is_some());
         assert!(junit.contains(&partial), "{junit}");
         assert_eq!(junit.contains("<property name=\"departure\""), departs.is_some(), "{junit}");
     }
 
     // A shard beyond the last trial is a bundle of none: there is nothing to execute, so level 4 and above are not passed.
-    let ran = run(&author, &["run", "tiny.yaml", "--out", "sealed", "--shard", "7/7"]);
-    assert!(ran.status.success(), "{ran:?}");
-    let bundle = String::from_utf8(ran.stdout).unwrap().lines().last().unwrap().to_owned();
+    let ran = author.run(&["run", "tiny.yaml", "--out", "sealed", "--shard", "7/7"]);
+    assert_eq!(ran.code, 0, "{ran:?}");
     for level in ["4", "5"] {
-        let answer = run(&author, &["verify", &bundle, "--level", level]);
-        let text = String::from_utf8(answer.stdout).unwrap();
-        assert_eq!(answer.status.code(), Some(2), "{text}");
+        let answer = author.run(&["verify", ran.last_line(), "--level", level]);
+        let text = answer.stdout;
+        assert_eq!(answer.code, 2, "{text}");
         let says = "obstacle at level 4: data/trials/: expected trials to execute again, found none (the bundle holds no trial, so \
                     there is none to execute)\nno trial was executed again\nreached level 3 (derived) of level ";
         assert!(text.contains(says), "{}", redacted(&text));
@@ -352,19 +315,13 @@ fn a_bundles_readme_gives_the_command_that_yields_it() {
 /// A manifest of an unpacked bundle takes nothing from outside of it.
 #[test]
 fn an_unpacked_bundle_leads_nowhere_else() {
-    let folder = tempfile::tempdir().unwrap();
+    let sandbox = Sandbox::new();
     for (path, bytes) in &HONEST.tree {
-        let path = folder.path().join(path);
-        fs::create_dir_all(path.parent().unwrap()).unwrap();
-        fs::write(path, bytes).unwrap();
+        fs::create_dir_all(sandbox.path(path).parent().unwrap()).unwrap();
+        sandbox.write(path, bytes);
     }
-    let resolved = folder.path().join("data/study.resolved.json");
-    let text = fs::read_to_string(&resolved).unwrap();
-    fs::write(&resolved, text.replace("inputs/kobuki.urdf", "inputs/../../secret")).unwrap();
-    let answer = run(folder.path(), &["check", "data/study.yaml"]);
+    sandbox.edit("data/study.resolved.json", "inputs/kobuki.urdf", "inputs/../../secret");
+    let answer = sandbox.run(&["check", "data/study.yaml"]);
     let says = "error: `data/study.resolved.json` cannot be read: expected an input in `inputs/`, found `inputs/../../secret`\n";
-    assert_eq!(
-        (String::from_utf8(answer.stderr).unwrap().as_str(), answer.status.code()),
-        (says, Some(2))
-    );
+    assert_eq!((answer.stderr.as_str(), answer.code), (says, 2));
 }

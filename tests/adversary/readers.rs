@@ -1,7 +1,7 @@
 //! Level 0 has one rule that no list of attacks covers: what is accepted, every other reader sees alike.
 
 use super::raw_zip::{self, Entry, Header, Tail};
-use super::sandbox::skipped;
+use crate::sandbox::skipped;
 use proptest::prelude::*;
 use proptest::sample::Index;
 use proptest::strategy::ValueTree as _;

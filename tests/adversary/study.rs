@@ -1,13 +1,13 @@
 //! The honest bundle that every attack begins with: a tiny study, run once by the program under test.
 
+use crate::sandbox::Sandbox;
 use reenact::bundle::{Limits, Tree, archive};
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 use std::sync::LazyLock;
 
 /// Two cells of three trials of 20 simulated seconds, with a table, a figure and a claim.
-const STUDY: &str = "
+pub(crate) const STUDY: &str = "
 reenact: 1
 name: tiny
 title: A tiny study
@@ -52,24 +52,11 @@ pub(crate) struct Honest {
 
 /// The honest bundle.
 pub(crate) static HONEST: LazyLock<Honest> = LazyLock::new(|| {
-    let folder = tempfile::tempdir().unwrap();
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    for file in ["robots/kobuki.urdf", "worlds/basic.yaml"] {
-        let copy = folder.path().join(file);
-        fs::create_dir_all(copy.parent().unwrap()).unwrap();
-        fs::copy(root.join(file), copy).unwrap();
-    }
-    fs::write(folder.path().join("tiny.yaml"), STUDY).unwrap();
-    let output = Command::new(assert_cmd::cargo::cargo_bin!("reenact"))
-        .current_dir(folder.path())
-        .env("SOURCE_DATE_EPOCH", "1600000000")
-        .args(["run", "tiny.yaml", "--no-cache"])
-        .output()
-        .unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let stdout = String::from_utf8(output.stdout).unwrap();
-    let path = Path::new(stdout.lines().last().unwrap());
-    let zip = fs::read(folder.path().join(path)).unwrap();
+    let sandbox = Sandbox::pinned().with_study(STUDY);
+    let answer = sandbox.run(&["run", "tiny.yaml", "--no-cache"]);
+    assert_eq!(answer.code, 0, "{}", answer.stderr);
+    let path = Path::new(answer.last_line());
+    let zip = fs::read(sandbox.path(answer.last_line())).unwrap();
     let tree = archive::read(&zip, &Limits::default()).unwrap().tree;
     Honest { zip, tree, root: path.file_stem().unwrap().to_str().unwrap().to_owned() }
 });

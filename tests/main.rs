@@ -1,0 +1,24 @@
+//! The tests of the whole program, in one binary: each of them would else link the whole crate once more.
+//!
+//! One module a subject; `cargo test --test integration SUBJECT::` runs one. [`sandbox`] runs the program for all of them.
+
+mod adversary;
+mod architecture;
+mod claims;
+mod classes;
+mod cli;
+mod derived_inputs;
+mod determinism;
+mod documentation;
+mod drift;
+mod faults;
+mod hand_drawn;
+mod hostile;
+mod interrupted;
+mod maneuvers;
+mod manifests;
+mod original_worlds;
+mod sandbox;
+mod standards;
+mod verification;
+mod worlds;
