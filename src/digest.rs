@@ -83,6 +83,15 @@ impl Visitor<'_> for HexVisitor {
 }
 
 /// A SHA-256 fed piece by piece; pieces are concatenated, so callers put their own lengths or separators in.
+///
+/// ```
+/// use reenact::digest::{Hasher, Sha256Digest};
+///
+/// let mut hasher = Hasher::new();
+/// hasher.update("ab").update("c");
+/// assert_eq!(hasher.digest(), Sha256Digest::of("abc"));
+/// assert_eq!(hasher.digest().short(), "ba7816bf");
+/// ```
 #[derive(Clone, Default)]
 pub struct Hasher(Sha256);
 

@@ -16,6 +16,16 @@ use rand_chacha::rand_core::{Rng as _, SeedableRng as _};
 ///
 /// Coordinates are `name=value` pairs in a fixed order (factor values, then the trial number). Trials that
 /// declare shared noise leave the factors they share over out.
+///
+/// ```
+/// use reenact::rng::Seeds;
+///
+/// let seeds = Seeds::new(7, vec![("trial".to_owned(), "0".to_owned())]);
+/// let (mut lidar, mut drive) = (seeds.stream("lidar"), seeds.stream("drive"));
+/// assert_ne!(lidar.bits(), drive.bits());
+/// // A reading depends on its index alone, never on what was drawn before.
+/// assert_eq!(lidar.at(3).uniform(), seeds.stream("lidar").at(3).uniform());
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Seeds {
     experiment: u64,

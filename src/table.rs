@@ -75,6 +75,16 @@ impl<T: Into<Value>> From<Option<T>> for Value {
 }
 
 /// Named columns and rows of values. Units stand in the column names (`distance-m`).
+///
+/// ```
+/// use reenact::table::{Table, Value};
+///
+/// let mut table = Table::new(["prior", "distance-m"]);
+/// table.push(vec!["none".into(), 71.5.into()]);
+/// table.push(vec!["floor-plan".into(), Value::Missing]);
+/// assert_eq!(table.to_csv(), "prior,distance-m\nnone,71.5\nfloor-plan,\n");
+/// assert_eq!(Table::from_csv(&table.to_csv()), Ok(table));
+/// ```
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Table {
     /// Column names, unique.

@@ -31,6 +31,16 @@ fn list(faults: &[Fault]) -> String {
 const HEAVIEST_RECORDS: usize = 80 << 20;
 
 /// A readable bundle. That it is what it says is for `verify` to find out.
+///
+/// ```
+/// use reenact::bundle::{Bundle, Limits};
+///
+/// let zip = std::fs::read("artifacts/quickstart-published.zip").unwrap();
+/// let bundle = Bundle::read(&zip, &Limits::default()).unwrap();
+/// let records = bundle.records().unwrap();
+/// assert_eq!(records[0].condition().value("prior"), Some("none"));
+/// assert!(records.iter().all(|record| record.measures["distance-m"] > Some(0.0)));
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bundle {
     form: Form,

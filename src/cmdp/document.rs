@@ -42,6 +42,16 @@ pub enum DocumentError {
 
 /// Reads the model in `text`, solves it and writes the answer: one line of JSON, without a line end.
 ///
+/// ```
+/// let model = r#"{"states": ["here", "goal"], "actions": ["walk", "run"], "absorbing": [1],
+///     "initial": [[0, 1.0]], "transitions": [[0, 0, 1, 1.0], [0, 1, 1, 1.0]],
+///     "primary": [[0, 0, 4.0], [0, 1, 1.0]],
+///     "secondary": [{"name": "risk", "bound": 0.5, "costs": [[0, 1, 1.0]]}]}"#;
+/// let answer = reenact::cmdp::solve_document(model).unwrap();
+/// let policy = r#""policy":[[0,0,0.5],[0,1,0.5]]}"#;
+/// assert!(answer.ends_with(policy), "{answer}");
+/// ```
+///
 /// # Errors
 /// The first malformed entry, or a model too badly scaled to solve.
 pub fn solve_document(text: &str) -> Result<String, DocumentError> {

@@ -5,6 +5,16 @@ use crate::math;
 use serde::{Deserialize, Serialize};
 
 /// A position (m) and heading (rad, counter-clockwise from x), or the transform that takes a frame there.
+///
+/// ```
+/// use reenact::geometry::{Point, Pose};
+/// use std::f64::consts::FRAC_PI_2;
+///
+/// let robot = Pose::new(2.0, 1.0, FRAC_PI_2);
+/// let ahead = robot.transform(Point::new(3.0, 0.0));
+/// assert!(ahead.distance(Point::new(2.0, 4.0)) < 1e-12);
+/// assert_eq!(robot.relative(robot), Pose::default());
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Pose {
     /// Position x (m).

@@ -174,6 +174,18 @@ pub struct Grid<T> {
 }
 
 /// A map of free, occupied and unknown cells.
+///
+/// ```
+/// use reenact::geometry::Point;
+/// use reenact::grid::{GridFrame, Occupancy, OccupancyGrid};
+///
+/// let frame = GridFrame { resolution: 0.5, origin: Point::new(-1.0, -1.0), width: 4, height: 4 };
+/// let mut map = OccupancyGrid::filled(frame, Occupancy::Unknown);
+/// map.set(frame.cell_at(Point::new(0.2, 0.9)), Occupancy::Occupied);
+/// assert_eq!(map.count(Occupancy::Unknown), 15);
+/// let wall = frame.cells().find(|cell| map.at(*cell) == Occupancy::Occupied).unwrap();
+/// assert_eq!(frame.center(wall), Point::new(0.25, 0.75));
+/// ```
 pub type OccupancyGrid = Grid<Occupancy>;
 
 impl<T: Copy> Grid<T> {

@@ -23,6 +23,26 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Resolves the manifest `source`, changed by `overrides` (`PATH=VALUE`), with the files that `inputs` hands
 /// over. Comes with warnings.
 ///
+/// ```
+/// use reenact::document::Source;
+/// use reenact::manifest::{self, Inputs, WrittenIn};
+/// use reenact::plan::Plan;
+/// # struct Beside;
+/// # impl Inputs for Beside {
+/// #     fn read(&self, as_written: &str, _: WrittenIn) -> Result<Vec<u8>, String> {
+/// #         std::fs::read(format!("manifests/{as_written}")).map_err(|error| error.to_string())
+/// #     }
+/// # }
+///
+/// let text = std::fs::read_to_string("manifests/quickstart.yaml").unwrap();
+/// let source = Source::new("quickstart.yaml", text);
+/// // `Beside` reads files beside the manifest.
+/// let (experiment, _) = manifest::resolve(&source, &["trials=3".to_owned()], &Beside).unwrap();
+/// let plan = Plan::of(experiment);
+/// assert_eq!(plan.trials.len(), 2 * 3);
+/// assert_eq!(plan.find("floor-plan/2").unwrap().trial, 2);
+/// ```
+///
 /// # Errors
 /// Every fault that can be told at this point, warnings among them, in the order of the manifest.
 pub fn resolve(

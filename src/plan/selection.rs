@@ -6,6 +6,16 @@ use crate::studies::Condition;
 use std::collections::BTreeMap;
 
 /// A part of a plan; the default is all of it.
+///
+/// ```
+/// use reenact::plan::Selection;
+///
+/// let selection = Selection::parse(&["prior=none".to_owned()], Some(2), Some("1/4")).unwrap();
+/// assert!(selection.is_partial());
+/// assert_eq!(selection.options().join(" "), "--only prior=none --trials 2 --shard 1/4");
+/// let refused = Selection::parse(&[], None, Some("5/4")).unwrap_err();
+/// assert_eq!(refused.to_string(), "`--shard 5/4` is not I/N with I from 1 to N");
+/// ```
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Selection {
     /// Factor to the values that are wanted; factors that are absent are not restricted.

@@ -15,6 +15,16 @@ use crate::math;
 use serde::Serialize;
 
 /// A wheeled robot as its URDF describes it, reduced to what matters in the plane.
+///
+/// ```
+/// use reenact::document::Source;
+/// use reenact::robot::urdf;
+///
+/// let text = std::fs::read_to_string("robots/kobuki.urdf").unwrap();
+/// let (robot, warnings) = urdf::read(&Source::new("kobuki.urdf", text)).unwrap();
+/// assert_eq!((robot.name.as_str(), warnings.len()), ("kobuki", 0));
+/// assert!(robot.lidar.is_some() && robot.circumscribed_radius() < 0.2);
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub struct Robot {

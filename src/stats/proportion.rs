@@ -135,6 +135,15 @@ pub(crate) fn normal_tails(z: f64) -> Tails {
 }
 
 /// Wilson's score interval of a share (Wilson 1927).
+///
+/// ```
+/// use reenact::stats::proportion::{Proportion, wilson};
+///
+/// let interval = wilson(Proportion::new(10, 10), 0.95);
+/// // z^2 = 3.8415 at 95 %, and 10 / (10 + z^2) = 0.7225.
+/// assert!((interval.low - 0.7225).abs() < 1e-4);
+/// assert_eq!(interval.high, 1.0);
+/// ```
 pub fn wilson(k: Proportion, confidence: f64) -> Interval {
     let z = normal_quantile(0.5 + 0.5 * confidence);
     let (low, high) = wilson_limits(k, z);

@@ -60,6 +60,18 @@ pub fn records_digest(records: &[TrialRecord]) -> Sha256Digest {
 }
 
 /// What came out of one trial.
+///
+/// ```
+/// use reenact::bundle::{Bundle, Limits};
+/// use reenact::studies::TrialRecord;
+///
+/// let zip = std::fs::read("artifacts/quickstart-published.zip").unwrap();
+/// let bundle = Bundle::read(&zip, &Limits::default()).unwrap();
+/// let record = bundle.records().unwrap().remove(0);
+/// // One state hash every 10 s, and a text that reads back to the same record.
+/// assert!(record.chain.len() as f64 >= (record.sim_seconds / 10.0).floor());
+/// assert_eq!(TrialRecord::from_line(&record.to_line()), Ok(record));
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub struct TrialRecord {

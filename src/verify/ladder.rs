@@ -159,6 +159,20 @@ impl std::fmt::Debug for Reviewer<'_> {
 
 /// Climbs as far as asked. `opened` is what `bundle::archive` or `store` made of the file; `pipeline` is what levels 3
 /// and above need.
+///
+/// ```
+/// use reenact::bundle::{Limits, archive};
+/// use reenact::verify::{Level, Options, Reenactment, climb};
+///
+/// let mut zip = std::fs::read("artifacts/quickstart-published.zip").unwrap();
+/// let options = Options { level: Level::Coherent, sample: 1, rows: None, seed: 0 };
+/// let pipeline = Reenactment::new(1).unwrap();
+/// let report = climb(archive::read(&zip, &Limits::default()), &options, &pipeline);
+/// assert_eq!(report.reached, Some(Level::Coherent));
+/// zip.truncate(1000);
+/// let report = climb(archive::read(&zip, &Limits::default()), &options, &pipeline);
+/// assert_eq!(report.reached, None);
+/// ```
 pub fn climb(
     opened: Result<Archive, Vec<Fault>>,
     options: &Options,

@@ -26,6 +26,17 @@ use std::collections::BTreeMap;
 const MISSING: &str = " missing";
 
 /// A building: everything a robot can see, touch or be told to reach.
+///
+/// ```
+/// use reenact::document::Source;
+/// use reenact::world;
+///
+/// let text = std::fs::read_to_string("worlds/basic.yaml").unwrap();
+/// let world = world::document::read(&Source::new("basic.yaml", text), None).unwrap();
+/// assert_eq!(world.layers(), ["furniture", "walls"]);
+/// // A lidar at 2 m looks over the furniture.
+/// assert!(world.slice(2.0).len() < world.slice(0.2).len());
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub struct World {
