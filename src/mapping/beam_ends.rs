@@ -4,7 +4,7 @@ use crate::geometry::{Point, Pose};
 use crate::math;
 use crate::robot::Scan;
 
-/// The beams of one scan that tell something, cut to the usable range.
+/// The beams of one scan that carry information, cut to the usable range.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct BeamEnds {
     /// Where the sensor sits on the robot (m, rad).
@@ -14,7 +14,8 @@ pub(super) struct BeamEnds {
 }
 
 impl BeamEnds {
-    /// The beams of `scan`, cut to `clip_range` m. Beams without return tell nothing (prior-map facts, section 4).
+    /// Returns the beams of `scan`, cut to `clip_range` m. Beams without a return are left out: they carry no
+    /// information (prior-map facts, section 4).
     pub(super) fn of(scan: &Scan, clip_range: f64) -> Self {
         let end = |(i, &range): (usize, &f64)| {
             if !range.is_finite() {
@@ -28,7 +29,7 @@ impl BeamEnds {
         Self { mount: scan.mount, ends: scan.ranges.iter().enumerate().filter_map(end).collect() }
     }
 
-    /// Where something was hit, in the robot's frame (m), every `every`th of them.
+    /// Returns the points where something was hit, in the robot's frame (m), every `every`th of them.
     pub(super) fn hits(&self, every: usize) -> impl Iterator<Item = Point> {
         let hits = self.ends.iter().filter(|(_, is_hit)| *is_hit).step_by(every.max(1));
         hits.map(|(end, _)| self.mount.transform(*end))

@@ -1,7 +1,8 @@
-//! A particle's own map, for matching scans to: where in each cell the beams that ended there ended on average
-//! (GMapping's `PointAccumulator`), and beside it, for each quarter of each cell, the nearest of these means.
+//! A particle's own map, against which scans are matched: for each cell the mean of the beam ends in it (GMapping's
+//! `PointAccumulator`), and, for each quarter of each cell, the nearest of these means.
 //!
-//! The second makes scoring one look-up a beam instead of one per cell of the window. Lengths are whole units, 1/256 of a cell
+//! The second makes scoring one look-up per beam instead of one per cell of the window. Lengths are whole units, 1/256
+//! of a cell
 //! (0.2 mm for cells of 5 cm), so that sums do not depend on their order; means are kept to 1/32 of a cell. Tiles are shared
 //! between particles until one writes (copy on write).
 
@@ -11,21 +12,21 @@ use std::sync::Arc;
 /// Units in a cell, as a power of two.
 pub(super) const CELL_BITS: u32 = 8;
 const CELL: i32 = 1 << CELL_BITS;
-/// Steps in a cell, as a power of two: what means are rounded to.
+/// Steps in a cell, as a power of two: means are rounded to these steps.
 const STEP_BITS: u32 = 5;
 const STEPS: i32 = 1 << STEP_BITS;
 /// Cells in a side of a tile, as a power of two.
 const TILE_BITS: u32 = 5;
 const TILE: i32 = 1 << TILE_BITS;
 const CELLS: usize = (TILE * TILE) as usize;
-/// The largest window reaches this many cells to either side: GMapping's reach 1, and offsets are to fit a byte.
+/// The largest window reaches this many cells to either side: GMapping's reaches 1, and offsets have to fit a byte.
 pub(super) const MAX_KERNEL: u32 = 2;
-/// There is no mean near: further away than any window's diagonal.
+/// Stands for "no mean near": further away than any window's diagonal.
 const NONE: Offset = [i8::MIN; 2];
 /// A squared distance beyond any window.
 const FAR: u32 = u32::MAX;
 
-/// Where a mean is, in steps from a cell's corner.
+/// The position of a mean, in steps from a cell's corner.
 type Offset = [i8; 2];
 
 /// A place in units from the map frame's origin.
@@ -36,7 +37,7 @@ pub(super) struct Place {
 }
 
 impl Place {
-    /// The place nearest to `point` (m) where a metre has `scale` units.
+    /// Returns the place nearest to `point` (m) where a metre has `scale` units.
     #[expect(clippy::cast_possible_truncation, reason = "saturates, 400 km from the origin")]
     pub(super) fn of(point: Point, scale: f64) -> Self {
         let round = |v: f64| {
@@ -47,13 +48,14 @@ impl Place {
         Self { x: round(point.x), y: round(point.y) }
     }
 
-    /// The place, moved by `by`. Wraps around far outside of any building.
+    /// Returns the place moved by `by`. Wraps around far outside of any building.
     pub(super) fn plus(self, by: Self) -> Self {
         Self { x: self.x.wrapping_add(by.x), y: self.y.wrapping_add(by.y) }
     }
 }
 
-/// Beams that ended in a cell: how many, and the sums of where, in units from the cell's corner. With 255 the mean is settled.
+/// Beams that ended in a cell: their number, and the sums of their ends, in units from the cell's corner. At 255 the
+/// mean is settled.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 struct Hits {
     x: u16,
@@ -64,7 +66,7 @@ struct Hits {
 impl Hits {
     const NONE: Self = Self { x: 0, y: 0, count: 0 };
 
-    /// With one more, at `place`.
+    /// Returns the hits with one more, at `place`.
     fn with(self, place: Place) -> Self {
         if self.count == u8::MAX {
             return self;
@@ -74,7 +76,7 @@ impl Hits {
         Self { x: self.x + within(place.x), y: self.y + within(place.y), count: self.count + 1 }
     }
 
-    /// The step that holds the mean, from the cell's corner.
+    /// Returns the step that holds the mean, from the cell's corner; `None` before the first hit.
     fn mean(self) -> Option<[i32; 2]> {
         let mean = |sum: u16| i32::from(sum / u16::from(self.count)) >> (CELL_BITS - STEP_BITS);
         (self.count > 0).then(|| [mean(self.x), mean(self.y)])
@@ -93,7 +95,7 @@ const EMPTY: Tile = Tile { hits: [Hits::NONE; CELLS], nearest: [[NONE; 4]; CELLS
 /// The map. Cells and tiles are counted on an endless lattice.
 #[derive(Debug, Clone)]
 pub(super) struct HitMap {
-    /// Cells to either side of a beam's end in which it looks for a mean (GMapping's `kernelSize`).
+    /// Cells to either side of a beam's end in which a mean is sought (GMapping's `kernelSize`).
     kernel: i32,
     /// The tile that comes first in `tiles`.
     low: [i32; 2],
@@ -102,14 +104,14 @@ pub(super) struct HitMap {
 }
 
 impl HitMap {
-    /// An empty map.
+    /// Creates an empty map.
     pub(super) fn new(kernel: u32) -> Self {
         let kernel = i32::try_from(kernel.min(MAX_KERNEL)).unwrap_or(0);
         Self { kernel, low: [0, 0], size: [0, 0], tiles: Vec::new() }
     }
 
-    /// Squared distance (units) from `place` to the mean nearest to its quarter of a cell, among those of the cells in
-    /// the window around it; more than the window's diagonal where there is none.
+    /// Returns the squared distance (units) from `place` to the mean nearest to its quarter of a cell, among those of
+    /// the cells in the window around it; more than the window's diagonal where there is none.
     pub(super) fn squared_distance(&self, place: Place) -> u32 {
         let tile_x = (place.x >> (CELL_BITS + TILE_BITS)).wrapping_sub(self.low[0]);
         let tile_y = (place.y >> (CELL_BITS + TILE_BITS)).wrapping_sub(self.low[1]);
@@ -133,7 +135,7 @@ impl HitMap {
         squared
     }
 
-    /// Takes in that beams ended at `places`.
+    /// Registers beams that ended at `places`.
     pub(super) fn register(&mut self, places: impl IntoIterator<Item = Place>) {
         for place in places {
             let cell = [place.x >> CELL_BITS, place.y >> CELL_BITS];
@@ -148,7 +150,7 @@ impl HitMap {
         }
     }
 
-    /// Tells the cells around `cell`, whose mean was `before`, that it is `mean` now.
+    /// Updates the nearest means of the cells around `cell`, whose mean was `before` and is `mean` now.
     fn tell(&mut self, [x, y]: [i32; 2], before: Option<[i32; 2]>, mean: [i32; 2]) {
         let k = self.kernel;
         for dy in -k..=k {
@@ -166,7 +168,7 @@ impl HitMap {
                         *nearest = self.nearest_to(there, quarter);
                     }
                 }
-                // Looked at first, so that a tile that would not change stays shared.
+                // Compared first, so that a tile that would not change stays shared.
                 if held != nearest {
                     self.tile_mut(there).nearest[index] = nearest;
                 }
@@ -174,7 +176,7 @@ impl HitMap {
         }
     }
 
-    /// The nearest mean as seen from a quarter of `cell`, found afresh.
+    /// Finds the nearest mean as seen from a quarter of `cell`, afresh.
     fn nearest_to(&self, [x, y]: [i32; 2], quarter: usize) -> Offset {
         let (k, mut nearest) = (self.kernel, NONE);
         for dy in -k..=k {
@@ -205,7 +207,7 @@ impl HitMap {
         self.index(cell).and_then(|index| self.tiles[index].as_deref())
     }
 
-    /// The tile of `cell`, made where there is none, and this map's own where it was shared.
+    /// Returns the tile of `cell`, made where there is none, and copied where it was shared.
     fn tile_mut(&mut self, cell: [i32; 2]) -> &mut Tile {
         let index = self.index(cell).unwrap_or_else(|| {
             self.grow_to([cell[0] >> TILE_BITS, cell[1] >> TILE_BITS]);
@@ -240,14 +242,14 @@ impl HitMap {
     }
 }
 
-/// Steps that fit: those of a mean within the largest window.
+/// Converts steps to an offset; they fit, being those of a mean within the largest window.
 #[expect(clippy::cast_possible_truncation, reason = "at most 3 cells of 32 steps")]
 fn offset(steps: [i32; 2]) -> Offset {
     steps.map(|v| v as i8)
 }
 
-/// Lower is nearer to the middle of the quarter; the offset itself decides between equally near ones, so that what is nearest
-/// does not depend on who came first.
+/// Ranks a mean: lower is nearer to the middle of the quarter. The offset itself decides between equally near ones, so
+/// that the nearest does not depend on the order of arrival.
 fn rank(quarter: usize, offset: Offset) -> (i32, Offset) {
     let middle = |is_far: bool| if is_far { 3 * STEPS / 4 } else { STEPS / 4 };
     let dx = i32::from(offset[0]) - middle(quarter & 1 != 0);
@@ -255,7 +257,7 @@ fn rank(quarter: usize, offset: Offset) -> (i32, Offset) {
     (dx * dx + dy * dy, offset)
 }
 
-/// Index of `cell` within its tile.
+/// Returns the index of `cell` within its tile.
 fn in_tile(cell: [i32; 2]) -> usize {
     #[expect(clippy::cast_sign_loss, reason = "masked")]
     let [x, y] = cell.map(|v| (v & (TILE - 1)) as usize);
@@ -272,8 +274,8 @@ mod tests {
         (-2000..2000, -2000..2000).prop_map(|(x, y)| Place { x, y })
     }
 
-    /// Squared distance (units) from `at` to the mean, rounded to steps, that is nearest to its quarter of a cell, over all
-    /// cells of the window.
+    /// Returns the squared distance (units) from `at` to the mean, rounded to steps, that is nearest to its quarter of
+    /// a cell, over all cells of the window.
     fn by_definition(places: &[Place], at: Place, kernel: i32) -> Option<u32> {
         let cell = |p: Place| [p.x >> CELL_BITS, p.y >> CELL_BITS];
         let [x, y] = cell(at);
@@ -323,7 +325,7 @@ mod tests {
             }
         }
 
-        /// Copy on write: what one writes the other does not see, and nothing is copied that is not written.
+        /// Copy on write: a change to one copy does not show in the other, and nothing is copied that is not written.
         #[test]
         fn a_copy_keeps_what_it_had(
             before in prop::collection::vec(place(), 1..20),

@@ -1,5 +1,5 @@
-//! Which scans are taken into the map: one at the start, then one each time the robot has moved or turned
-//! enough (GMapping's `linearUpdate` and `angularUpdate`).
+//! Which scans are taken into the map: the first one, then one each time the robot has moved or turned enough
+//! (GMapping's `linearUpdate` and `angularUpdate`).
 
 use crate::geometry::Pose;
 use crate::math;
@@ -13,7 +13,7 @@ pub struct KeyframeRule {
     pub turn: f64,
 }
 
-/// How far odometry has come since the last scan that was taken in.
+/// The odometry since the last scan that was taken in.
 #[derive(Debug)]
 pub(super) struct Keyframes {
     rule: KeyframeRule,
@@ -23,17 +23,17 @@ pub(super) struct Keyframes {
 }
 
 impl Keyframes {
-    /// Nothing seen yet.
+    /// Creates the state before the first scan.
     pub(super) fn new(rule: KeyframeRule) -> Self {
         Self { rule, last: None, travelled: 0.0, turned: 0.0 }
     }
 
-    /// Where odometry was when last heard of.
+    /// Returns the last odometry pose seen.
     pub(super) fn last(&self) -> Option<Pose> {
         self.last
     }
 
-    /// Whether a scan taken at `pose` (odometry) is to be taken into the map.
+    /// Returns whether a scan taken at `pose` (odometry) is to be taken into the map.
     pub(super) fn wants(&mut self, pose: Pose) -> bool {
         let Some(last) = self.last.replace(pose) else { return true };
         self.travelled += last.position().distance(pose.position());
@@ -41,7 +41,7 @@ impl Keyframes {
         self.travelled >= self.rule.distance || self.turned >= self.rule.turn
     }
 
-    /// A scan was taken in at `pose` (odometry).
+    /// Records that a scan was taken in at `pose` (odometry).
     pub(super) fn taken(&mut self, pose: Pose) {
         self.last = Some(pose);
         (self.travelled, self.turned) = (0.0, 0.0);

@@ -1,11 +1,11 @@
-//! Hits and visits per cell, and the occupancy they mean.
+//! Hits and visits per cell, and the occupancy that follows from them.
 
 use super::beam_ends::BeamEnds;
 use crate::geometry::{Bounds, Point, Pose};
 use crate::grid::{Cell, Grid, GridFrame, Occupancy, OccupancyGrid};
 use crate::robot::Scan;
 
-/// How a scan is taken into the map.
+/// The rule by which a scan is taken into the map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ScanRule {
     /// Side of a cell (m).
@@ -21,9 +21,9 @@ pub struct ScanRule {
 pub struct Change {
     /// The cell on the endless lattice whose cell (0, 0) has its corner at the map frame's origin.
     pub cell: Cell,
-    /// What it held.
+    /// Its occupancy before.
     pub from: Occupancy,
-    /// What it holds now.
+    /// Its occupancy now.
     pub to: Occupancy,
 }
 
@@ -41,7 +41,7 @@ pub struct OccupancyMap {
     grid: OccupancyGrid,
     /// Lattice cell of the grid's cell (0, 0).
     offset: Cell,
-    /// Each cell that changed since `flipped` was empty, once, with what it held then.
+    /// Each cell that changed since `flipped` was empty, once, with its occupancy then.
     changes: Vec<Change>,
     /// A bit for each cell of the grid, set where the cell is among `changes`.
     flipped: Vec<u64>,
@@ -51,7 +51,7 @@ pub struct OccupancyMap {
 const MARGIN: i32 = 32;
 
 impl OccupancyMap {
-    /// An empty map around the origin.
+    /// Creates an empty map around the origin.
     pub fn new(rule: ScanRule) -> Self {
         let frame =
             GridFrame { resolution: rule.resolution, origin: Point::ZERO, width: 0, height: 0 };
@@ -65,27 +65,27 @@ impl OccupancyMap {
         }
     }
 
-    /// The map so far.
+    /// Returns the map so far.
     pub fn grid(&self) -> &OccupancyGrid {
         &self.grid
     }
 
-    /// The lattice cell of the grid's cell (0, 0): lattice = grid cell + offset.
+    /// Returns the lattice cell of the grid's cell (0, 0): lattice = grid cell + offset.
     pub fn offset(&self) -> Cell {
         self.offset
     }
 
-    /// What the map says of the lattice `cell`.
+    /// Returns the occupancy of the lattice `cell`.
     pub fn at_lattice(&self, cell: Cell) -> Occupancy {
         self.grid.at(Cell::new(cell.x - self.offset.x, cell.y - self.offset.y))
     }
 
-    /// The cells that the last scan taken in changed.
+    /// Returns the cells that the last scan taken in changed.
     pub(super) fn changes(&self) -> &[Change] {
         &self.changes
     }
 
-    /// Takes in `scan`, taken with the robot at `pose`, and tells the cells that changed.
+    /// Integrates `scan`, taken with the robot at `pose`, and returns the cells that changed.
     ///
     /// Per beam: nothing within the sensor's range marks nothing; otherwise the cells before the end are
     /// visited, and the end is hit unless the beam was cut (prior-map facts, section 4).
@@ -95,7 +95,7 @@ impl OccupancyMap {
         self.tell()
     }
 
-    /// Takes out the scans of `removed` and takes in those of `added`, and tells the cells that changed.
+    /// Takes out the scans of `removed`, integrates those of `added`, and returns the cells that changed.
     ///
     /// Counts add up, so the map is then as if it had never seen what was taken out. A count that is full (65,535
     /// visits of a cell) stays as it is.
@@ -138,9 +138,9 @@ impl OccupancyMap {
         }
     }
 
-    /// The cells that are different from what they were when `changes` was empty, row by row.
+    /// Returns the cells that differ from what they were when `changes` was empty, row by row.
     fn tell(&mut self) -> &[Change] {
-        // A cell may have changed back and forth in between: only what is different in the end is told.
+        // A cell may have changed back and forth in between: only what differs in the end is reported.
         for i in 0..self.changes.len() {
             let change = &mut self.changes[i];
             let cell = Cell::new(change.cell.x - self.offset.x, change.cell.y - self.offset.y);
@@ -165,7 +165,7 @@ impl OccupancyMap {
         });
     }
 
-    /// Visits a cell without a hit.
+    /// Counts a visit of a cell without a hit.
     fn pass(&mut self, index: usize) {
         let count = &mut self.counts.values_mut()[index];
         // Most cells: never hit, and known to be free since the first visit.
@@ -183,7 +183,7 @@ impl OccupancyMap {
         self.look(index);
     }
 
-    /// Brings what the map says of a cell up to its counts.
+    /// Updates the occupancy of a cell from its counts.
     fn look(&mut self, index: usize) {
         let count = self.counts.values()[index];
         let is_occupied =
@@ -261,7 +261,7 @@ impl OccupancyMap {
             }
         }
         (self.counts, self.grid, self.offset) = (counts, grid, offset);
-        // What changed in this round so far has got other indices.
+        // The cells that changed in this round so far have new indices.
         self.flipped = vec![0; frame.len().div_ceil(64)];
         for change in &self.changes {
             let cell = Cell::new(change.cell.x - offset.x, change.cell.y - offset.y);
@@ -272,8 +272,8 @@ impl OccupancyMap {
     }
 }
 
-/// Visits the cells of the line `from` .. `to` by index, its end only where that is a hit. Both are within the grid, and
-/// so is what lies between; the walk is that of [`crate::grid::line`], over indices.
+/// Visits the cells of the line `from` .. `to` by index, its end only where that is a hit. Both are within the grid,
+/// and so is what lies between; the walk is that of [`crate::grid::line`], over indices.
 fn walk(frame: &GridFrame, from: Cell, to: Cell, is_hit: bool, mut visit: impl FnMut(usize, bool)) {
     let (Some(mut index), Some(_)) = (frame.index(from), frame.index(to)) else { return };
     let (dx, dy) = ((to.x - from.x).abs(), -(to.y - from.y).abs());
@@ -358,7 +358,7 @@ mod tests {
     }
 
     proptest! {
-        /// Growing never loses a known cell, and what is told as changed is exactly what changed.
+        /// Growing never loses a known cell, and the cells reported as changed are exactly those that changed.
         #[test]
         fn changes_tell_the_whole_story(
             poses in prop::collection::vec((-20.0..20.0, -20.0..20.0, -3.0..3.0), 1..6),

@@ -1,4 +1,4 @@
-//! From scans and odometry to where the robot is and the map.
+//! From scans and odometry to the robot's pose and the map.
 
 use super::beam_ends::BeamEnds;
 use super::keyframe::{KeyframeRule, Keyframes};
@@ -19,7 +19,7 @@ pub struct Mapper {
     slam: Option<Slam>,
 }
 
-/// What there is besides a map where odometry is not trusted.
+/// The state besides the map where odometry is not trusted.
 #[derive(Debug)]
 struct Slam {
     filter: ParticleFilter,
@@ -27,14 +27,14 @@ struct Slam {
     increments: Vec<Pose>,
     /// Odometry at the last scan that was taken in.
     odometry: Pose,
-    /// All scans taken in: the map is drawn anew from them where another particle becomes best.
+    /// All scans taken in: the map is drawn anew from them when another particle becomes best.
     scans: Vec<BeamEnds>,
-    /// Where the way ends that the map shows.
+    /// The end of the trajectory that the map shows.
     shown: Option<NodeId>,
 }
 
 impl Mapper {
-    /// A mapper that has seen nothing; particles draw from `stream`.
+    /// Creates a mapper without scans; particles draw from `stream`.
     pub fn new(
         keyframes: KeyframeRule,
         scan_rule: ScanRule,
@@ -52,18 +52,18 @@ impl Mapper {
         Self { keyframes: Keyframes::new(keyframes), rule: scan_rule, map, slam }
     }
 
-    /// The map so far: that of the best particle.
+    /// Returns the map so far: that of the best particle.
     pub fn map(&self) -> &OccupancyMap {
         &self.map
     }
 
-    /// Whether poses are estimated: odometry is not trusted.
+    /// Returns whether poses are estimated, that is, whether odometry is not trusted.
     pub fn estimates(&self) -> bool {
         self.slam.is_some()
     }
 
-    /// Where in the map the robot is, when odometry tells `odometry`: the best particle's pose at the last scan taken in,
-    /// moved on as odometry did since.
+    /// Returns the robot's pose in the map when odometry reads `odometry`: the best particle's pose at the last scan
+    /// taken in, moved on by the odometry since.
     pub fn pose(&self, odometry: Pose) -> Pose {
         match &self.slam {
             Some(slam) if slam.shown.is_some() => {
@@ -73,20 +73,20 @@ impl Mapper {
         }
     }
 
-    /// Where the robot was at each scan taken in, as it looks from now: the way of the best particle. Empty where odometry
-    /// is trusted.
+    /// Returns the robot's pose at each scan taken in, as now estimated: the trajectory of the best particle. Empty
+    /// where odometry is trusted.
     pub fn way(&self) -> Vec<Pose> {
         let shown = self.slam.as_ref().and_then(|slam| Some((slam, slam.shown?)));
         shown.map_or_else(Vec::new, |(slam, node)| slam.filter.trajectories().way_to(node))
     }
 
-    /// The cells that the last scan taken in changed.
+    /// Returns the cells that the last scan taken in changed.
     pub fn changes(&self) -> &[Change] {
         self.map.changes()
     }
 
-    /// Whether a scan taken at `odometry` is to be taken into the map. To be told of every scan, as particles move with the
-    /// increments in between.
+    /// Returns whether a scan taken at `odometry` is to be taken into the map. Has to be called for every scan, as
+    /// particles move with the increments in between.
     pub fn wants(&mut self, odometry: Pose) -> bool {
         if let (Some(slam), Some(last)) = (&mut self.slam, self.keyframes.last())
             && last != odometry
@@ -96,8 +96,8 @@ impl Mapper {
         self.keyframes.wants(odometry)
     }
 
-    /// Takes `scan`, taken at `odometry`, into the map and tells the cells that changed, those among them that are different
-    /// because another particle became best.
+    /// Integrates `scan`, taken at `odometry`, and returns the cells that changed, among them those that differ because
+    /// another particle became best.
     pub fn integrate(&mut self, odometry: Pose, scan: &Scan) -> &[Change] {
         self.keyframes.taken(odometry);
         let Some(slam) = &mut self.slam else { return self.map.integrate(odometry, scan) };
@@ -138,7 +138,7 @@ mod tests {
         likelihood_gain: 3.0,
         resample_threshold: 0.5,
     };
-    /// Nothing moves a particle but odometry.
+    /// No particle moves but by odometry.
     const STILL: FilterRule = FilterRule {
         particles: 1,
         motion: MotionNoise { srr: 0.0, srt: 0.0, str: 0.0, stt: 0.0 },
@@ -150,7 +150,7 @@ mod tests {
         Mapper::new(KEYFRAMES, SCANS, filter, Seeds::new(5, vec![]).stream("slam"))
     }
 
-    /// True poses on rounds in the room, and odometry's, which drift.
+    /// Returns true poses on rounds in the room, and those of odometry, which drifts.
     fn rounds() -> Vec<(Pose, Pose)> {
         let mut drift = Seeds::new(3, vec![]).stream("odometry");
         let (mut truth, mut odometry) = (Pose::default(), Pose::default());
@@ -169,7 +169,8 @@ mod tests {
             .collect()
     }
 
-    /// Drives the rounds and shows `each` the mapper, the true pose and odometry after every scan that was taken in.
+    /// Drives the rounds and passes to `each` the mapper, the true pose and odometry after every scan that was taken
+    /// in.
     fn drive(mapper: &mut Mapper, mut each: impl FnMut(&Mapper, Pose, Pose)) {
         for (truth, odometry) in rounds() {
             if mapper.wants(odometry) {
@@ -189,7 +190,7 @@ mod tests {
     #[test]
     fn a_filter_that_may_not_move_is_mapping_with_odometry() {
         assert!(STILL.trusts_odometry() && !GMAPPING.trusts_odometry());
-        // Two particles go through the filter, one does not: with nothing to tell them apart all are odometry.
+        // Two particles go through the filter, one does not: without noise or matching all follow odometry.
         let (mut trusting, mut filtering) =
             (mapper(STILL), mapper(FilterRule { particles: 2, ..STILL }));
         assert!(!trusting.estimates() && filtering.estimates());
@@ -220,8 +221,8 @@ mod tests {
         assert!(worst < 0.1 && drifted > 0.3, "{worst} m, odometry {drifted} m");
     }
 
-    /// What is told adds up to the map, and the map is what the best particle's way makes of the scans: also where another
-    /// particle became best.
+    /// The reported changes add up to the map, and the map is what the best particle's trajectory makes of the scans:
+    /// also where another particle became best.
     #[test]
     fn changes_tell_the_whole_story_across_changes_of_the_best_particle() {
         let vague = FilterRule {

@@ -1,8 +1,9 @@
 //! Building an occupancy map from scans, in GMapping's manner (Grisetti, Stachniss, Burgard 2007).
 //!
-//! [`Mapper`] is the way in. With one particle, no motion noise and no matching this is mapping with known poses at
+//! [`Mapper`] is the entry point. With one particle, no motion noise and no matching this is mapping with known poses
+//! at
 //! keyframes, which is what the prior-knowledge study's simulated runs really did; with other numbers it is the full
-//! Rao-Blackwellised particle filter. The map's frame is the odometry frame at the beginning: the pose the robot began in.
+//! Rao-Blackwellised particle filter. The map's frame is the odometry frame at the beginning: the robot's first pose.
 
 mod beam_ends;
 mod hit_map;

@@ -1,11 +1,11 @@
-//! How particles move: odometry's increments with noise of their own (GMapping's `MotionModel`).
+//! The motion model of particles: increments of odometry with noise of their own (GMapping's `MotionModel`).
 
 use crate::geometry::Pose;
 use crate::rng::Stream;
 
-/// Standard deviations of what is added to an increment of odometry, per metre or radian of it.
+/// Standard deviations of the noise added to an increment of odometry, per metre or radian of it.
 ///
-/// GMapping draws once per increment, at each scan it hears of, and so do we: over n increments of one metre in all the
+/// GMapping draws once per increment, at each scan it receives, and so do we: over n increments of one metre in all the
 /// deviations add up to `srr` / sqrt(n).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct MotionNoise {
@@ -23,12 +23,12 @@ pub struct MotionNoise {
 const ACROSS: f64 = 0.3;
 
 impl MotionNoise {
-    /// Whether there is none.
+    /// Returns whether there is no noise.
     pub fn is_none(&self) -> bool {
         *self == Self::default()
     }
 
-    /// Where a particle at `pose` may be after odometry tells `increment` (in the robot's frame).
+    /// Draws the pose of a particle at `pose` after odometry reads `increment` (in the robot's frame).
     pub(super) fn draw(&self, pose: Pose, increment: Pose, stream: &mut Stream) -> Pose {
         let (dx, dy, turn) = (increment.x.abs(), increment.y.abs(), increment.heading.abs());
         let (along, across) = stream.normal_pair();

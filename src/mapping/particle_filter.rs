@@ -1,5 +1,13 @@
-//! The Rao-Blackwellised particle filter: each particle is a way of the robot with the map that follows from it
+//! The Rao-Blackwellised particle filter: each particle is a trajectory of the robot with the map that follows from it
 //! (Grisetti, Stachniss, Burgard 2007; GMapping's `GridSlamProcessor`).
+//!
+//! One scan is one [`ParticleFilter::advance`]:
+//! 1. Every particle moves by the increments of odometry, with noise of its own.
+//! 2. Where matching is on, it climbs to the pose at which the scan fits its map best, and keeps that pose if the score
+//!    suffices.
+//! 3. Its weight takes in the likelihood of the scan there.
+//! 4. Particles are drawn anew where too few of them count (Grisetti et al. 2007, section 4.2).
+//! 5. Every particle takes the scan into its map, and the likeliest so far becomes the best.
 
 use super::beam_ends::BeamEnds;
 use super::hit_map::{HitMap, Place};
@@ -15,9 +23,9 @@ use crate::rng::Stream;
 pub struct FilterRule {
     /// How many particles, at least 1.
     pub particles: u32,
-    /// How they move.
+    /// How particles move.
     pub motion: MotionNoise,
-    /// How each matches scans to its map.
+    /// How each particle matches scans to its map.
     pub matching: MatchRule,
     /// Weights are smoothed by this (above 0); GMapping's `ogain`.
     pub likelihood_gain: f64,
@@ -26,7 +34,7 @@ pub struct FilterRule {
 }
 
 impl FilterRule {
-    /// Whether odometry is trusted: then there is one way, and it is known.
+    /// Returns whether odometry is trusted: then there is one trajectory, and it is known.
     pub fn trusts_odometry(&self) -> bool {
         self.particles <= 1 && self.motion.is_none() && !self.matching.searches()
     }
@@ -36,9 +44,9 @@ impl FilterRule {
 struct Particle {
     pose: Pose,
     map: HitMap,
-    /// Since particles were last drawn.
+    /// Log likelihood since particles were last drawn.
     log_weight: f64,
-    /// Since the beginning.
+    /// Log likelihood since the beginning.
     total: f64,
     node: Option<NodeId>,
 }
@@ -57,7 +65,7 @@ pub(super) struct ParticleFilter {
 }
 
 impl ParticleFilter {
-    /// A filter over maps with cells of `resolution` m that has seen nothing.
+    /// Creates a filter over maps with cells of `resolution` m, before the first scan.
     pub(super) fn new(rule: FilterRule, resolution: f64, stream: Stream) -> Self {
         let nobody = Particle {
             pose: Pose::default(),
@@ -78,7 +86,7 @@ impl ParticleFilter {
         }
     }
 
-    /// The first scan, taken at `pose`: all particles are there.
+    /// Takes in the first scan, taken at `pose`, where all particles start.
     pub(super) fn begin(&mut self, pose: Pose, scan: &BeamEnds) {
         for particle in &mut self.particles {
             particle.pose = pose;
@@ -86,11 +94,12 @@ impl ParticleFilter {
         self.register(scan);
     }
 
-    /// A further scan, taken after odometry told `increments`.
+    /// Takes in a further scan, taken after the `increments` of odometry.
     pub(super) fn advance(&mut self, increments: &[Pose], scan: &BeamEnds) {
         let Self { rule, matcher, beams, stream, scans, .. } = self;
         beams.take(scan.hits(rule.matching.skip as usize + 1));
         for (i, particle) in (0..).zip(&mut self.particles) {
+            // 1. Odometry moves the particle.
             let stream = stream.at(*scans << PARTICLE_BITS | i);
             for &increment in increments {
                 particle.pose = if rule.motion.is_none() {
@@ -99,31 +108,35 @@ impl ParticleFilter {
                     rule.motion.draw(particle.pose, increment, stream)
                 };
             }
+            // 2. The scan corrects its pose.
             if rule.matching.searches() {
                 let (pose, fits) = matcher.climb(&particle.map, beams, particle.pose);
                 if fits {
                     particle.pose = pose;
                 }
             }
+            // 3. The scan weighs it.
             let log_likelihood = matcher.log_likelihood(&particle.map, beams, particle.pose);
             particle.log_weight += log_likelihood;
             particle.total += log_likelihood;
         }
+        // 4. Particles that count for little are replaced.
         self.resample();
+        // 5. The scan enters the maps.
         self.register(scan);
     }
 
-    /// The pose of the best particle: the one whose scans were likeliest, all in all.
+    /// Returns the pose of the best particle: the one whose scans were likeliest, all in all.
     pub(super) fn pose(&self) -> Pose {
         self.particles[self.best].pose
     }
 
-    /// Where the way of the best particle ends.
+    /// Returns the end of the best particle's trajectory.
     pub(super) fn node(&self) -> Option<NodeId> {
         self.particles[self.best].node
     }
 
-    /// The ways of all particles.
+    /// Returns the trajectories of all particles.
     pub(super) fn trajectories(&self) -> &Trajectories {
         &self.trajectories
     }
@@ -148,7 +161,7 @@ impl ParticleFilter {
         }
     }
 
-    /// Takes the scan into every particle's map, and tells which is best.
+    /// Takes the scan into every particle's map, and determines which particle is best.
     fn register(&mut self, scan: &BeamEnds) {
         let scale = self.matcher.scale();
         let hits: Vec<_> = scan.hits(1).collect();

@@ -1,9 +1,9 @@
-//! Weights of particles, and which of them live on.
+//! Weights of particles, and the choice of those that survive.
 
 use crate::math;
 
-/// Weights (summing to 1) of particles whose log weights are given, smoothed by `gain` and by how many they are, as GMapping
-/// does (`obsSigmaGain`): w_i is proportional to exp((l_i - l_max) / (gain n)).
+/// Computes weights (summing to 1) of particles from their log weights, smoothed by `gain` and by their number, as
+/// GMapping does (`obsSigmaGain`): w_i is proportional to exp((l_i - l_max) / (gain n)).
 pub(super) fn normalised(log_weights: &[f64], gain: f64) -> Vec<f64> {
     let highest = log_weights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     #[expect(clippy::cast_precision_loss, reason = "few")]
@@ -17,14 +17,14 @@ pub(super) fn normalised(log_weights: &[f64], gain: f64) -> Vec<f64> {
     weights
 }
 
-/// Effective number of particles: 1 / sum of squared weights (Grisetti et al. 2007, equation 20), between 1 and their
-/// number.
+/// Computes the effective number of particles: 1 / sum of squared weights (Grisetti et al. 2007, equation 20), between
+/// 1 and their number.
 pub(super) fn effective(weights: &[f64]) -> f64 {
     1.0 / weights.iter().map(|w| w * w).sum::<f64>()
 }
 
-/// Which particles live on, in order: systematic (low-variance) resampling with the one draw `offset`, in [0, 1). Particle i
-/// comes n w_i times, rounded up or down.
+/// Chooses the particles that survive, in order: systematic (low-variance) resampling with the one draw `offset`, in
+/// [0, 1). Particle i comes n w_i times, rounded up or down.
 pub(super) fn systematic(weights: &[f64], offset: f64) -> Vec<usize> {
     #[expect(clippy::cast_precision_loss, reason = "few")]
     let interval = 1.0 / weights.len() as f64;

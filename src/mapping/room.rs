@@ -1,4 +1,4 @@
-//! A room for tests: 6 x 4 m with a pillar, and what a scanner sees in it.
+//! A room for tests: 6 x 4 m with a pillar, and the scans taken in it.
 
 use crate::geometry::{Point, Pose};
 use crate::math;
@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 /// Corners of the room and of the pillar, which is nearer to one corner so that no two views are alike.
 const BOXES: [[f64; 4]; 2] = [[-3.0, -2.0, 3.0, 2.0], [1.6, 0.9, 2.0, 1.2]];
 
-/// The way (m) to the first wall from `from` in direction `angle`.
+/// Returns the distance (m) from `from` to the first wall in direction `angle`.
 fn cast(from: Point, angle: f64) -> f64 {
     let (sin, cos) = math::sin_cos(angle);
     let mut nearest = f64::INFINITY;
@@ -31,7 +31,7 @@ fn cast(from: Point, angle: f64) -> f64 {
     nearest
 }
 
-/// A scan of 180 beams over half a circle, taken at `pose`, without noise.
+/// Returns a scan of 180 beams over half a circle, taken at `pose`, without noise.
 pub(super) fn scan(pose: Pose) -> Scan {
     let increment = PI / 179.0;
     let mut scan = Scan {
@@ -49,7 +49,7 @@ pub(super) fn scan(pose: Pose) -> Scan {
     scan
 }
 
-/// Where its beams end, in the robot's frame (m).
+/// Returns the ends of its beams, in the robot's frame (m).
 pub(super) fn ends(pose: Pose) -> Vec<Point> {
     super::beam_ends::BeamEnds::of(&scan(pose), 20.0).hits(1).collect()
 }

@@ -1,10 +1,19 @@
-//! Where in a particle's map a scan fits best, and how likely the scan is there (GMapping's `ScanMatcher`).
+//! Matching a scan to a particle's map: the pose at which it fits best, and its likelihood there (GMapping's
+//! `ScanMatcher`).
+//!
+//! The search, [`ScanMatcher::climb`], is hill climbing:
+//! 1. Score the scan at the pose that odometry gives.
+//! 2. Where the last round did not improve the score, halve the steps.
+//! 3. Try a step forwards, backwards, left, right and a turn to either side, all from the pose of this round.
+//! 4. Move to the best of the six if it scores higher than the pose of this round.
+//! 5. Repeat from 2 until a round brings no improvement after the last halving; then test the score against the
+//!    minimum.
 
 use super::hit_map::{CELL_BITS, HitMap, MAX_KERNEL, Place};
 use crate::geometry::{Point, Pose};
 use crate::math;
 
-/// How scans are matched to maps.
+/// The parameters by which scans are matched to maps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MatchRule {
     /// First step of the search along x and y (m); GMapping's `lstep`.
@@ -17,7 +26,7 @@ pub struct MatchRule {
     pub sigma: f64,
     /// Cells to either side in which a mean is sought, 10 at most; `kernelSize`.
     pub kernel: u32,
-    /// The found pose is taken where the scan's score there is above this (0 to the number of beams); `minimumScore`.
+    /// The pose found is used where the scan's score there is above this (0 to the number of beams); `minimumScore`.
     pub minimum_score: f64,
     /// ... and its log likelihood is the sum of -d^2 / this (m^2, above 0); `lsigma`.
     pub likelihood_sigma: f64,
@@ -26,7 +35,7 @@ pub struct MatchRule {
 }
 
 impl MatchRule {
-    /// What GMapping searches with where nothing is set (the defaults of `slam_gmapping`, but for the minimum score).
+    /// The defaults with which GMapping searches (those of `slam_gmapping`, but for the minimum score).
     pub const GMAPPING: Self = Self {
         linear_step: 0.05,
         angular_step: 0.05,
@@ -38,7 +47,7 @@ impl MatchRule {
         skip: 0,
     };
 
-    /// Whether the search can move at all.
+    /// Returns whether the search can move at all.
     pub fn searches(&self) -> bool {
         self.linear_step > 0.0 || self.angular_step > 0.0
     }
@@ -46,9 +55,9 @@ impl MatchRule {
 
 /// A beam without a mean in its window counts in the likelihood as if it were this far off (m^2); GMapping's constant.
 const NO_HIT: f64 = 0.5;
-/// What a beam scores at most.
+/// The highest score of a beam.
 const FULL: u16 = u16::MAX;
-/// Beams between two looks at whether a pose can still win.
+/// Beams between two tests of whether a pose can still win.
 const CHUNK: usize = 16;
 const TABLE: usize = 4096;
 
@@ -77,12 +86,12 @@ pub(super) struct Beams {
 }
 
 impl Beams {
-    /// Takes the `ends` of a scan, in the robot's frame (m).
+    /// Replaces the beams by the `ends` of a scan, in the robot's frame (m).
     pub(super) fn take(&mut self, ends: impl Iterator<Item = Point>) {
         let ends: Vec<Point> = ends.collect();
         self.ends.clear();
-        // Far neighbours first, so that few beams tell whether a pose can win. The sum is of whole numbers: no order
-        // changes it.
+        // Distant neighbours first, so that few beams show whether a pose can win. The sum is of whole numbers: no
+        // order changes it.
         for first in 0..CHUNK {
             self.ends.extend(ends.iter().skip(first).step_by(CHUNK));
         }
@@ -119,7 +128,7 @@ impl Move {
         matches!(self, Self::TurnLeft | Self::TurnRight)
     }
 
-    /// The pose after the move; x and y are the map's.
+    /// Returns the pose after the move; x and y are the map's.
     fn from(self, pose: Pose, linear: f64, angular: f64) -> Pose {
         let Pose { x, y, heading } = pose;
         match self {
@@ -134,7 +143,7 @@ impl Move {
 }
 
 impl ScanMatcher {
-    /// A matcher for maps with cells of `resolution` m.
+    /// Creates a matcher for maps with cells of `resolution` m.
     pub(super) fn new(rule: MatchRule, resolution: f64) -> Self {
         let cell = f64::from(1_u32 << CELL_BITS);
         let scale = cell / resolution;
@@ -159,15 +168,16 @@ impl ScanMatcher {
         Self { rule, scale, scores, shift, window }
     }
 
-    /// Units in a metre.
+    /// Returns the number of units in a metre.
     pub(super) fn scale(&self) -> f64 {
         self.scale
     }
 
-    /// The pose near `from` where the scan's score is highest, by climbing: each step goes to the best of six
-    /// neighbours, and where none is better, steps are halved. And whether the score there is high enough.
+    /// Finds the pose near `from` where the scan's score is highest, by hill climbing (steps in the module
+    /// documentation), and whether the score there is high enough.
     pub(super) fn climb(&self, map: &HitMap, beams: &mut Beams, from: Pose) -> (Pose, bool) {
         let Beams { ends, turned, tried, best } = beams;
+        // 1. The score at the start.
         let mut pose = from;
         self.turn(ends, pose.heading, turned);
         let mut score = self.score(map, turned, self.place(pose), None);
@@ -175,6 +185,7 @@ impl ScanMatcher {
         let (mut before, mut halved) = (None, 0);
         let mut came_by: Option<Move> = None;
         loop {
+            // 2. Halve the steps where nothing was gained.
             if before.is_some_and(|before| before >= score) {
                 halved += 1;
                 linear *= 0.5;
@@ -182,9 +193,10 @@ impl ScanMatcher {
                 came_by = None;
             }
             before = Some(score);
+            // 3. Try the six steps from the same pose.
             let (start, mut found) = (pose, None);
             for step in Move::ALL {
-                // Where it came from by a step of this size is known to be worse.
+                // The step back, of the same size, is known to be worse.
                 if came_by.is_some_and(|came_by| step == came_by.back()) {
                     continue;
                 }
@@ -195,6 +207,7 @@ impl ScanMatcher {
                 } else {
                     &*turned
                 };
+                // 4. The best of the six so far becomes the pose.
                 let reached = self.score(map, rotated, self.place(there), Some(score));
                 if reached > score {
                     (score, pose, found) = (reached, there, Some(step));
@@ -206,6 +219,7 @@ impl ScanMatcher {
             if found.is_some_and(Move::turns) {
                 std::mem::swap(turned, best);
             }
+            // 5. Go on until the finest steps bring no gain.
             came_by = found;
             if before.is_some_and(|before| score <= before) && halved >= self.rule.iterations {
                 let matched = f64::from(score) / f64::from(FULL);
@@ -214,7 +228,7 @@ impl ScanMatcher {
         }
     }
 
-    /// Log likelihood of the scan with the robot at `pose`.
+    /// Computes the log likelihood of the scan with the robot at `pose`.
     pub(super) fn log_likelihood(&self, map: &HitMap, beams: &mut Beams, pose: Pose) -> f64 {
         self.turn(&beams.ends, pose.heading, &mut beams.turned);
         let at = self.place(pose);
@@ -236,7 +250,7 @@ impl ScanMatcher {
         Place::of(pose.position(), self.scale)
     }
 
-    /// The `ends` turned to `heading`, in units.
+    /// Turns the `ends` to `heading`, in units.
     fn turn(&self, ends: &[Point], heading: f64, turned: &mut Vec<Place>) {
         let (sin, cos) = math::sin_cos(heading);
         let turn = |end: &Point| {
@@ -247,7 +261,8 @@ impl ScanMatcher {
         turned.extend(ends.iter().map(turn));
     }
 
-    /// The score of beams that end at `ends` from `at`. Where it can no longer be above `floor`, something not above it.
+    /// Scores beams that end at `ends` from `at`. Where the score can no longer be above `floor`, returns something not
+    /// above it.
     fn score(&self, map: &HitMap, ends: &[Place], at: Place, floor: Option<u32>) -> u32 {
         let mut sum = 0;
         let mut left =
@@ -275,11 +290,11 @@ mod tests {
 
     const RULE: MatchRule = MatchRule::GMAPPING;
 
-    /// A map of the room, and the beams of a scan taken at `pose` in it.
+    /// Returns a map of the room, and the beams of a scan taken at `pose` in it.
     fn seen(pose: Pose) -> (ScanMatcher, HitMap, Beams) {
         let matcher = ScanMatcher::new(RULE, 0.05);
         let mut map = HitMap::new(RULE.kernel);
-        // All of the room, as otherwise the ends of what is known would draw the scan along.
+        // The whole room, as otherwise the ends of the known walls would draw the scan along.
         for i in 0..12 {
             let (x, y) = [(0.3, 0.1), (-1.0, 0.5), (1.0, -0.6)][i % 3];
             let place = Pose::new(x, y, [0.0, 1.6, 3.2, 4.8][i / 3]);

@@ -1,8 +1,9 @@
-//! The ways of all particles, as trees: what particles share before they parted is kept once (GMapping's `TNode`).
+//! The trajectories of all particles, as trees: what particles share before they parted is kept once (GMapping's
+//! `TNode`).
 
 use crate::geometry::Pose;
 
-/// Where a particle was when a scan was taken in.
+/// The pose of a particle when a scan was taken in.
 pub(super) type NodeId = usize;
 
 #[derive(Debug, Clone, Copy)]
@@ -20,25 +21,26 @@ pub(super) struct Trajectories {
 }
 
 impl Trajectories {
-    /// The way that ends at `parent`, longer by `pose`, or a way that begins there.
+    /// Extends the trajectory that ends at `parent` by `pose`, or begins a new one there.
     pub(super) fn extend(&mut self, parent: Option<NodeId>, pose: Pose) -> NodeId {
         let scan = parent.map_or(0, |parent| self.nodes[parent].scan + 1);
         self.nodes.push(Node { pose, parent, scan });
         self.nodes.len() - 1
     }
 
-    /// The pose at `node`, and the number of the scan taken there.
+    /// Returns the pose at `node`, and the number of the scan taken there.
     pub(super) fn at(&self, node: NodeId) -> (Pose, usize) {
         (self.nodes[node].pose, self.nodes[node].scan)
     }
 
-    /// The way to `node` from its beginning.
+    /// Returns the trajectory to `node` from its beginning.
     pub(super) fn way_to(&self, node: NodeId) -> Vec<Pose> {
         let (_, nodes) = self.between(None, node);
         nodes.into_iter().map(|node| self.nodes[node].pose).collect()
     }
 
-    /// What only the way to `from` has (last first), and what only the way to `to` has (first first).
+    /// Returns the nodes that only the trajectory to `from` has (last first), and those that only the one to `to` has
+    /// (first first).
     pub(super) fn between(&self, from: Option<NodeId>, to: NodeId) -> (Vec<NodeId>, Vec<NodeId>) {
         let scan = |node: Option<NodeId>| node.map(|node| self.nodes[node].scan);
         let (mut left, mut right) = (Vec::new(), Vec::new());

@@ -9,7 +9,7 @@ use crate::world::Tag;
 pub enum Occlusion {
     /// Nothing does: Gazebo's logical camera sees through walls.
     None,
-    /// What the lidar sees hides what is behind it.
+    /// Whatever the lidar sees hides what is behind it.
     Walls,
 }
 
@@ -28,14 +28,14 @@ pub struct CameraScene<'a> {
 pub(super) struct Camera {
     model: LogicalCamera,
     tags: Vec<Tag>,
-    /// What hides tags, with its bounds.
+    /// The outlines that hide tags, with their bounds.
     screens: Vec<(Bounds, Outline)>,
     /// Distance and bearing (m, rad) of the tags in view, with their numbers.
     found: Vec<(f64, f64, usize)>,
 }
 
 impl Camera {
-    /// A camera whose view `visible` outlines block where they do.
+    /// Creates a camera whose view the `visible` outlines block where `scene` says so.
     pub(super) fn new(scene: CameraScene<'_>, visible: &[Outline]) -> Self {
         let screens = match scene.occlusion {
             Occlusion::None => Vec::new(),
@@ -44,8 +44,8 @@ impl Camera {
         Self { model: scene.camera, tags: scene.tags.to_vec(), screens, found: Vec::new() }
     }
 
-    /// What is detected from the base at `base`, written over `detections`: nearest first, then from right to left. The
-    /// order, like all else but the ids themselves, does not depend on ids.
+    /// Detects tags from the base at `base` and writes them over `detections`: nearest first, then from right to left.
+    /// The order, like all else but the ids themselves, does not depend on ids.
     pub(super) fn look(&mut self, base: Pose, detections: &mut Vec<Detection>) {
         detections.clear();
         self.found.clear();
@@ -81,7 +81,7 @@ impl Camera {
         }
     }
 
-    /// Whether a screen stands between `eye` and `tag`. A tag on a wall's face is not behind it.
+    /// Returns whether a screen stands between `eye` and `tag`. A tag on a wall's face is not behind it.
     fn is_hidden(&self, eye: Point, tag: Point) -> bool {
         const ON_THE_FACE: f64 = 1e-6;
         let distance = eye.distance(tag);

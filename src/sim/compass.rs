@@ -13,13 +13,13 @@ pub struct CompassNoise {
     pub distribution: Distribution,
     /// Its size (rad): a standard deviation or a bound, as the distribution says.
     pub heading: f64,
-    /// How long one error lasts; no longer than the time between readings, it is white. A time, so that it does not depend on
-    /// any rate.
+    /// How long one error lasts; if no longer than the time between readings, the error is white. A time, so that it
+    /// does not depend on any rate.
     pub correlation: Seconds,
 }
 
 impl CompassNoise {
-    /// A compass that is right.
+    /// A compass without error.
     pub const NONE: Self =
         Self { distribution: Distribution::Gaussian, heading: 0.0, correlation: Seconds(1.0) };
 }
@@ -37,7 +37,7 @@ impl Compass {
         Self { noise, hold, stream: seeds.stream("compass-noise") }
     }
 
-    /// The reading taken at `stamp` at the true `heading` (rad).
+    /// Returns the reading taken at `stamp` at the true `heading` (rad).
     pub(super) fn reading(&mut self, stamp: Tick, heading: f64) -> CompassReading {
         let error = if self.noise.heading > 0.0 {
             let number = stamp.0 / self.hold.0;

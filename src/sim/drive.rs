@@ -20,7 +20,7 @@ pub struct DriveNoise {
 }
 
 impl DriveNoise {
-    /// A drive that does what it is told.
+    /// A drive that executes commands exactly.
     pub const NONE: Self = Self {
         distribution: Distribution::Gaussian,
         linear: 0.0,
@@ -63,7 +63,7 @@ impl Drive {
         };
     }
 
-    /// The velocity executed at `now`.
+    /// Returns the velocity executed at `now`.
     pub(super) fn executed(&mut self, now: Tick) -> Twist {
         let number = now.0 / self.hold.0;
         if number != self.current.0 {

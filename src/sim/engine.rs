@@ -3,8 +3,9 @@
 //! rapier2d, 64 bit, enhanced determinism. The body is dynamic with its velocity set every step: kinematic
 //! bodies go straight through walls.
 //!
-//! Where nothing is near, the engine moves a body freely: it integrates the velocity in substeps. With [`Stepping::Near`] that
-//! is done here, in the engine's own arithmetic and to the same bits, and the engine is asked where something is near.
+//! Where nothing is near, the engine moves a body freely: it integrates the velocity in substeps. With
+//! [`Stepping::Near`] that is done here, in the engine's own arithmetic and to the same bits, and the engine runs only
+//! where something is near.
 
 use super::PHYSICS_PERIOD;
 use crate::geometry::{Bounds, Outline, Point, Pose};
@@ -15,19 +16,20 @@ use rapier2d::prelude::{
     ColliderBuilder, ColliderHandle, PhysicsWorld, RigidBodyBuilder, RigidBodyHandle, Vector,
 };
 
-/// When the engine is asked.
+/// When the engine runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stepping {
     /// At every step.
     Always,
-    /// Where the bounds of something solid are near: an order of magnitude cheaper in a building. Free motion has the same
-    /// bits; in a contact what the engine remembers of the pair differs by a fraction of a millimetre, so a study keeps to one of the two.
+    /// Where the bounds of something solid are near: an order of magnitude cheaper in a building. Free motion has the
+    /// same bits; in a contact the state that the engine keeps of the pair differs by a fraction of a millimetre, so a
+    /// study keeps to one of the two.
     Near,
 }
 
-/// What the engine keeps an eye on around a body (m): its fattened bounds, on either side, with a reserve.
+/// The margin around a body that the engine watches (m): its fattened bounds, on either side, with a reserve.
 const VIGILANCE: f64 = 0.15;
-/// Shortest way (m) after which a body near something is looked at again.
+/// Shortest distance travelled (m) after which nearness is tested again for a body near something.
 const PATIENCE: f64 = 0.02;
 
 /// One robot among fixed things.
@@ -43,7 +45,7 @@ pub(super) struct Engine {
     /// Bounds of what is solid, and how far the body reaches around its origin (m).
     bounds: Vec<Bounds>,
     reach: f64,
-    /// Whether the bounds of something may be near, and the way (m) for which that holds.
+    /// Whether the bounds of something may be near, and the distance travelled (m) for which that holds.
     near: bool,
     holds_for: f64,
 }
@@ -55,7 +57,7 @@ impl std::fmt::Debug for Engine {
 }
 
 impl Engine {
-    /// `robot` at rest at `start` among the fixed `solid` outlines.
+    /// Places `robot` at rest at `start` among the fixed `solid` outlines.
     pub(super) fn new(solid: &[Outline], robot: &Robot, start: Pose, stepping: Stepping) -> Self {
         let mut world = PhysicsWorld::new();
         // Seen from above: nothing falls.
@@ -105,7 +107,7 @@ impl Engine {
         self.pose = Pose::new(at.x, at.y, math::atan2(turned.im, turned.re));
     }
 
-    /// One step of the engine.
+    /// Runs one step of the engine.
     fn ask(&mut self, velocity: Vector, turning: f64) {
         let body = &mut self.world.bodies[self.body];
         if *body.position() != self.isometry {
@@ -117,8 +119,8 @@ impl Engine {
         self.isometry = *self.world.bodies[self.body].position();
     }
 
-    /// One step of a body that nothing is near to, in the engine's arithmetic: about the centre of mass, in as many substeps,
-    /// each with a linearised turn.
+    /// Advances a body that nothing is near to by one step, in the engine's arithmetic: about the centre of mass, in as
+    /// many substeps, each with a linearised turn.
     fn fly(&mut self, velocity: Vector, turning: f64) {
         let parameters = &self.world.integration_parameters;
         let substeps = parameters.num_solver_iterations;
@@ -139,8 +141,8 @@ impl Engine {
         self.isometry = pose.prepend_translation(-center);
     }
 
-    /// Whether something may be near on a step at `speed` (m/s). The way travelled since it was last looked at bounds by how much
-    /// that can have changed.
+    /// Returns whether something may be near on a step at `speed` (m/s). The distance travelled since the last test
+    /// bounds by how much that can have changed.
     fn is_near(&mut self, speed: f64) -> bool {
         let way = speed.abs() * PHYSICS_PERIOD.seconds().get();
         self.holds_for -= way;
@@ -156,13 +158,13 @@ impl Engine {
         self.near
     }
 
-    /// The pose in the world's frame.
+    /// Returns the pose in the world's frame.
     pub(super) fn pose(&self) -> Pose {
         self.pose
     }
 
-    /// Whether the body touches something: a contact point at no distance or pressed upon, not merely a near
-    /// one (the engine tracks points up to 2 cm away, and measures them before the step).
+    /// Returns whether the body touches something: a contact point at zero distance or under pressure, not merely a
+    /// near one (the engine tracks points up to 2 cm away, and measures them before the step).
     pub(super) fn is_touching(&self) -> bool {
         if self.stepping == Stepping::Near && !self.near {
             return false;
@@ -175,7 +177,7 @@ impl Engine {
     }
 }
 
-/// A collider in the shape of `outline` about the returned centre; `None` for degenerate outlines.
+/// Builds a collider in the shape of `outline` about the returned centre; `None` for degenerate outlines.
 fn collider(outline: &Outline) -> Option<(ColliderBuilder, Point)> {
     match outline {
         Outline::Circle { center, radius } => Some((ColliderBuilder::ball(*radius), *center)),
@@ -277,8 +279,8 @@ mod tests {
         assert!(!engine.is_touching(), "1 cm away");
     }
 
-    /// Random drives between pillars and walls, up to the first contact: to the bit before it, and within the engine's own
-    /// tolerance at it, where what it remembers of the pair plays a part.
+    /// Random drives between pillars and walls, up to the first contact: to the bit before it, and within the engine's
+    /// own tolerance at it, where its state of the pair plays a part.
     #[test]
     fn free_motion_has_the_engine_s_bits_and_contact_comes_at_the_same_step() {
         let solid = [

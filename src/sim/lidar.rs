@@ -24,7 +24,7 @@ pub struct WallSweep {
 }
 
 impl WallSweep {
-    /// A caster of `lidar`'s beams among `visible` outlines.
+    /// Creates a caster of `lidar`'s beams among the `visible` outlines.
     pub fn new(visible: &[Outline], lidar: &Lidar) -> Self {
         let mut walls = Vec::new();
         let mut circles = Vec::new();
@@ -60,8 +60,8 @@ impl WallSweep {
         }
     }
 
-    /// Ranges (m) seen from `sensor` (world frame) without noise, first beam first; infinity where nothing
-    /// lies within the longest range.
+    /// Computes the ranges (m) from `sensor` (world frame) without noise, first beam first; infinity where nothing lies
+    /// within the longest range.
     pub fn cast(&self, sensor: Pose, ranges: &mut Vec<f64>) {
         ranges.clear();
         ranges.resize(self.beams.len(), f64::INFINITY);
@@ -121,7 +121,7 @@ impl WallSweep {
         }
     }
 
-    /// Whether the wall from `a` along `along` lies wholly beyond the longest range.
+    /// Returns whether the wall from `a` along `along` lies wholly beyond the longest range.
     fn is_beyond(&self, a: Point, along: Point, numerator: f64) -> bool {
         let reach = self.max_range * self.max_range;
         let length_squared = along.norm_squared();
@@ -190,7 +190,7 @@ mod tests {
         }
     }
 
-    /// The range of one beam by trying every side of every outline.
+    /// Returns the range of one beam by trying every side of every outline.
     fn brute_force(visible: &[Outline], origin: Point, direction: Point, max_range: f64) -> f64 {
         let nearest = visible
             .iter()
@@ -236,7 +236,7 @@ mod tests {
                 let angle = sensor.heading + lidar.min_angle + lidar.increment() * i as f64;
                 let direction = Point::new(math::cos(angle), math::sin(angle));
                 let expected = brute_force(&visible, sensor.position(), direction, lidar.max_range);
-                // A beam that grazes a corner may be told either way by rounding.
+                // A beam that grazes a corner may be assigned to either side by rounding.
                 if (range - expected).abs() > 1e-6 && range != expected {
                     grazing += 1;
                 }

@@ -1,8 +1,7 @@
-//! The truth in motion: one integer clock, a dynamic body driven through a noise model, sensors at their own
-//! rates.
+//! The simulated truth: one integer clock, a dynamic body driven through a noise model, sensors at their own rates.
 //!
-//! A reading nobody asks for is not computed: its pose is kept, and its noise stream is indexed by the reading's number,
-//! so laziness changes no bit.
+//! A reading that is not requested is not computed: its pose is kept, and its noise stream is indexed by the reading's
+//! number, so laziness changes no bit.
 
 mod camera;
 mod compass;
@@ -33,12 +32,12 @@ use odometry::Odometer;
 /// Physics runs at 100 Hz: a robot at 1 m/s moves 1 cm a step, and finer steps cost without benefit.
 pub const PHYSICS_PERIOD: Tick = Tick(30);
 
-/// What a simulator is made from.
+/// The parts of which a simulator is made.
 #[derive(Debug)]
 pub struct Scene<'a> {
-    /// What the lidar sees: outlines at its height, world frame.
+    /// The outlines that the lidar sees: those at its height, world frame.
     pub visible: &'a [Outline],
-    /// What the body can touch: outlines over its height, world frame.
+    /// The outlines that the body can touch: those over its height, world frame.
     pub solid: &'a [Outline],
     /// The robot.
     pub robot: &'a Robot,
@@ -46,11 +45,11 @@ pub struct Scene<'a> {
     pub lidar: Lidar,
     /// Its logical camera among the world's tags, where the study uses one.
     pub camera: Option<CameraScene<'a>>,
-    /// Its compass and that one's errors, where the study uses one.
+    /// Its compass and the compass's errors, where the study uses one.
     pub compass: Option<(robot::Compass, CompassNoise)>,
-    /// Where it begins, in the world's frame.
+    /// Its first pose, in the world's frame.
     pub start: Pose,
-    /// When the physics engine is asked.
+    /// When the physics engine runs.
     pub stepping: Stepping,
     /// Errors of the drive.
     pub drive_noise: DriveNoise,
@@ -78,7 +77,7 @@ pub struct Simulator {
     touching: bool,
 }
 
-/// Where the last scan was taken; its ranges are computed when someone asks.
+/// The pose of the last scan; its ranges are computed on request.
 #[derive(Debug, Clone, Copy)]
 struct PendingScan {
     number: u64,
@@ -87,7 +86,7 @@ struct PendingScan {
     odometry: Odometry,
 }
 
-/// When and where a sensor last read; what it read is computed when someone asks.
+/// Time and pose of a sensor's last reading; the reading is computed on request.
 #[derive(Debug, Clone, Copy)]
 struct Shutter {
     period: Tick,
@@ -97,13 +96,14 @@ struct Shutter {
 }
 
 impl Shutter {
-    /// First due at tick 0, at `pose`. A rate that the clock cannot serve is taken for physics' own, as with the lidar.
+    /// Creates a shutter first due at tick 0, at `pose`. A rate that the clock cannot serve is replaced by that of
+    /// physics, as with the lidar.
     fn new(rate_hz: f64, pose: Pose) -> Self {
         let period = Tick::period_of(rate_hz).unwrap_or(PHYSICS_PERIOD);
         Self { period, number: 0, stamp: Tick(0), pose }
     }
 
-    /// Reads where it is due; physics serves it at the first step after.
+    /// Takes a reading if one is due; physics serves it at the first step after.
     fn note(&mut self, now: Tick, pose: Pose) {
         if now.0 >= (self.number + 1) * self.period.0 {
             (self.number, self.stamp, self.pose) = (now.0 / self.period.0, now, pose);
@@ -112,7 +112,7 @@ impl Shutter {
 }
 
 impl Simulator {
-    /// A robot at rest at the start of `scene`, its first scan taken at tick 0.
+    /// Creates a robot at rest at the start of `scene`, its first scan taken at tick 0.
     ///
     /// The lidar's rate must divide the clock, which resolution has checked; otherwise the rate is rounded
     /// to the next slower one that physics can serve.
@@ -148,7 +148,7 @@ impl Simulator {
         }
     }
 
-    /// The clock.
+    /// Returns the clock's time.
     pub fn now(&self) -> Tick {
         self.now
     }
@@ -172,7 +172,7 @@ impl Simulator {
             let touching = self.engine.is_touching();
             self.contacts += u32::from(touching && !self.touching);
             self.touching = touching;
-            // A rate that physics cannot hit exactly is served at the first step after it is due.
+            // A rate that physics cannot meet exactly is served at the first step after the reading is due.
             let due = (self.scan.number + 1) * self.scan_period.0;
             if self.now.0 >= due {
                 self.scan = PendingScan {
@@ -191,22 +191,22 @@ impl Simulator {
         }
     }
 
-    /// When the next scan is due.
+    /// Returns the time at which the next scan is due.
     pub fn next_scan(&self) -> Tick {
         Tick((self.scan.number + 1) * self.scan_period.0)
     }
 
-    /// Odometry at the time of the latest scan: what a mapper pairs the scan with.
+    /// Returns the odometry at the time of the latest scan, with which a mapper pairs the scan.
     pub fn odometry_at_scan(&self) -> Odometry {
         self.scan.odometry
     }
 
-    /// Odometry now.
+    /// Returns the odometry now.
     pub fn odometry(&self) -> Odometry {
         self.odometer.reading(self.now)
     }
 
-    /// The latest scan, written over `scan` to spare an allocation.
+    /// Reads the latest scan into `scan`, to spare an allocation.
     pub fn read_scan(&mut self, scan: &mut Scan) {
         let sensor = self.scan.pose.compose(self.lidar.mount);
         scan.stamp = self.scan.stamp;
@@ -214,7 +214,7 @@ impl Simulator {
         lidar::add_noise(&self.lidar, self.lidar_noise.at(self.scan.number), &mut scan.ranges);
     }
 
-    /// An empty scan message of this lidar's shape, for [`Simulator::read_scan`].
+    /// Returns an empty scan message of this lidar's shape, for [`Simulator::read_scan`].
     pub fn blank_scan(&self) -> Scan {
         Scan {
             stamp: Tick(0),
@@ -227,41 +227,41 @@ impl Simulator {
         }
     }
 
-    /// What the logical camera sees in its latest image, written over `detections`; when that was, or `None` where the
-    /// scene has no camera.
+    /// Reads the tags in the logical camera's latest image into `detections` and returns the time of that image, or
+    /// `None` where the scene has no camera.
     pub fn read_detections(&mut self, detections: &mut Vec<Detection>) -> Option<Tick> {
         let (camera, shutter) = self.camera.as_mut()?;
         camera.look(shutter.pose, detections);
         Some(shutter.stamp)
     }
 
-    /// The latest reading of the compass, or `None` where the scene has none.
+    /// Returns the latest reading of the compass, or `None` where the scene has none.
     pub fn read_compass(&mut self) -> Option<CompassReading> {
         let (compass, shutter) = self.compass.as_mut()?;
         Some(compass.reading(shutter.stamp, shutter.pose.heading))
     }
 
-    /// The true pose in the world's frame. For measuring and drawing; no mind may see it.
+    /// Returns the true pose in the world's frame. For measuring and drawing; no mind may see it.
     pub fn true_pose(&self) -> Pose {
         self.engine.pose()
     }
 
-    /// True distance travelled so far (m).
+    /// Returns the true distance travelled so far (m).
     pub fn travelled(&self) -> f64 {
         self.travelled
     }
 
-    /// Sum of the absolute turns so far (rad).
+    /// Returns the sum of the absolute turns so far (rad).
     pub fn turned(&self) -> f64 {
         self.turned
     }
 
-    /// How many times the body came into contact with something.
+    /// Returns how many times the body came into contact with something.
     pub fn contacts(&self) -> u32 {
         self.contacts
     }
 
-    /// Whether the body touches something now.
+    /// Returns whether the body touches something now.
     pub fn is_touching(&self) -> bool {
         self.touching
     }

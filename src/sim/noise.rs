@@ -1,4 +1,4 @@
-//! How errors are distributed.
+//! Distributions of errors.
 
 use crate::rng::Stream;
 
@@ -12,7 +12,7 @@ pub enum Distribution {
 }
 
 impl Distribution {
-    /// Two independent errors of size one, the next ones of `stream`.
+    /// Draws two independent errors of size one, the next ones of `stream`.
     pub(super) fn pair(self, stream: &mut Stream) -> (f64, f64) {
         match self {
             Self::Gaussian => stream.normal_pair(),

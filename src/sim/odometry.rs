@@ -1,4 +1,4 @@
-//! Wheel odometry: integrates how the body moved, with an error that grows with the way.
+//! Wheel odometry: integrates how the body moved, with an error that grows with the distance travelled.
 
 use crate::geometry::Pose;
 use crate::math;
@@ -34,7 +34,7 @@ impl Odometer {
         Self { noise, stream, pose: Pose::default(), twist: Twist::STOP }
     }
 
-    /// Takes in that the body `moved` (in its own frame) during the physics step that ends `now`.
+    /// Integrates that the body `moved` (in its own frame) during the physics step that ends `now`.
     pub(super) fn integrate(&mut self, moved: Pose, now: Tick) {
         let dt = super::PHYSICS_PERIOD.seconds().get();
         self.twist = Twist { linear: moved.x / dt, angular: moved.heading / dt };
@@ -49,6 +49,7 @@ impl Odometer {
         self.pose = self.pose.compose(measured);
     }
 
+    /// Returns the odometry reading stamped `stamp`.
     pub(super) fn reading(&self, stamp: Tick) -> Odometry {
         Odometry { stamp, pose: self.pose, twist: self.twist }
     }
