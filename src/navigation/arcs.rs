@@ -1,5 +1,11 @@
 //! The operator: samples arcs ahead and drives the best one (prior-map facts, section 4, "Operator").
 //!
+//! 1. Every direction's arc is sampled up to the first point closer to an obstacle than the robot's radius.
+//! 2. Its score is the mean of free distance, safety, conformance to the wish and continuity; the best direction is
+//!    sought.
+//! 3. The direction moves towards the best one by a bounded step.
+//! 4. The free distance along it caps the speed; without any, the operator looks only for room for a while.
+//!
 //! A direction runs from -1 (turn right in place) over 0 (straight on) to 1 (turn left in place); between them
 //! the robot follows an arc of radius cot(|direction| π/2) m, at most half a circle.
 
@@ -10,14 +16,14 @@ use crate::robot::Twist;
 use crate::units::{Seconds, Tick};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// What the navigator asks of the operator.
+/// The navigator's request to the operator.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Steering {
     /// Desired direction, -1 to 1, positive to the left.
     pub direction: f64,
     /// Desired share of the highest speed, 0 to 1.
     pub speed: f64,
-    /// Distance (m) to the place steered for: free way beyond it is worth nothing.
+    /// Distance (m) to the place steered for: free distance beyond it is worth nothing.
     pub distance: f64,
 }
 
@@ -40,13 +46,13 @@ const STEPS: i32 = 100;
 const AGILITY: i32 = 20;
 /// Arcs are sampled every 5 cm ...
 const SPACING: f64 = 0.05;
-/// ... and more free way than this (m) is not worth more, ...
+/// ... and free distance beyond this (m) is not worth more, ...
 const ENOUGH: f64 = 2.0;
 /// ... nor is less than this asked for, however near the place steered for is.
 const AT_LEAST: f64 = 0.5;
 /// How much less an obstacle matters per sample further away.
 const DECAY: f64 = 0.97;
-/// With less free way than this (m) there is no going.
+/// With less free distance than this (m) the robot does not move on.
 const TOO_SHORT: f64 = 0.3;
 /// How steeply closeness to obstacles becomes cost (1/m), as the released cost map's `cost_scaling_factor`.
 const COST_SCALING: f64 = 10.0;
@@ -64,17 +70,17 @@ pub struct Operator {
     recovering_until: Option<Tick>,
 }
 
-/// How an arc fares.
+/// The outlook of an arc.
 #[derive(Debug, Clone, Copy)]
 struct Prospect {
-    /// Free way (m), at most the sampled length of the arc.
+    /// Free distance (m), at most the sampled length of the arc.
     free: f64,
     is_wholly_free: bool,
     safety: f64,
 }
 
 impl Operator {
-    /// An operator at rest, heading straight on.
+    /// Creates an operator at rest, heading straight on.
     pub fn new(rule: OperatorRule) -> Self {
         let arcs: Vec<_> = (-STEPS..=STEPS).map(arc).collect();
         let longest = arcs.iter().map(Vec::len).max().unwrap_or(0);
@@ -82,16 +88,18 @@ impl Operator {
         Self { rule, arcs, decay, current: 0, recovering_until: None }
     }
 
-    /// The velocity for the next control cycle, with the robot at `pose` (odometry frame).
+    /// Computes the velocity for the next control cycle, with the robot at `pose` (odometry frame), in the steps of the
+    /// module documentation.
     ///
     /// The best of all directions is sought, and the direction moves towards it as fast as it may.
     pub fn drive(&mut self, wish: Steering, pose: Pose, map: &LocalMap, now: Tick) -> Twist {
         let recovering = self.recovering_until.is_some_and(|until| now < until);
         let here = map.clearance(pose.position()).unwrap_or(0.0);
-        // Already too close, the robot may go on as long as it comes no closer.
+        // 1. Already too close, the robot may go on as long as it comes no closer.
         let needed = self.rule.robot_radius.min(here - SPACING / 2.0).max(SPACING);
         let asked = wish.distance.clamp(AT_LEAST, ENOUGH);
         let look = |direction: i32| self.prospect(direction, pose, needed, asked, map);
+        // 2. The best of all directions.
         let mut best = (f64::NEG_INFINITY, self.current);
         for direction in -STEPS..=STEPS {
             let score = self.score(direction, wish, look(direction), asked, recovering);
@@ -99,9 +107,11 @@ impl Operator {
                 best = (score, direction);
             }
         }
+        // 3. A bounded step towards it.
         let direction = best.1.clamp(self.current - AGILITY, self.current + AGILITY);
         let prospect = look(direction);
         self.current = direction;
+        // 4. The speed that the free distance allows.
         let cap = self.speed_cap(prospect);
         if cap < 0.1 && direction.abs() < STEPS && !recovering {
             self.recovering_until = Some(now + Tick::at_or_after(RECOVERY));
@@ -141,7 +151,7 @@ impl Operator {
         Prospect { free, is_wholly_free: true, safety: 1.0 - danger }
     }
 
-    /// The plain mean of free way, safety, conformance and continuity; of the first two when recovering.
+    /// Returns the plain mean of free distance, safety, conformance and continuity; of the first two when recovering.
     fn score(
         &self,
         direction: i32,
@@ -151,10 +161,10 @@ impl Operator {
         recovering: bool,
     ) -> f64 {
         if recovering {
-            // Room to go, which turning in place does not gain.
+            // Room to move, which turning in place does not gain.
             return f64::midpoint(prospect.free / ENOUGH, prospect.safety);
         }
-        // A tight turn that is wholly free can always be gone on with.
+        // A tight turn that is wholly free can always be continued.
         let way = if prospect.is_wholly_free { 1.0 } else { (prospect.free / asked).min(1.0) };
         let signed_square = |x: f64| x * x.abs();
         let share = f64::from(direction) / f64::from(STEPS);
@@ -197,7 +207,7 @@ impl Operator {
     }
 }
 
-/// Radius (m) of the arc in `direction`, which is neither straight nor in place.
+/// Returns the radius (m) of the arc in `direction`, which is neither straight nor in place.
 fn radius(direction: i32) -> f64 {
     let share = f64::from(direction.abs()) / f64::from(STEPS);
     1.0 / math::tan(share * FRAC_PI_2)

@@ -6,8 +6,8 @@ use crate::grid::{Cell, GridFrame};
 #[derive(Debug, Clone, PartialEq)]
 pub struct CostGrid {
     frame: GridFrame,
-    /// Row by row from the lower left, with one row or column of unknown cells around, so that what spreads over cells
-    /// need not ask where the grid ends.
+    /// Row by row from the lower left, with one row or column of unknown cells around, so that spreading over cells
+    /// needs no test of the grid's border.
     costs: Vec<u8>,
 }
 
@@ -15,17 +15,17 @@ pub struct CostGrid {
 pub(super) const UNKNOWN: u8 = 255;
 
 impl CostGrid {
-    /// A grid of unknown cells.
+    /// Returns a grid of unknown cells.
     pub fn unknown(frame: GridFrame) -> Self {
         Self { frame, costs: vec![UNKNOWN; padded_len(&frame)] }
     }
 
-    /// Where the grid lies.
+    /// Returns the frame of the grid.
     pub fn frame(&self) -> &GridFrame {
         &self.frame
     }
 
-    /// The cost (0 to 100) of `cell`, or `None` where it is unknown or outside.
+    /// Returns the cost (0 to 100) of `cell`, or `None` where it is unknown or outside.
     pub fn cost(&self, cell: Cell) -> Option<u8> {
         let index = padded_index(&self.frame, cell)?;
         Some(self.costs[index]).filter(|&cost| cost != UNKNOWN)
@@ -38,12 +38,13 @@ impl CostGrid {
         }
     }
 
-    /// Whether `cell` is known and cheaper than `lethal`.
+    /// Returns whether `cell` is known and cheaper than `lethal`.
     pub fn is_below(&self, cell: Cell, lethal: u8) -> bool {
         self.cost(cell).is_some_and(|cost| cost < lethal)
     }
 
-    /// Takes `length` costs of a row of `other` from the cell `from` on, to `to` and the cells after it. Both rows hold them.
+    /// Copies `length` costs of a row of `other` from the cell `from` on, to `to` and the cells after it. Both rows
+    /// hold them.
     pub(super) fn copy_row(&mut self, to: Cell, other: &Self, from: Cell, length: usize) {
         let (to, from) = (padded_index(&self.frame, to), padded_index(&other.frame, from));
         if let (Some(to), Some(from)) = (to, from) {
@@ -51,28 +52,28 @@ impl CostGrid {
         }
     }
 
-    /// All costs, padded.
+    /// Returns all costs, padded.
     pub(super) fn padded(&self) -> &[u8] {
         &self.costs
     }
 
-    /// All costs, padded.
+    /// Returns all costs, padded.
     pub(super) fn padded_mut(&mut self) -> &mut [u8] {
         &mut self.costs
     }
 }
 
-/// Number of cells with the padding.
+/// Returns the number of cells with the padding.
 pub(super) fn padded_len(frame: &GridFrame) -> usize {
     padded_width(frame) * (usize::try_from(frame.height).unwrap_or(0) + 2)
 }
 
-/// Cells of a row with the padding.
+/// Returns the number of cells of a row with the padding.
 pub(super) fn padded_width(frame: &GridFrame) -> usize {
     usize::try_from(frame.width).unwrap_or(0) + 2
 }
 
-/// Index of `cell` among the padded ones, or `None` outside of the grid.
+/// Returns the index of `cell` among the padded ones, or `None` outside of the grid.
 pub(super) fn padded_index(frame: &GridFrame, cell: Cell) -> Option<usize> {
     #[expect(clippy::cast_sign_loss, reason = "contained cells are not negative")]
     frame.contains(cell).then(|| (cell.y as usize + 1) * padded_width(frame) + cell.x as usize + 1)

@@ -6,8 +6,8 @@ use crate::grid::{Cell, line};
 /// The navigator heads for the cell this many steps down the wave.
 const LOOK_AHEAD: usize = 9;
 
-/// The cell to head for: the furthest of the next 9 down the wave that there is a straight way to, so that the robot does not
-/// cut the corners of doors (the released program takes the ninth whatever lies between).
+/// Returns the cell to head for: the furthest of the next 9 down the wave to which a straight line is free, so that the
+/// robot does not cut the corners of doors (the released program takes the ninth whatever lies between).
 pub fn look_ahead(wave: &mut Wavefront, here: Cell) -> Cell {
     let path: Vec<Cell> = std::iter::successors(Some(here), |&cell| wave.downhill(cell))
         .take(LOOK_AHEAD + 1)
@@ -17,8 +17,9 @@ pub fn look_ahead(wave: &mut Wavefront, here: Cell) -> Cell {
     furthest.copied().unwrap_or(here)
 }
 
-/// The cell itself where the wave came, or else a reached one on the smallest square ring around it, at most 6 cells out, that is
-/// nearest: a robot that stands too close to an obstacle first heads out. `None` where the wave came to none of them.
+/// Returns the cell itself where the wave came, or else the nearest reached one on the smallest square ring around it,
+/// at most 6 cells out: a robot that stands too close to an obstacle first heads out. `None` where the wave came to
+/// none of them.
 pub fn nearest_reached(wave: &mut Wavefront, cell: Cell) -> Option<Cell> {
     if wave.reaches(cell) {
         return Some(cell);
@@ -40,7 +41,7 @@ mod tests {
     use crate::navigation::CostGrid;
     use std::sync::Arc;
 
-    /// The wave from `goal` over 20 x 20 free cells with a wall at x = 10 that is open from y = 15 on.
+    /// Returns the wave from `goal` over 20 x 20 free cells with a wall at x = 10 that is open from y = 15 on.
     fn wave(goal: Cell) -> Wavefront {
         let frame = GridFrame { resolution: 0.1, origin: Point::ZERO, width: 20, height: 20 };
         let mut costs = CostGrid::unknown(frame);

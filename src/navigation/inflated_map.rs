@@ -1,4 +1,4 @@
-//! An inflated map that is kept current: after a change only what the change can reach is inflated anew.
+//! An inflated map that is kept current: after a change only the cells that it can reach are inflated anew.
 
 use super::CostGrid;
 use super::inflation::inflate_in_steps;
@@ -7,11 +7,11 @@ use std::sync::Arc;
 
 /// A map and its inflation. [`InflatedMap::update`] gives what [`super::inflate`] gives, sooner.
 ///
-/// That only the neighbourhood of a change has to be looked at follows from how a brushfire spreads. Let all fires be out after
-/// K steps. A difference between two maps spreads by one cell (in steps of 4 neighbours) with every step, so that costs differ at
-/// most K cells from it. Inflating a cut-out does wrong within K cells of its edge; a fire that comes in there after the K-th
-/// step stays within `radius` of where it began, so it gets 2 `radius` further at most. Where fires take longer than K
-/// steps, which winding free cells can do, everything is inflated anew.
+/// Why only the neighbourhood of a change needs inflating follows from how a brushfire spreads. Let all fires be out
+/// after K steps. A difference between two maps spreads by one cell (in steps of 4 neighbours) with every step, so that
+/// costs differ at most K cells from it. Inflating a cut-out errs within K cells of its edge; a fire that enters there
+/// after the K-th step stays within `radius` of where it began, so it gets 2 `radius` further at most. Where fires take
+/// longer than K steps, which winding free cells can cause, everything is inflated anew.
 #[derive(Debug, Clone)]
 pub struct InflatedMap {
     radius: u32,
@@ -30,12 +30,12 @@ struct Known {
 const STEPS: u32 = 16;
 
 impl InflatedMap {
-    /// Nothing yet, to be inflated over `radius` cells.
+    /// Creates an empty state, to be inflated over `radius` cells.
     pub fn new(radius: u32) -> Self {
         Self { radius, known: None }
     }
 
-    /// `map` inflated.
+    /// Inflates `map` and returns its costs.
     pub fn update(&mut self, map: OccupancyGrid) -> Arc<CostGrid> {
         let patched = self.known.take().and_then(|known| self.patched(known, &map));
         let known = patched.unwrap_or_else(|| {
@@ -47,7 +47,7 @@ impl InflatedMap {
         costs
     }
 
-    /// The costs of `map` from those of the map before it; `None` where that does not pay or cannot be.
+    /// Computes the costs of `map` from those of the map before it; `None` where that does not pay or is impossible.
     fn patched(&self, known: Known, map: &OccupancyGrid) -> Option<(Arc<CostGrid>, bool)> {
         if !known.calm || known.map.frame() != map.frame() {
             return None;
@@ -111,7 +111,7 @@ impl Rectangle {
     }
 }
 
-/// The smallest rectangle that holds all cells in which `a` and `b`, of one frame, differ.
+/// Returns the smallest rectangle that holds all cells in which `a` and `b`, of one frame, differ.
 fn difference(a: &OccupancyGrid, b: &OccupancyGrid) -> Option<Rectangle> {
     let width = usize::try_from(a.frame().width).unwrap_or(0).max(1);
     let mut found: Option<Rectangle> = None;
@@ -203,7 +203,7 @@ mod tests {
     fn fires_that_wind_for_long_are_not_patched() {
         let frame = GridFrame { resolution: 0.1, origin: Point::ZERO, width: 200, height: 200 };
         let mut map = OccupancyGrid::filled(frame, Occupancy::Unknown);
-        // A winding way of free cells, one obstacle at its end.
+        // A winding lane of free cells, one obstacle at its end.
         for row in 0..6 {
             for x in 0..7 {
                 map.set(Cell::new(100 + x, 100 + 2 * row), Occupancy::Free);

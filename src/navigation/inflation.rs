@@ -4,14 +4,14 @@ use super::CostGrid;
 use super::costmap::padded_width;
 use crate::grid::{Occupancy, OccupancyGrid};
 
-/// The map with costs that fall from 100 at obstacles to 0 at `radius` cells: trunc(100 (1 - d / radius)), d
-/// the distance in cells to the obstacle that reached the cell first over free cells. Unknown cells are
-/// neither inflated nor crossed (prior-map facts, section 4, "Inflation").
+/// Inflates the map: costs fall from 100 at obstacles to 0 at `radius` cells, trunc(100 (1 - d / radius)), d the
+/// distance in cells to the obstacle that reached the cell first over free cells. Unknown cells are neither inflated
+/// nor crossed (prior-map facts, section 4, "Inflation").
 pub fn inflate(map: &OccupancyGrid, radius: u32) -> CostGrid {
     inflate_in_steps(map, radius).0
 }
 
-/// [`inflate`], and how many steps the fires took until all were out.
+/// Does [`inflate`], and returns how many steps the fires took until all were out.
 pub(super) fn inflate_in_steps(map: &OccupancyGrid, radius: u32) -> (CostGrid, u32) {
     let frame = *map.frame();
     let mut grid = CostGrid::unknown(frame);
@@ -46,7 +46,7 @@ pub(super) fn inflate_in_steps(map: &OccupancyGrid, radius: u32) -> (CostGrid, u
                 Fire { index: index - width, dx, dy: dy - 1 },
             ];
             for fire in neighbours {
-                // Beyond the table lies what is out of reach.
+                // Beyond the table all is out of reach.
                 let Some(&cost) = table.get(fire.squared()) else { continue };
                 // Unknown cells hold more than any cost.
                 if costs[fire.index] < cost {
@@ -61,7 +61,7 @@ pub(super) fn inflate_in_steps(map: &OccupancyGrid, radius: u32) -> (CostGrid, u
     (grid, steps)
 }
 
-/// A cell that a fire has come to: its padded index, and how many cells it is from where the fire began.
+/// A cell that a fire has reached: its padded index, and its offset in cells from where the fire began.
 #[derive(Debug, Clone, Copy)]
 struct Fire {
     index: usize,
@@ -92,7 +92,7 @@ mod tests {
     use crate::grid::{Cell, GridFrame};
     use proptest::prelude::*;
 
-    /// The brushfire as its description reads, cell by cell.
+    /// Computes the brushfire as its description reads, cell by cell.
     fn by_the_book(map: &OccupancyGrid, radius: u32) -> Vec<Option<u8>> {
         let mut costs = CostGrid::unknown(*map.frame());
         let mut front = Vec::new();

@@ -1,4 +1,4 @@
-//! What the robot saw lately close around it: a rolling window for the operator.
+//! The recent surroundings of the robot: a rolling window for the operator.
 
 use crate::geometry::{Point, Pose};
 use crate::grid::{Cell, GridFrame};
@@ -55,7 +55,7 @@ pub struct LocalMap {
     shifted: Vec<Seen>,
     /// Squared distance in cells to the nearest obstacle, capped.
     clearance: Vec<u16>,
-    /// Rows of the disc an obstacle is felt in: how far up, and the squared distances from left to right.
+    /// Rows of the disc in which an obstacle is felt: how far up, and the squared distances from left to right.
     disc: Vec<(i32, Vec<u16>)>,
     /// Distance (m) of a squared distance in cells, as far as the disc reaches.
     metres: Vec<f64>,
@@ -64,7 +64,7 @@ pub struct LocalMap {
 }
 
 impl LocalMap {
-    /// A window around the origin in which nothing was seen.
+    /// Creates a window around the origin in which nothing was seen.
     pub fn new(rule: LocalRule) -> Self {
         let count = |metres: f64| {
             #[expect(clippy::cast_possible_truncation, reason = "a window has few cells")]
@@ -124,7 +124,7 @@ impl LocalMap {
         self.measure_clearance();
     }
 
-    /// Distance (m) from `point` (odometry frame) to the nearest obstacle, at most the inflation radius;
+    /// Returns the distance (m) from `point` (odometry frame) to the nearest obstacle, at most the inflation radius;
     /// `None` where nothing was seen yet or outside of the window.
     pub fn clearance(&self, point: Point) -> Option<f64> {
         let index = self.index(self.lattice(point))?;
@@ -164,7 +164,7 @@ impl LocalMap {
         }
     }
 
-    /// What lies between the cells `from` and `to` is free, as far as it is within the window: the walk of
+    /// Marks the cells between `from` and `to` as free, as far as they are within the window: the walk of
     /// [`crate::grid::line`], over indices.
     fn clear_way(&mut self, from: Cell, to: Cell) {
         let (dx, dy) = ((to.x - from.x).abs(), -(to.y - from.y).abs());

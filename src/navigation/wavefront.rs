@@ -1,4 +1,4 @@
-//! Distances to a goal over the inflated map, and the way down.
+//! Distances to a goal over the inflated map, and the descent to it.
 
 use super::CostGrid;
 use super::costmap::{padded_index, padded_len, padded_width};
@@ -15,14 +15,15 @@ const DIAGONAL: u32 = 14;
 /// Weighted distances from cells to one goal (Dijkstra 1959, with the buckets of Dial 1969), 8-connected over known cells
 /// below a lethal cost: a step costs its length x (1 + weight x cost / 100).
 ///
-/// The wave spreads only as far as someone asks. What it tells does not depend on that: a distance is told once it is final.
+/// The wave spreads only as far as requested. Its answers do not depend on that: a distance is returned once it is
+/// final.
 #[derive(Debug, Clone)]
 pub struct Wavefront {
     costs: Arc<CostGrid>,
     lethal: u8,
     /// Padded as the costs are; final where below `level`.
     distances: Vec<u32>,
-    /// What a step into a cell of each cost takes, straight and diagonally.
+    /// Cost of a step into a cell of each cost, straight and diagonally.
     straight: Vec<u32>,
     diagonal: Vec<u32>,
     /// Cells (padded indices) by their distance at the time, modulo the number of buckets.
@@ -37,13 +38,13 @@ pub struct Wavefront {
 }
 
 impl Wavefront {
-    /// The wave from `goal` over `costs`, crossing cells cheaper than `lethal`. Where the goal itself is not
+    /// Starts the wave from `goal` over `costs`, crossing cells cheaper than `lethal`. Where the goal itself is not
     /// crossable, all crossable cells in the 11-cell box around it are seeds instead.
     pub fn from_goal(costs: Arc<CostGrid>, goal: Cell, lethal: u8, weight: f64) -> Self {
         Self::instead_of(None, costs, goal, lethal, weight)
     }
 
-    /// The same, in the memory of an earlier wave where that has the size.
+    /// Does the same in the memory of an earlier wave where that has the right size.
     pub fn instead_of(
         earlier: Option<Self>,
         costs: Arc<CostGrid>,
@@ -100,7 +101,7 @@ impl Wavefront {
         }
     }
 
-    /// The padded index of `cell` where it can be crossed.
+    /// Returns the padded index of `cell` where it can be crossed.
     fn crossable(&self, cell: Cell) -> Option<usize> {
         let index = padded_index(self.costs.frame(), cell)?;
         (self.costs.padded()[index] < self.lethal).then_some(index)
@@ -139,7 +140,7 @@ impl Wavefront {
                 self.step(next, costs[next], true);
             }
         }
-        // Every step is longer than nothing, so that nothing was added to the bucket; its memory is used again.
+        // Every step has a positive length, so nothing was added to the bucket; its memory is used again.
         self.buckets[slot] = current;
         self.level += 1;
     }
@@ -155,7 +156,7 @@ impl Wavefront {
         }
     }
 
-    /// Distance of `cell` in wave units; [`UNREACHED`] where the wave does not come.
+    /// Returns the distance of `cell` in wave units; [`UNREACHED`] where the wave does not come.
     pub fn distance(&mut self, cell: Cell) -> u32 {
         let Some(index) = self.crossable(cell) else { return UNREACHED };
         while self.distances[index] >= self.level && self.waiting > 0 {
@@ -164,7 +165,7 @@ impl Wavefront {
         self.distances[index]
     }
 
-    /// Weighted distance of `cell` from the goal (m), or `None` where the wave does not come.
+    /// Returns the weighted distance of `cell` from the goal (m), or `None` where the wave does not come.
     pub fn metres(&mut self, cell: Cell) -> Option<f64> {
         match self.distance(cell) {
             UNREACHED => None,
@@ -172,7 +173,7 @@ impl Wavefront {
         }
     }
 
-    /// Whether the wave comes to `cell`.
+    /// Returns whether the wave comes to `cell`.
     pub fn reaches(&mut self, cell: Cell) -> bool {
         let Some(index) = self.crossable(cell) else { return false };
         while self.distances[index] == UNREACHED && self.waiting > 0 {
@@ -181,7 +182,7 @@ impl Wavefront {
         self.distances[index] != UNREACHED
     }
 
-    /// The nearest neighbour downhill of `cell`, or `None` at the goal and where the wave does not come.
+    /// Returns the nearest neighbour downhill of `cell`, or `None` at the goal and where the wave does not come.
     pub fn downhill(&mut self, cell: Cell) -> Option<Cell> {
         let here = self.distance(cell);
         // Whatever is nearer than a final distance is final too.
@@ -193,7 +194,7 @@ impl Wavefront {
             .map(|(_, neighbour)| neighbour)
     }
 
-    /// The way from `start` down to the goal, both included; empty where the wave does not come.
+    /// Returns the path from `start` down to the goal, both included; empty where the wave does not come.
     pub fn path(&mut self, start: Cell) -> Vec<Cell> {
         if !self.reaches(start) {
             return Vec::new();
@@ -255,7 +256,7 @@ mod tests {
         assert_eq!(wave.metres(Cell::new(15, 2)), None);
     }
 
-    /// Distances by relaxing every step until nothing changes (Bellman 1958).
+    /// Computes distances by relaxing every step until nothing changes (Bellman 1958).
     fn by_relaxation(costs: &CostGrid, goal: Cell, lethal: u8) -> Vec<u32> {
         let frame = *costs.frame();
         let mut distances = crate::grid::Grid::filled(frame, UNREACHED);
@@ -287,7 +288,7 @@ mod tests {
     }
 
     proptest! {
-        /// Whatever is asked in whatever order: distances are the least, and every reached cell has a way down.
+        /// In whatever order cells are queried: distances are the least, and every reached cell has a path down.
         #[test]
         fn distances_are_the_least_and_paths_end_at_the_goal(
             walls in prop::collection::vec((0..15, 0..15, 0_u8..100), 0..80),

@@ -1,4 +1,4 @@
-//! The walls on either side: where the middle of the corridor is.
+//! The walls on either side, and the middle of the corridor between them.
 
 use super::outlook::Outlook;
 use crate::geometry::Point;
@@ -12,8 +12,8 @@ const BEHIND: f64 = 0.5;
 const POINTS: u32 = 6;
 const LENGTH: f64 = 0.4;
 
-/// Distances (m) of the nearest walls along the leg to the left and to the right, where there are such. Doors and side
-/// corridors are gaps in them, with other walls farther away, so they pull nothing aside.
+/// Returns the distances (m) of the nearest walls along the leg to the left and to the right, where there are such.
+/// Doors and side corridors are gaps in them, with other walls farther away, so they pull nothing aside.
 pub(super) fn sides(outlook: &Outlook, ahead: f64) -> [Option<f64>; 2] {
     [1.0, -1.0].map(|sign| side(outlook, ahead, sign))
 }

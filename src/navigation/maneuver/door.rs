@@ -9,9 +9,9 @@ use crate::geometry::Point;
 pub(super) struct Gap {
     /// Distance of the wall's near face along the leg (m).
     pub(super) distance: f64,
-    /// Where the gap's middle is across the leg (m, to the left).
+    /// Offset of the gap's middle across the leg (m, to the left).
     pub(super) middle: f64,
-    /// How wide it is (m).
+    /// Width of the gap (m).
     pub(super) width: f64,
 }
 
@@ -25,8 +25,8 @@ const FLAT: f64 = 0.07;
 /// Walls count this far to either side of a door's edges (m).
 const BESIDE: f64 = 0.8;
 
-/// The door through which the leg leads: in the nearest wall across the leg that has a gap of a door's width whose middle is
-/// within reach of `expected` (m, to the left), and not beyond `limit` (m).
+/// Finds the door through which the leg leads: in the nearest wall across the leg that has a gap of a door's width
+/// whose middle is within reach of `expected` (m, to the left), and not beyond `limit` (m).
 pub(super) fn find(outlook: &Outlook, rule: &PilotRule, expected: f64, limit: f64) -> Option<Gap> {
     let reach = rule.door_reach_m + rule.door_widest_m / 2.0 + BESIDE;
     let start = outlook.sensor.x;
@@ -52,14 +52,14 @@ pub(super) fn find(outlook: &Outlook, rule: &PilotRule, expected: f64, limit: f6
     })
 }
 
-/// What a beam says of the plane at some distance: where it meets it, and whether it goes on.
+/// A beam at the plane at some distance: where it meets it, and whether it goes on.
 #[derive(Clone, Copy)]
 struct Crossing {
     at: f64,
     open: bool,
 }
 
-/// The gap in the wall at `distance` whose middle is nearest to `expected`.
+/// Finds the gap in the wall at `distance` whose middle is nearest to `expected`.
 fn gap_at(outlook: &Outlook, rule: &PilotRule, expected: f64, distance: f64) -> Option<Gap> {
     let sensor = outlook.sensor;
     let mut best: Option<Gap> = None;
@@ -93,7 +93,7 @@ fn gap_at(outlook: &Outlook, rule: &PilotRule, expected: f64, distance: f64) -> 
     best
 }
 
-/// Where the beam from `sensor` to `end` meets the plane at `distance`; none where it leads away from it.
+/// Returns where the beam from `sensor` to `end` meets the plane at `distance`; `None` where it leads away from it.
 fn cross(sensor: Point, end: Point, distance: f64) -> Option<Crossing> {
     let along = end.x - sensor.x;
     if along <= 1e-6 {

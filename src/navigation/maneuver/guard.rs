@@ -1,11 +1,11 @@
-//! The last word on a command: nothing that the laser sees may come too near by the robot's own motion.
+//! The last check of a command: nothing that the laser sees may come too near by the robot's own motion.
 
 use super::rule::PilotRule;
 use crate::geometry::{Bounds, Point};
 use crate::math;
 use crate::robot::Twist;
 
-/// Instants at which the motion is looked at.
+/// Instants at which the motion is tested.
 const LOOKS: u32 = 3;
 /// Shares of the linear speed that are tried, fastest first.
 const SHARES: [f64; 4] = [1.0, 0.6, 0.3, 0.0];
@@ -19,8 +19,8 @@ pub(super) struct Guard {
 }
 
 impl Guard {
-    /// The command, slowed down as far as it must be so that no point of `points` (base frame) comes nearer to `body` than the
-    /// clearance; at last a turn in place, and no motion where even that brings one near.
+    /// Limits the command: slows it down as far as needed so that no point of `points` (base frame) comes nearer to
+    /// `body` than the clearance; at last a turn in place, and no motion where even that brings one near.
     pub(super) fn limit(
         &mut self,
         rule: &PilotRule,
@@ -32,7 +32,7 @@ impl Guard {
             return command;
         }
         let reach = rule.clearance_m + command.linear.abs() * rule.guard_s;
-        // What the corners sweep in a turn is no farther away than the corners.
+        // The area that the corners sweep in a turn is no farther away than the corners.
         let swing = body.min.norm().max(body.max.norm()) + reach;
         self.near.clear();
         for point in points.filter(|point| point.norm_squared() <= swing * swing) {
@@ -51,7 +51,7 @@ impl Guard {
         (1..=LOOKS).all(|look| {
             let time = rule.guard_s * f64::from(look) / f64::from(LOOKS);
             let (sin, cos) = math::sin_cos(command.angular * time);
-            // The chord of the arc, which is as long as the way for the small turns of a look.
+            // The chord of the arc, which is as long as the arc for the small turns of one interval.
             let (half_sin, half_cos) = math::sin_cos(command.angular * time / 2.0);
             let way = command.linear * time;
             let moved = Point::new(way * half_cos, way * half_sin);
@@ -65,7 +65,7 @@ impl Guard {
     }
 }
 
-/// Distance (m) of `point` from the box `body`, the larger of its two parts; negative inside.
+/// Returns the distance (m) of `point` from the box `body`, the larger of its two parts; negative inside.
 fn gap(body: Bounds, point: Point) -> f64 {
     let beyond = |value: f64, low: f64, high: f64| (low - value).max(value - high);
     beyond(point.x, body.min.x, body.max.x).max(beyond(point.y, body.min.y, body.max.y))

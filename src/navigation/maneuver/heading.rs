@@ -15,7 +15,7 @@ pub(super) struct Heading {
 impl Heading {
     pub(super) const UNKNOWN: Self = Self { estimate: None };
 
-    /// The heading (rad); east before the first reading.
+    /// Returns the heading (rad); east before the first reading.
     pub(super) fn get(self) -> f64 {
         self.estimate.unwrap_or(0.0)
     }
@@ -30,7 +30,7 @@ impl Heading {
         walls: Option<f64>,
     ) -> f64 {
         let Some(before) = self.estimate else {
-            // A first reading off by less than 45 degrees tells the quarter; the walls tell the rest.
+            // A first reading off by less than 45 degrees gives the quarter; the walls give the rest.
             let corrected = walls.map_or(compass, |walls| compass + off_square(walls + compass));
             self.estimate = Some(math::wrap_angle(corrected));
             return 0.0;
@@ -47,7 +47,8 @@ impl Heading {
     }
 }
 
-/// By how much (rad) a wall at this `angle` must be turned to be square with the building: within an eighth of a turn.
+/// Returns by how much (rad) a wall at this `angle` must be turned to be square with the building: within an eighth of
+/// a turn.
 fn off_square(angle: f64) -> f64 {
     (angle / FRAC_PI_2).round() * FRAC_PI_2 - angle
 }
@@ -57,18 +58,18 @@ const CHORD: usize = 8;
 /// Longest chord that weighs more than shorter ones (m), and the longest that is one wall.
 const WEIGHTY: f64 = 0.5;
 const LONGEST: f64 = 2.0;
-/// Largest distance of a chord's middle beam from it (m): else there is a corner between.
+/// Largest distance of a chord's middle beam from it (m): beyond it there is a corner between.
 const STRAIGHT: f64 = 0.02;
-/// Least coherence of the chords' directions, 0 to 1: below it what is seen is not square.
+/// Least coherence of the chords' directions, 0 to 1: below it the surroundings are not square.
 const COHERENT: f64 = 0.6;
 /// Fewest chords.
 const FEWEST: u32 = 12;
 
-/// Direction (rad, modulo a quarter turn, within an eighth of it) in which the walls run in the frame of `outlook`; none
-/// where too little is seen that is straight and square.
+/// Returns the direction (rad, modulo a quarter turn, within an eighth of it) in which the walls run in the frame of
+/// `outlook`; `None` where too little is straight and square.
 ///
-/// The mean over chords of the scan, of their directions taken four times, weighed by the square of their lengths: noise of
-/// the ranges turns short chords more.
+/// It is the mean over chords of the scan, of their directions taken four times, weighed by the square of their
+/// lengths: noise of the ranges turns short chords more.
 pub(super) fn walls(outlook: &Outlook) -> Option<f64> {
     let (mut sum, mut weights, mut count) = (Point::ZERO, 0.0, 0);
     for i in 0..outlook.ends.len().saturating_sub(CHORD) {
@@ -94,7 +95,7 @@ pub(super) fn walls(outlook: &Outlook) -> Option<f64> {
     (count >= FEWEST && sum.norm() >= COHERENT * weights).then(|| math::atan2(sum.y, sum.x) / 4.0)
 }
 
-/// A unit vector of twice the angle.
+/// Returns the unit vector of twice the angle.
 fn square(direction: Point) -> Point {
     Point::new(
         direction.x * direction.x - direction.y * direction.y,

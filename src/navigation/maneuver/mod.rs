@@ -3,8 +3,8 @@
 //!
 //! A [`Leg`] leads from one vertex of the building to the next. Its maneuver begins with a turn in place towards the
 //! exit, whatever the turn (the paper's maneuvers turn a quarter at most; U-turns and turns into corridors are a named
-//! deviation), and ends when the mission says that the next vertex is reached. The scan is seen in the *leg's frame*:
-//! the origin at the base, x along the leg's direction.
+//! deviation), and ends when the mission reports that the next vertex is reached. The scan is taken in the *leg's
+//! frame*: the origin at the base, x along the leg's direction.
 //!
 //! A mind: it sees messages, never the simulator or the world.
 
@@ -37,12 +37,12 @@ pub enum Opening {
     Door,
 }
 
-/// The way from one vertex to the next.
+/// The connection from one vertex to the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Leg {
     /// Absolute heading of the exit (rad, counter-clockwise from east): one of the building's four directions.
     pub direction: f64,
-    /// What it leads through.
+    /// Whether it leads through a corridor or a door.
     pub opening: Opening,
     /// How fast it may be driven.
     pub limits: SpeedLimits,

@@ -10,7 +10,7 @@ pub(super) struct Outlook {
     /// Unit directions of the beams in the base frame, and the scan they belong to.
     directions: Vec<Point>,
     shape: Option<(f64, f64, f64)>,
-    /// Where the sensor is (m).
+    /// Position of the sensor (m).
     pub(super) sensor: Point,
     /// Where the beams end (m): at the longest range where they hit nothing.
     pub(super) ends: Vec<Point>,
@@ -19,7 +19,7 @@ pub(super) struct Outlook {
 }
 
 impl Outlook {
-    /// Takes in a scan, in the base frame.
+    /// Converts a scan to points in the base frame.
     pub(super) fn read(&mut self, scan: &Scan) {
         let shape = (scan.min_angle + scan.mount.heading, scan.increment, scan.max_range);
         if self.shape != Some(shape) || self.directions.len() != scan.ranges.len() {
@@ -41,7 +41,7 @@ impl Outlook {
         }
     }
 
-    /// Takes in `other`, turned by `angle` rad about the base.
+    /// Takes the points of `other`, turned by `angle` rad about the base.
     pub(super) fn turn(&mut self, other: &Self, angle: f64) {
         let (sin, cos) = math::sin_cos(angle);
         let turned = |p: Point| Point::new(cos * p.x - sin * p.y, sin * p.x + cos * p.y);
@@ -51,7 +51,7 @@ impl Outlook {
         self.hits.clone_from(&other.hits);
     }
 
-    /// The points that were hit.
+    /// Returns the points that were hit.
     pub(super) fn points(&self) -> impl Iterator<Item = Point> + '_ {
         self.ends.iter().zip(&self.hits).filter_map(|(end, hit)| hit.then_some(*end))
     }

@@ -1,4 +1,24 @@
 //! The pilot: drives one leg after the other.
+//!
+//! [`Pilot::control`] runs once a control period:
+//! 1. Convert the scan to points in the base frame.
+//! 2. Carry on by the last command: heading, target, hub and door, corrected by compass, walls and camera.
+//! 3. Wish: the command if nothing stood in the way, by the phase.
+//! 4. Guard: limit the wish to what brings no obstacle too near.
+//! 5. Back off, or give up, where the guard has held the robot up for long.
+//!
+//! The wish goes by the phase:
+//! 1. Looking: turn once around, then stand.
+//! 2. Settling: drive up to the vertex reached, then turn.
+//! 3. Turning: turn in place towards the exit, then drive.
+//! 4. Backing: drive backwards, then turn anew.
+//! 5. Driving: turn the scan into the leg's frame, and follow the corridor's middle, the tag, or the door's axis.
+//!
+//! A door by the laser is passed in stages:
+//! 1. Track the gap; without one, drive on towards the vertex behind it at half speed.
+//! 2. Drive up to the stage before the door on its axis.
+//! 3. Align in place; where the axis is aside, back off for another attempt.
+//! 4. Pass: correct the offset up to the commitment distance, then keep the heading, until the body is through.
 
 use super::door::{self, Gap};
 use super::guard::Guard;
@@ -11,11 +31,11 @@ use crate::math;
 use crate::robot::Twist;
 use std::f64::consts::TAU;
 
-/// A vertex this little aside (m) is driven up to.
+/// A vertex less far aside than this (m) is driven up to.
 const HUB_ASIDE: f64 = 0.4;
 /// A tracked door seen within this distance (m) of where it should be is the same one.
 const SAME_DOOR: f64 = 0.25;
-/// After this many scans that show it elsewhere or not at all it is looked for anew.
+/// After this many scans that show it elsewhere or not at all the door is sought anew.
 const LOST: u32 = 10;
 /// Widths of corridors (m) whose middle is between both walls.
 const CORRIDOR: std::ops::RangeInclusive<f64> = 1.0..=4.0;
@@ -25,14 +45,14 @@ const AT_STAGE: f64 = 0.05;
 /// Speed per distance (1/s) on the way up to a vertex or a door's stage.
 const APPROACH: f64 = 2.0;
 
-/// What the pilot is doing.
+/// The phases of a leg.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Phase {
     /// Nothing: no leg, or given up.
     Standing,
     /// Turning once around, this much left (rad).
     Looking { left: f64 },
-    /// Driving up to the vertex it was told to have reached, at this point of the base frame (m).
+    /// Driving up to the vertex reported as reached, at this point of the base frame (m).
     Settling { hub: Point },
     /// Turning in place towards the exit.
     Turning,
@@ -48,7 +68,7 @@ enum Phase {
     Backing { left: f64 },
 }
 
-/// Drives legs closed-loop. One pilot a robot; it keeps its heading from leg to leg.
+/// Drives legs closed-loop. There is one pilot per robot; it keeps its heading from leg to leg.
 #[derive(Debug, Clone)]
 pub struct Pilot {
     rule: PilotRule,
@@ -71,7 +91,7 @@ pub struct Pilot {
 }
 
 impl Pilot {
-    /// A pilot for a body with this footprint (base frame), standing still.
+    /// Creates a pilot for a body with this footprint (base frame), standing still.
     pub fn new(rule: PilotRule, footprint: &Outline) -> Self {
         Self {
             rule,
@@ -92,8 +112,8 @@ impl Pilot {
         }
     }
 
-    /// Begins a leg at the vertex that the last leg led to. Where that one is still ahead, the robot drives up to it before it
-    /// turns.
+    /// Begins a leg at the vertex to which the last leg led. Where that one is still ahead, the robot drives up to it
+    /// before it turns.
     pub fn begin(&mut self, leg: Leg) {
         let rule = &self.rule;
         let turns =
@@ -110,45 +130,50 @@ impl Pilot {
         self.backed_off = 0;
     }
 
-    /// Begins to turn once around in place, so that the camera sees all that is around.
+    /// Begins to turn once around in place, so that the camera sees everything around.
     pub fn look_around(&mut self) {
         self.phase = Phase::Looking { left: TAU };
         self.leg = None;
     }
 
-    /// Whether it turns in place: what is seen ahead is not what the leg leads to.
+    /// Returns whether it turns in place: what is seen ahead is then not where the leg leads.
     pub fn is_turning_in_place(&self) -> bool {
         matches!(self.phase, Phase::Looking { .. } | Phase::Turning | Phase::Aligning)
     }
 
-    /// Whether it stands still with nothing to do: not begun, having looked around, or having given the leg up.
+    /// Returns whether it stands still with nothing to do: not begun, having looked around, or having given the leg up.
     pub fn is_standing(&self) -> bool {
         self.phase == Phase::Standing
     }
 
-    /// How often it backed off on this leg.
+    /// Returns how often it backed off on this leg.
     pub fn backed_off(&self) -> u32 {
         self.backed_off
     }
 
-    /// The heading as it takes it to be (rad).
+    /// Returns the estimated heading (rad).
     pub fn heading(&self) -> f64 {
         self.heading.get()
     }
 
-    /// The command for the next control period.
+    /// Computes the command for the next control period.
     pub fn control(&mut self, sense: &Sense<'_>) -> Twist {
         let period = CONTROL_PERIOD.seconds().get();
+        // 1. The scan in the base frame.
         self.seen.read(sense.scan);
+        // 2. What the last command did, and what is sensed.
         self.carry_on(sense, period);
+        // 3. What the pilot would do if nothing stood in the way.
         let wish = self.wish(period);
+        // 4. What the guard lets through.
         let given = self.guard.limit(&self.rule, self.body, self.seen.points(), wish);
+        // 5. Held up for long?
         self.notice_hold_up(wish, given, period);
         self.command = given;
         given
     }
 
-    /// Takes in what the last command did and what is sensed.
+    /// Updates the state by the last command and by what is sensed.
     fn carry_on(&mut self, sense: &Sense<'_>, period: f64) {
         let turned = self.command.angular * period;
         let moved = Pose::new(self.command.linear * period, 0.0, turned);
@@ -172,8 +197,9 @@ impl Pilot {
         }
     }
 
-    /// What it would do if nothing stood in the way.
+    /// Computes the command if nothing stood in the way.
     fn wish(&mut self, period: f64) -> Twist {
+        // 1. Looking around.
         if let Phase::Looking { left } = self.phase {
             if left <= 0.0 {
                 self.phase = Phase::Standing;
@@ -184,6 +210,7 @@ impl Pilot {
         }
         let Some(leg) = self.leg else { return Twist::STOP };
         let off = math::wrap_angle(self.heading.get() - leg.direction);
+        // 2. Settling at the vertex.
         if let Phase::Settling { hub } = self.phase {
             if hub.x > self.rule.settled_m {
                 let linear = (APPROACH * hub.x).max(self.rule.creep_m_s);
@@ -191,12 +218,14 @@ impl Pilot {
             }
             self.phase = Phase::Turning;
         }
+        // 3. Turning towards the exit.
         if self.phase == Phase::Turning {
             if off.abs() > self.rule.turn_tolerance_rad {
                 return self.turn(-off, leg.limits);
             }
             self.phase = Phase::Driving;
         }
+        // 4. Backing off.
         if let Phase::Backing { left } = &mut self.phase {
             if *left > 0.0 {
                 *left -= self.rule.back_off_m_s * period;
@@ -205,6 +234,7 @@ impl Pilot {
             self.phase = Phase::Turning;
             return Twist::STOP;
         }
+        // 5. Driving, in the leg's frame.
         self.ahead.turn(&self.seen, off);
         let target = self.target.map(|target| {
             let (sin, cos) = math::sin_cos(off);
@@ -226,7 +256,7 @@ impl Pilot {
         }
     }
 
-    /// Where the middle of the corridor is across the leg (m, to the left).
+    /// Returns the offset of the corridor's middle across the leg (m, to the left).
     fn middle_of_corridor(&mut self, target: Option<Point>) -> f64 {
         let fallback = target.map_or(0.0, |target| target.y);
         match corridor::sides(&self.ahead, self.rule.corridor_ahead_m) {
@@ -250,17 +280,19 @@ impl Pilot {
         self.steer(math::wrap_angle(wanted - off), limits)
     }
 
-    /// Up to a door, aligned with it, and through it.
+    /// Drives up to a door, aligns with it, and passes through it.
     fn through_door(&mut self, limits: SpeedLimits, off: f64, target: Option<Point>) -> Twist {
+        // 1. The gap.
         self.track_door(target);
         let Some(gap) = self.gap else {
-            // Nothing that looks like a door yet: on towards the vertex behind it, slowly.
+            // Nothing resembles a door yet: on towards the vertex behind it, slowly.
             let half = SpeedLimits { linear_m_s: limits.linear_m_s / 2.0, ..limits };
             return self.follow(half, off, target.map_or(0.0, |target| target.y), target);
         };
         let rule = self.rule;
         let aligned = gap.middle.abs() <= rule.door_offset_m && off.abs() <= rule.door_heading_rad;
         let to_stage = gap.distance - rule.door_stage_m;
+        // 2. Up to the stage.
         if self.phase == Phase::Driving {
             if to_stage > 0.0 {
                 // Straight for the stage where the axis is still aside, else along the axis.
@@ -276,6 +308,7 @@ impl Pilot {
             }
             self.phase = if aligned { Phase::Passing } else { Phase::Aligning };
         }
+        // 3. Align.
         if self.phase == Phase::Aligning {
             if off.abs() > rule.turn_tolerance_rad.min(rule.door_heading_rad) {
                 return self.turn(-off, limits);
@@ -286,6 +319,7 @@ impl Pilot {
             }
             self.phase = Phase::Passing;
         }
+        // 4. Pass.
         if gap.distance < self.body.min.x - rule.door_depth_m {
             self.phase = Phase::Leaving;
         }
@@ -298,7 +332,7 @@ impl Pilot {
         self.steer(math::wrap_angle(wanted - off), limits)
     }
 
-    /// Finds the door in the scan, or carries on the one that was found.
+    /// Finds the door in the scan, or carries on the one found before.
     fn track_door(&mut self, target: Option<Point>) {
         let commit = self.rule.door_commit_m;
         if self.phase == Phase::Passing && self.gap.is_some_and(|gap| gap.distance < commit) {
@@ -368,7 +402,7 @@ impl Pilot {
         };
     }
 
-    /// Forgets what was seen of the way.
+    /// Forgets what was seen on the leg.
     fn forget(&mut self) {
         (self.gap, self.lost, self.half_width, self.held_up_s) = (None, 0, None, 0.0);
     }

@@ -1,4 +1,4 @@
-//! What the pilot goes by: speeds, gains and distances. The paper gives none of them.
+//! The parameters of the pilot: speeds, gains and distances. The paper gives none of them.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

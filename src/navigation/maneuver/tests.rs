@@ -1,5 +1,5 @@
-//! What the parts of the pilot make of scans of known walls. Closed-loop driving is tested in `tests/maneuvers.rs`, where
-//! there is a simulator.
+//! The parts of the pilot on scans of known walls. Closed-loop driving is tested in `tests/maneuvers.rs`, where there
+//! is a simulator.
 
 use super::corridor::sides;
 use super::door::{Gap, find};
@@ -16,7 +16,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 const MOUNT: Pose = Pose { x: 0.16, y: 0.0, heading: 0.0 };
 const BODY: Bounds = Bounds { min: Point::new(-0.254, -0.2485), max: Point::new(0.254, 0.2485) };
 
-/// A scan of 181 beams from the base at `base`, with 5 mm of noise.
+/// Returns a scan of 181 beams from the base at `base`, with 5 mm of noise.
 fn scan(visible: &[Outline], base: Pose) -> Scan {
     let sensor = base.compose(MOUNT);
     let mut noise = Seeds::new(3, vec![]).stream("test");
@@ -48,20 +48,20 @@ fn outlook(visible: &[Outline], base: Pose) -> Outlook {
     outlook
 }
 
-/// What is seen from `base`, in the frame of a leg to the east.
+/// Returns the view from `base`, in the frame of a leg to the east.
 fn ahead(visible: &[Outline], base: Pose) -> Outlook {
     let mut ahead = Outlook::default();
     ahead.turn(&outlook(visible, base), base.heading);
     ahead
 }
 
-/// A box between two corners.
+/// Returns a box between two corners.
 fn block(x: [f64; 2], y: [f64; 2]) -> Outline {
     let center = Point::new(f64::midpoint(x[0], x[1]), f64::midpoint(y[0], y[1]));
     Outline::rectangle(center, x[1] - x[0], y[1] - y[0], 0.0)
 }
 
-/// Walls 0.15 m thick across the east at x = 3, with gaps between `gaps`, in a room 8 m wide.
+/// Returns walls 0.15 m thick across the east at x = 3, with gaps between `gaps`, in a room 8 m wide.
 fn wall_with(gaps: &[[f64; 2]]) -> Vec<Outline> {
     let mut walls = vec![block([-2.0, 8.0], [4.0, 4.2]), block([-2.0, 8.0], [-4.2, -4.0])];
     walls.push(block([7.0, 7.2], [-4.0, 4.0]));
@@ -147,7 +147,7 @@ fn the_middle_of_a_corridor_is_between_its_walls_whatever_opens_in_them() {
     }
     let one_wall = ahead(&corridor[..2], Pose::default());
     assert_eq!(sides(&one_wall, 3.0)[1], None);
-    // What stands across is no wall on either side.
+    // A wall across the leg is no wall on either side.
     let across = ahead(&[block([3.0, 3.2], [-4.0, 4.0])], Pose::default());
     assert_eq!(sides(&across, 6.0), [None, None]);
 }
@@ -202,7 +202,7 @@ fn the_guard_brakes_before_contact_and_lets_a_door_be_passed() {
     // Jambs 0.05 m beside the body; then one of them 0.02 m.
     assert_eq!(limited(&[(0.4, 0.30), (0.4, -0.30)], forward), forward);
     assert_eq!(limited(&[(0.4, 0.27)], forward).linear, 0.6 * 0.3);
-    // What is beside the body already does not come nearer.
+    // A point already beside the body does not come nearer.
     assert_eq!(limited(&[(0.1, 0.27)], forward), forward);
     // Turning left sweeps the front right corner; backing off is free.
     let left = Twist { linear: 0.0, angular: 0.9 };
