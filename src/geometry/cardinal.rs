@@ -37,7 +37,7 @@ impl Cardinal {
     /// All four, counter-clockwise from east.
     pub const ALL: [Self; 4] = [Self::East, Self::North, Self::West, Self::South];
 
-    /// Heading counter-clockwise from east (rad), in (-π, π].
+    /// Returns the heading counter-clockwise from east (rad), in (-π, π].
     pub const fn heading(self) -> f64 {
         match self {
             Self::East => 0.0,
@@ -47,7 +47,7 @@ impl Cardinal {
         }
     }
 
-    /// The direction nearest to `heading` (rad, finite); of two equally near ones the counter-clockwise one.
+    /// Returns the direction nearest to `heading` (rad, finite); of two equally near ones the counter-clockwise one.
     pub fn from_heading(heading: f64) -> Self {
         let heading = math::wrap_angle(heading);
         if !(-3.0 * FRAC_PI_4..3.0 * FRAC_PI_4).contains(&heading) {
@@ -61,7 +61,7 @@ impl Cardinal {
         }
     }
 
-    /// The direction back.
+    /// Returns the opposite direction.
     #[must_use]
     pub const fn opposite(self) -> Self {
         match self {
@@ -72,7 +72,7 @@ impl Cardinal {
         }
     }
 
-    /// The line along which it runs.
+    /// Returns the line along which it runs.
     pub const fn axis(self) -> Axis {
         match self {
             Self::East | Self::West => Axis::EastWest,
@@ -80,7 +80,7 @@ impl Cardinal {
         }
     }
 
-    /// Its place in [`Cardinal::ALL`].
+    /// Returns its position in [`Cardinal::ALL`].
     pub const fn index(self) -> usize {
         self as usize
     }
@@ -101,7 +101,7 @@ impl Axis {
     /// Both.
     pub const ALL: [Self; 2] = [Self::EastWest, Self::NorthSouth];
 
-    /// The two directions along it.
+    /// Returns the two directions along it.
     pub const fn directions(self) -> [Cardinal; 2] {
         match self {
             Self::EastWest => [Cardinal::East, Cardinal::West],

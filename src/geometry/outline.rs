@@ -19,8 +19,8 @@ pub enum Outline {
 }
 
 impl Outline {
-    /// The four-cornered outline of a box of `length` (along its x) and `width` m, centred on `center`
-    /// and turned by `heading` rad.
+    /// Creates the four-cornered outline of a box of `length` (along its x) and `width` m, centred on `center` and
+    /// turned by `heading` rad.
     pub fn rectangle(center: Point, length: f64, width: f64, heading: f64) -> Self {
         let frame = super::Pose::new(center.x, center.y, heading);
         let (dx, dy) = (length / 2.0, width / 2.0);
@@ -31,7 +31,7 @@ impl Outline {
         )
     }
 
-    /// The sides of a polygon; none for a circle.
+    /// Returns the sides of a polygon; none for a circle.
     pub fn sides(&self) -> impl Iterator<Item = Segment> + '_ {
         let corners: &[Point] = match self {
             Self::Polygon(corners) => corners,
@@ -40,7 +40,7 @@ impl Outline {
         (0..corners.len()).map(|i| Segment::new(corners[i], corners[(i + 1) % corners.len()]))
     }
 
-    /// Whether `point` lies inside (even-odd rule); points on the border may be told either way.
+    /// Returns whether `point` lies inside (even-odd rule); points on the border may count as either.
     pub fn contains(&self, point: Point) -> bool {
         match self {
             Self::Circle { center, radius } => (point - *center).norm_squared() <= radius * radius,
@@ -58,7 +58,7 @@ impl Outline {
         }
     }
 
-    /// Distance (m) from `point` to the solid: zero inside.
+    /// Returns the distance (m) from `point` to the solid: zero inside.
     pub fn distance(&self, point: Point) -> f64 {
         match self {
             Self::Circle { center, radius } => (center.distance(point) - radius).max(0.0),
@@ -69,7 +69,7 @@ impl Outline {
         }
     }
 
-    /// The smallest axis-aligned box around the outline.
+    /// Returns the smallest axis-aligned box around the outline.
     pub fn bounds(&self) -> Bounds {
         match self {
             Self::Circle { center, radius } => Bounds {
@@ -93,13 +93,13 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The box around nothing.
+    /// The empty box.
     pub const EMPTY: Self = Self {
         min: Point::new(f64::INFINITY, f64::INFINITY),
         max: Point::new(f64::NEG_INFINITY, f64::NEG_INFINITY),
     };
 
-    /// The smallest box around this one and `point`.
+    /// Returns the smallest box around this one and `point`.
     #[must_use]
     pub fn including(self, point: Point) -> Self {
         Self {
@@ -108,41 +108,41 @@ impl Bounds {
         }
     }
 
-    /// The smallest box around this one and `other`.
+    /// Returns the smallest box around this one and `other`.
     #[must_use]
     pub fn union(self, other: Self) -> Self {
         self.including(other.min).including(other.max)
     }
 
-    /// This box grown by `margin` m on every side.
+    /// Returns this box grown by `margin` m on every side.
     #[must_use]
     pub fn grown(self, margin: f64) -> Self {
         let by = Point::new(margin, margin);
         Self { min: self.min - by, max: self.max + by }
     }
 
-    /// Width (m) along x.
+    /// Returns the width (m) along x.
     pub fn width(self) -> f64 {
         self.max.x - self.min.x
     }
 
-    /// Height (m) along y.
+    /// Returns the height (m) along y.
     pub fn height(self) -> f64 {
         self.max.y - self.min.y
     }
 
-    /// Whether it is around nothing.
+    /// Returns whether the box is empty.
     pub fn is_empty(self) -> bool {
         self.min.x > self.max.x || self.min.y > self.max.y
     }
 
-    /// Whether `point` lies inside or on the border.
+    /// Returns whether `point` lies inside or on the border.
     pub fn contains(self, point: Point) -> bool {
         (self.min.x..=self.max.x).contains(&point.x) && (self.min.y..=self.max.y).contains(&point.y)
     }
 }
 
-/// The convex hull of `points`, counter-clockwise, without collinear corners (Andrew 1979, monotone chain).
+/// Returns the convex hull of `points`, counter-clockwise, without collinear corners (Andrew 1979, monotone chain).
 ///
 /// Fewer than three corners mean that the points are all on one line.
 pub fn convex_hull(points: &[Point]) -> Vec<Point> {

@@ -20,7 +20,7 @@ impl Placement {
         rotation: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
     };
 
-    /// From SDF's six numbers (m, rad): R = Rz(yaw) Ry(pitch) Rx(roll).
+    /// Creates a placement from SDF's six numbers (m, rad): R = Rz(yaw) Ry(pitch) Rx(roll).
     pub fn from_xyz_rpy([x, y, z, roll, pitch, yaw]: [f64; 6]) -> Self {
         let (sr, cr) = math::sin_cos(roll);
         let (sp, cp) = math::sin_cos(pitch);
@@ -35,7 +35,7 @@ impl Placement {
         }
     }
 
-    /// Takes a point from the placed frame to the outer one.
+    /// Transforms a point from the placed frame to the outer one.
     pub fn apply(&self, point: [f64; 3]) -> [f64; 3] {
         let mut out = self.translation;
         for (value, row) in out.iter_mut().zip(&self.rotation) {
@@ -44,7 +44,7 @@ impl Placement {
         out
     }
 
-    /// The placement `inner`, given in this one's frame, in the outer frame.
+    /// Returns the placement `inner`, given in this one's frame, in the outer frame.
     #[must_use]
     pub fn compose(&self, inner: &Self) -> Self {
         let mut rotation = [[0.0; 3]; 3];
@@ -56,12 +56,12 @@ impl Placement {
         Self { translation: self.apply(inner.translation), rotation }
     }
 
-    /// Whether its z axis points straight up or straight down.
+    /// Returns whether its z axis points straight up or straight down.
     pub fn is_upright(&self) -> bool {
         self.rotation[2][2].abs() == 1.0
     }
 
-    /// Heading (rad) of the placed x axis seen from above.
+    /// Returns the heading (rad) of the placed x axis seen from above.
     pub fn yaw(&self) -> f64 {
         math::atan2(self.rotation[1][0], self.rotation[0][0])
     }

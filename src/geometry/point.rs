@@ -16,37 +16,37 @@ impl Point {
     /// The origin.
     pub const ZERO: Self = Self::new(0.0, 0.0);
 
-    /// The point (`x`, `y`), in metres.
+    /// Returns the point (`x`, `y`), in metres.
     pub const fn new(x: f64, y: f64) -> Self {
         Self { x, y }
     }
 
-    /// Scalar product.
+    /// Returns the scalar product.
     pub fn dot(self, other: Self) -> f64 {
         self.x * other.x + self.y * other.y
     }
 
-    /// z component of the vector product: positive where `other` lies counter-clockwise of `self`.
+    /// Returns the z component of the vector product: positive where `other` lies counter-clockwise of `self`.
     pub fn cross(self, other: Self) -> f64 {
         self.x * other.y - self.y * other.x
     }
 
-    /// Squared length (m²).
+    /// Returns the squared length (m²).
     pub fn norm_squared(self) -> f64 {
         self.dot(self)
     }
 
-    /// Length (m).
+    /// Returns the length (m).
     pub fn norm(self) -> f64 {
         self.norm_squared().sqrt()
     }
 
-    /// Distance to `other` (m).
+    /// Returns the distance to `other` (m).
     pub fn distance(self, other: Self) -> f64 {
         (self - other).norm()
     }
 
-    /// Whether both coordinates are finite.
+    /// Returns whether both coordinates are finite.
     pub fn is_finite(self) -> bool {
         self.x.is_finite() && self.y.is_finite()
     }

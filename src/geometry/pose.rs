@@ -26,37 +26,37 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// The pose at (`x`, `y`) m with `heading` rad, wrapped into (-π, π].
+    /// Returns the pose at (`x`, `y`) m with `heading` rad, wrapped into (-π, π].
     pub fn new(x: f64, y: f64, heading: f64) -> Self {
         Self { x, y, heading: math::wrap_angle(heading) }
     }
 
-    /// The position.
+    /// Returns the position.
     pub fn position(self) -> Point {
         Point::new(self.x, self.y)
     }
 
-    /// Takes `point` from this pose's frame to the frame the pose is given in.
+    /// Transforms `point` from this pose's frame to the frame in which the pose is given.
     pub fn transform(self, point: Point) -> Point {
         let (sin, cos) = math::sin_cos(self.heading);
         Point::new(self.x + cos * point.x - sin * point.y, self.y + sin * point.x + cos * point.y)
     }
 
-    /// Takes `point` from the outer frame into this pose's frame.
+    /// Transforms `point` from the outer frame into this pose's frame.
     pub fn inverse_transform(self, point: Point) -> Point {
         let (sin, cos) = math::sin_cos(self.heading);
         let (dx, dy) = (point.x - self.x, point.y - self.y);
         Point::new(cos * dx + sin * dy, cos * dy - sin * dx)
     }
 
-    /// The pose `other`, given in this pose's frame, in the outer frame.
+    /// Returns the pose `other`, given in this pose's frame, in the outer frame.
     #[must_use]
     pub fn compose(self, other: Self) -> Self {
         let position = self.transform(other.position());
         Self::new(position.x, position.y, self.heading + other.heading)
     }
 
-    /// The pose `other`, given in the outer frame, seen from this pose.
+    /// Returns the pose `other`, given in the outer frame, relative to this pose.
     #[must_use]
     pub fn relative(self, other: Self) -> Self {
         let position = self.inverse_transform(other.position());

@@ -2,7 +2,7 @@
 
 use super::Point;
 
-/// The straight piece from `a` to `b`.
+/// The straight line segment from `a` to `b`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Segment {
     /// First end (m).
@@ -12,17 +12,17 @@ pub struct Segment {
 }
 
 impl Segment {
-    /// The segment from `a` to `b`.
+    /// Returns the segment from `a` to `b`.
     pub const fn new(a: Point, b: Point) -> Self {
         Self { a, b }
     }
 
-    /// Length (m).
+    /// Returns the length (m).
     pub fn length(self) -> f64 {
         self.a.distance(self.b)
     }
 
-    /// Distance (m) from `point` to the nearest point of the segment.
+    /// Returns the distance (m) from `point` to the nearest point of the segment.
     pub fn distance(self, point: Point) -> f64 {
         let along = self.b - self.a;
         let length_squared = along.norm_squared();
@@ -33,7 +33,7 @@ impl Segment {
         (self.a + along * t).distance(point)
     }
 
-    /// Range (m) along the ray from `origin` in the unit `direction` to this segment, if it is hit.
+    /// Returns the range (m) along the ray from `origin` in the unit `direction` to this segment, if it is hit.
     ///
     /// Parallel rays miss, even where they run along the segment: its neighbours at the ends are hit instead.
     pub fn ray_range(self, origin: Point, direction: Point) -> Option<f64> {

@@ -5,7 +5,7 @@ use super::Cell;
 /// Bits of a word.
 const WORD: i32 = 64;
 
-/// Which way a run of cells goes.
+/// The axis along which a run of cells goes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Axis {
     /// Along x: cells of one row.
@@ -17,9 +17,9 @@ pub enum Axis {
 /// Cells of one row or column, side by side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Run {
-    /// Which way it goes.
+    /// The axis along which it goes.
     pub axis: Axis,
-    /// The row (along x) or column (along y) that it is part of.
+    /// The row (along x) or column (along y) of which it is part.
     pub line: i32,
     /// Its first cell along the axis.
     pub from: i32,
@@ -28,7 +28,7 @@ pub struct Run {
 }
 
 impl Run {
-    /// The cell `along` the axis.
+    /// Returns the cell `along` the axis.
     pub fn cell(&self, along: i32) -> Cell {
         match self.axis {
             Axis::X => Cell::new(along, self.line),
@@ -56,13 +56,13 @@ struct Lines {
 }
 
 impl CellSet {
-    /// The largest multiple of the word's size that is not above `coordinate`: where words begin.
+    /// Returns the largest multiple of the word's size that is not above `coordinate`: where words begin.
     pub fn word_start(coordinate: i32) -> i32 {
         coordinate.div_euclid(WORD) * WORD
     }
 
-    /// The set of cells from `low` to `high` (included, rounded outwards to whole words) whose members `word` tells: bit i of
-    /// `word(x, y)`, x a start of a word, is the cell (x + i, y).
+    /// Creates the set of cells from `low` to `high` (included, rounded outwards to whole words) whose members `word`
+    /// gives: bit i of `word(x, y)`, x the start of a word, is the cell (x + i, y).
     pub fn of_words(low: Cell, high: Cell, mut word: impl FnMut(i32, i32) -> u64) -> Self {
         let (x, y) = (Self::word_start(low.x), Self::word_start(low.y));
         let words = (Self::word_start(high.x) - x) / WORD + 1;
@@ -91,7 +91,7 @@ impl CellSet {
         Self { by_row, by_column }
     }
 
-    /// How many cells of `run` are members.
+    /// Counts the members among the cells of `run`.
     pub fn count(&self, run: Run) -> u32 {
         let mut count = 0;
         self.lines(run.axis).words_of(run, |_, bits| count += bits.count_ones());
@@ -128,7 +128,7 @@ impl Lines {
         index
     }
 
-    /// Tells the words of `run` that have members: where each begins, and its members.
+    /// Passes to `tell` the words of `run` that have members: where each begins, and its members.
     fn words_of(&self, run: Run, mut tell: impl FnMut(i32, u64)) {
         let line = run.line - self.first;
         let (from, to) =
@@ -174,7 +174,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     proptest! {
-        /// Along rows and along columns, runs tell the set's own members.
+        /// Along rows and along columns, runs hold the set's own members.
         #[test]
         fn runs_tell_members(
             cells in prop::collection::btree_set((-90..=90_i32, -70..=70_i32), 0..200),

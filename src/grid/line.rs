@@ -2,8 +2,8 @@
 
 use super::Cell;
 
-/// The cells of the line between the centres of `from` and `to`, both included, in order
-/// (Bresenham 1965, "Algorithm for computer control of a digital plotter").
+/// Returns the cells of the line between the centres of `from` and `to`, both included, in order (Bresenham 1965,
+/// "Algorithm for computer control of a digital plotter").
 pub fn line(from: Cell, to: Cell) -> impl Iterator<Item = Cell> {
     let (dx, dy) = ((to.x - from.x).abs(), -(to.y - from.y).abs());
     let (sx, sy) = ((to.x - from.x).signum(), (to.y - from.y).signum());

@@ -1,4 +1,4 @@
-//! Grid maps of the plane: where a cell lies, and what it holds.
+//! Grid maps of the plane: the position of cells, and their values.
 //!
 //! Cells are squares of `resolution` m; cell (0, 0) has its lower left corner at `origin` and rows run along
 //! y, as in ROS's `nav_msgs/OccupancyGrid`.
@@ -24,30 +24,30 @@ pub struct Cell {
 }
 
 impl Cell {
-    /// The cell of column `x` and row `y`.
+    /// Returns the cell of column `x` and row `y`.
     pub const fn new(x: i32, y: i32) -> Self {
         Self { x, y }
     }
 
-    /// The four cells that share a side, in the order east, north, west, south.
+    /// Returns the four cells that share a side, in the order east, north, west, south.
     pub fn neighbours4(self) -> [Self; 4] {
         [(1, 0), (0, 1), (-1, 0), (0, -1)].map(|(dx, dy)| Self::new(self.x + dx, self.y + dy))
     }
 
-    /// The eight cells that share a side or a corner, counter-clockwise from east.
+    /// Returns the eight cells that share a side or a corner, counter-clockwise from east.
     pub fn neighbours8(self) -> [Self; 8] {
         [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)]
             .map(|(dx, dy)| Self::new(self.x + dx, self.y + dy))
     }
 
-    /// Squared distance in cells between the centres.
+    /// Returns the squared distance in cells between the centres.
     pub fn distance_squared(self, other: Self) -> i64 {
         let (dx, dy) = (i64::from(self.x - other.x), i64::from(self.y - other.y));
         dx * dx + dy * dy
     }
 }
 
-/// Where a grid lies and how fine it is.
+/// The position and resolution of a grid.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct GridFrame {
     /// Side of a cell (m), positive.
@@ -61,7 +61,7 @@ pub struct GridFrame {
 }
 
 impl GridFrame {
-    /// The frame of `resolution` m cells that covers `bounds`, its origin a whole number of cells from zero.
+    /// Creates the frame of `resolution` m cells that covers `bounds`, its origin a whole number of cells from zero.
     pub fn covering(bounds: Bounds, resolution: f64) -> Self {
         let low = |v: f64| (v / resolution).floor();
         let (x0, y0) = (low(bounds.min.x), low(bounds.min.y));
@@ -78,17 +78,17 @@ impl GridFrame {
         }
     }
 
-    /// Number of cells.
+    /// Returns the number of cells.
     pub fn len(&self) -> usize {
         usize::try_from(self.width).unwrap_or(0) * usize::try_from(self.height).unwrap_or(0)
     }
 
-    /// Whether the grid has no cell.
+    /// Returns whether the grid has no cell.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The cell that holds `point`; it may lie outside of the grid.
+    /// Returns the cell that holds `point`; it may lie outside of the grid.
     pub fn cell_at(&self, point: Point) -> Cell {
         let index = |v: f64| {
             let cells = v / self.resolution;
@@ -103,7 +103,7 @@ impl GridFrame {
         Cell::new(index(point.x - self.origin.x), index(point.y - self.origin.y))
     }
 
-    /// The centre of `cell` (m).
+    /// Returns the centre of `cell` (m).
     pub fn center(&self, cell: Cell) -> Point {
         Point::new(
             self.origin.x + (f64::from(cell.x) + 0.5) * self.resolution,
@@ -111,23 +111,23 @@ impl GridFrame {
         )
     }
 
-    /// Whether `cell` belongs to the grid.
+    /// Returns whether `cell` belongs to the grid.
     pub fn contains(&self, cell: Cell) -> bool {
         (0..self.width).contains(&cell.x) && (0..self.height).contains(&cell.y)
     }
 
-    /// Whether `cell` and all its eight neighbours belong to the grid.
+    /// Returns whether `cell` and all its eight neighbours belong to the grid.
     pub fn is_inside(&self, cell: Cell) -> bool {
         (1..self.width - 1).contains(&cell.x) && (1..self.height - 1).contains(&cell.y)
     }
 
-    /// Index of `cell` in row-major order from the lower left, or `None` outside.
+    /// Returns the index of `cell` in row-major order from the lower left, or `None` outside.
     pub fn index(&self, cell: Cell) -> Option<usize> {
         #[expect(clippy::cast_sign_loss, reason = "contained cells are not negative")]
         self.contains(cell).then(|| cell.y as usize * self.width as usize + cell.x as usize)
     }
 
-    /// The cell of row-major `index`.
+    /// Returns the cell of row-major `index`.
     pub fn cell_of(&self, index: usize) -> Cell {
         #[expect(
             clippy::cast_possible_truncation,
@@ -138,13 +138,13 @@ impl GridFrame {
         Cell::new((index % self.width as usize) as i32, (index / self.width as usize) as i32)
     }
 
-    /// All cells, row by row from the lower left.
+    /// Returns all cells, row by row from the lower left.
     pub fn cells(&self) -> impl Iterator<Item = Cell> + use<> {
         let width = self.width;
         (0..self.height).flat_map(move |y| (0..width).map(move |x| Cell::new(x, y)))
     }
 
-    /// The area covered (m).
+    /// Returns the area covered (m).
     pub fn bounds(&self) -> Bounds {
         Bounds {
             min: self.origin,
@@ -154,7 +154,7 @@ impl GridFrame {
     }
 }
 
-/// What a map says of a cell.
+/// The state of a cell in an occupancy map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Occupancy {
@@ -189,12 +189,12 @@ pub struct Grid<T> {
 pub type OccupancyGrid = Grid<Occupancy>;
 
 impl<T: Copy> Grid<T> {
-    /// A grid of `frame` filled with `value`.
+    /// Creates a grid of `frame` filled with `value`.
     pub fn filled(frame: GridFrame, value: T) -> Self {
         Self { cells: vec![value; frame.len()], frame }
     }
 
-    /// A grid of `frame` with `cells` in row-major order from the lower left.
+    /// Returns a grid of `frame` with `cells` in row-major order from the lower left.
     ///
     /// # Panics
     /// Where the number of cells does not fit the frame.
@@ -203,12 +203,12 @@ impl<T: Copy> Grid<T> {
         Self { frame, cells }
     }
 
-    /// Where the grid lies.
+    /// Returns the frame of the grid.
     pub fn frame(&self) -> &GridFrame {
         &self.frame
     }
 
-    /// The value at `cell`, or `None` outside.
+    /// Returns the value at `cell`, or `None` outside.
     pub fn get(&self, cell: Cell) -> Option<T> {
         self.frame.index(cell).map(|i| self.cells[i])
     }
@@ -220,24 +220,24 @@ impl<T: Copy> Grid<T> {
         }
     }
 
-    /// All values, row-major from the lower left.
+    /// Returns all values, row-major from the lower left.
     pub fn values(&self) -> &[T] {
         &self.cells
     }
 
-    /// All values, row-major from the lower left.
+    /// Returns all values, row-major from the lower left.
     pub fn values_mut(&mut self) -> &mut [T] {
         &mut self.cells
     }
 }
 
 impl OccupancyGrid {
-    /// What the map says of `cell`; unknown outside of the grid.
+    /// Returns the occupancy of `cell`; unknown outside of the grid.
     pub fn at(&self, cell: Cell) -> Occupancy {
         self.get(cell).unwrap_or(Occupancy::Unknown)
     }
 
-    /// How many cells hold `value`.
+    /// Returns how many cells hold `value`.
     pub fn count(&self, value: Occupancy) -> usize {
         self.cells.iter().filter(|&&c| c == value).count()
     }

@@ -1,10 +1,15 @@
-//! Which cells see each other: exactly, in integers.
+//! Mutual visibility of cells: exactly, in integers.
 //!
-//! A cell is visible where the segment between the two centres touches no blocking cell (cells are closed
-//! squares). Seen from the origin cell, the square of column c and row d ≥ 1 hides the slopes (column per
-//! row) from its one corner to the other: of cells in later rows all of
-//! [(c - ½) / (d ± ½), (c + ½) / (d ∓ ½)], of cells in its own row only what lies before the row's middle.
-//! Each quadrant is swept row by row, keeping the slopes hidden so far as a sorted list of intervals.
+//! A cell is visible where the segment between the two centres touches no blocking cell (cells are closed squares).
+//! From the origin cell, the square of column c and row d ≥ 1 hides the slopes (column per row) between its two outer
+//! corners: of cells in later rows all of [(c - ½) / (d ± ½), (c + ½) / (d ∓ ½)], of cells in its own row only what
+//! lies before the row's middle.
+//! Each quadrant is swept row by row, keeping the slopes hidden so far as a sorted list of intervals:
+//! 1. Blocking neighbours beside the origin touch the diagonals with a corner: two first intervals.
+//! 2. Stop where one interval hides the whole quadrant.
+//! 3. In each gap between the intervals, find the blocking squares of the row that reach into it.
+//! 4. Report the cells of the gap that the squares of their own row leave visible.
+//! 5. Add the squares' shadows to the intervals before the next row.
 
 use super::{Axis, Cell, CellSet, Run};
 use std::cmp::Ordering;
@@ -29,7 +34,7 @@ pub fn visible_runs(origin: Cell, radius: i32, blocking: &CellSet, mut see: impl
     }
 }
 
-/// One of four: its columns and rows count along the two axes, up or down.
+/// One of four quadrants: its columns and rows count along the two axes, up or down.
 #[derive(Debug, Clone, Copy)]
 struct Quadrant {
     origin: Cell,
@@ -40,7 +45,7 @@ struct Quadrant {
 }
 
 impl Quadrant {
-    /// Coordinates of the origin along the axis and across it.
+    /// Returns the coordinates of the origin along the axis and across it.
     fn start(&self) -> (i32, i32) {
         match self.axis {
             Axis::X => (self.origin.x, self.origin.y),
@@ -59,7 +64,7 @@ impl Quadrant {
         }
     }
 
-    /// Turns coordinates along the axis to columns, still ascending.
+    /// Converts coordinates along the axis to columns, still ascending.
     fn to_columns(self, found: &mut [i32]) {
         let (along, _) = self.start();
         for column in &mut *found {
@@ -84,12 +89,12 @@ impl Slope {
             .cmp(&(i64::from(other.over) * i64::from(self.under)))
     }
 
-    /// The last column of `row` that is not beyond the slope.
+    /// Returns the last column of `row` that is not beyond the slope.
     fn floor(self, row: i32) -> i32 {
         (self.over * row).div_euclid(self.under)
     }
 
-    /// The first column of `row` that is not before the slope.
+    /// Returns the first column of `row` that is not before the slope.
     fn ceil(self, row: i32) -> i32 {
         -(-self.over * row).div_euclid(self.under)
     }
@@ -113,10 +118,10 @@ impl Shadow {
     }
 }
 
-/// One quadrant: rows 1..=radius, columns -row < c <= row (each diagonal belongs to one quadrant). `blocks` finds
-/// the blocking columns of a row from one column to another in ascending order.
+/// Sweeps one quadrant: rows 1..=radius, columns -row < c <= row (each diagonal belongs to one quadrant). `blocks`
+/// finds the blocking columns of a row from one column to another in ascending order.
 ///
-/// Only what lies in the gaps between shadows is looked at: a square within a shadow adds none.
+/// Only the gaps between shadows are examined: a square within a shadow adds none.
 fn sweep(
     radius: i32,
     blocks: impl Fn(i32, i32, i32, &mut Vec<i32>),
@@ -124,7 +129,7 @@ fn sweep(
 ) {
     let mut earlier: Vec<Shadow> = Vec::new();
     let (mut found, mut whole) = (Vec::new(), Vec::new());
-    // The neighbours beside the origin touch the diagonals with a corner.
+    // 1. The neighbours beside the origin touch the diagonals with a corner.
     for side in [-1, 1] {
         blocks(0, side, side, &mut found);
         if !found.is_empty() {
@@ -133,12 +138,13 @@ fn sweep(
         }
     }
     for row in 1..=radius {
+        // 2. Nothing is visible any more.
         if earlier.first().is_some_and(Shadow::hides_the_quadrant) {
             return;
         }
         let half_width = row.min((radius * radius - row * row).max(0).isqrt());
         let (low, high) = ((-half_width).max(1 - row), half_width);
-        // Squares just outside of the quadrant, or of the disc, reach into it with a corner.
+        // 3. Squares just outside of the quadrant, or of the disc, reach into it with a corner.
         let reach = (half_width + MARGIN).min(row + 1);
         whole.clear();
         for i in 0..=earlier.len() {
@@ -154,7 +160,7 @@ fn sweep(
             blocks(row, first, last, &mut found);
             for &column in &found {
                 let (within, beyond) = shadows(column, row);
-                // Of its own row a square hides what lies before the row's middle.
+                // 4. Of its own row a square hides what lies before the row's middle.
                 let hidden = within.low.ceil(row)..=within.high.floor(row);
                 let seen = (hidden.start() - 1).min(to);
                 if from <= seen {
@@ -167,16 +173,17 @@ fn sweep(
                 see(row, from, to);
             }
         }
+        // 5. The shadows of this row hold from the next one on.
         for &shadow in &whole {
             add(&mut earlier, shadow);
         }
     }
 }
 
-/// A square's shadow, and what it hides of its own row, reach less than this many columns beyond its own.
+/// A square's shadow, and the part of its own row that it hides, reach less than this many columns beyond its own.
 const MARGIN: i32 = 3;
 
-/// What the square of `column` hides of its own row, and of later ones.
+/// Returns the slopes that the square of `column` hides of its own row, and of later ones.
 fn shadows(column: i32, row: i32) -> (Shadow, Shadow) {
     // Doubled coordinates keep corners whole.
     let (near, middle, far) = (2 * row - 1, 2 * row, 2 * row + 1);
@@ -209,7 +216,7 @@ mod tests {
     use proptest::prelude::*;
     use std::collections::BTreeSet;
 
-    /// Whether the segment from the origin to the centre of `to` touches the closed square of `cell`, by
+    /// Returns whether the segment from the origin to the centre of `to` touches the closed square of `cell`, by
     /// separating axes, in half cells.
     fn touches(to: Cell, cell: Cell) -> bool {
         let (tx, ty) = (2 * to.x, 2 * to.y);
