@@ -11,12 +11,12 @@ use sha2::{Digest as _, Sha256};
 pub struct Sha256Digest(pub [u8; 32]);
 
 impl Sha256Digest {
-    /// The digest of `bytes`.
+    /// Returns the digest of `bytes`.
     pub fn of(bytes: impl AsRef<[u8]>) -> Self {
         Self(Sha256::digest(bytes.as_ref()).into())
     }
 
-    /// The 64 lower-case hex digits.
+    /// Returns the 64 lower-case hex digits.
     pub fn hex(&self) -> String {
         use std::fmt::Write as _;
         self.0.iter().fold(String::with_capacity(64), |mut text, byte| {
@@ -25,12 +25,12 @@ impl Sha256Digest {
         })
     }
 
-    /// The first 8 hex digits, for names and tables.
+    /// Returns the first 8 hex digits, for names and tables.
     pub fn short(&self) -> String {
         self.hex()[..8].to_owned()
     }
 
-    /// Reads 64 hex digits of either case, as other tools' manifests may carry; `None` for anything else.
+    /// Reads 64 hex digits of either case, as other tools' manifests may carry them; `None` for anything else.
     pub fn from_hex(text: &str) -> Option<Self> {
         if text.len() != 64 || !text.bytes().all(|b| b.is_ascii_hexdigit()) {
             return None;
@@ -63,7 +63,7 @@ impl Serialize for Sha256Digest {
 
 impl<'de> Deserialize<'de> for Sha256Digest {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        // By a visitor, so that a reader who knows places can say where the refused text stands.
+        // By a visitor, so that a reader that knows positions can point at the refused text.
         deserializer.deserialize_str(HexVisitor)
     }
 }
@@ -96,7 +96,7 @@ impl Visitor<'_> for HexVisitor {
 pub struct Hasher(Sha256);
 
 impl Hasher {
-    /// An empty hash.
+    /// Creates an empty hash.
     pub fn new() -> Self {
         Self::default()
     }
@@ -107,7 +107,7 @@ impl Hasher {
         self
     }
 
-    /// The digest of everything fed so far.
+    /// Returns the digest of everything fed so far.
     pub fn digest(&self) -> Sha256Digest {
         Sha256Digest(self.0.clone().finalize().into())
     }
@@ -121,12 +121,12 @@ macro_rules! digest_type {
         pub struct $name(pub Sha256Digest);
 
         impl $name {
-            /// The 64 lower-case hex digits.
+            /// Returns the 64 lower-case hex digits.
             pub fn hex(&self) -> String {
                 self.0.hex()
             }
 
-            /// The first 8 hex digits.
+            /// Returns the first 8 hex digits.
             pub fn short(&self) -> String {
                 self.0.short()
             }
@@ -153,11 +153,11 @@ digest_type!(
     TrialKey
 );
 digest_type!(
-    /// What was asked: digest of the resolved study and its inputs.
+    /// Digest of the question: the resolved study and its inputs.
     StudyDigest
 );
 digest_type!(
-    /// What came out: digest of the result half of a bundle, the same for everyone.
+    /// Digest of the answer: the result half of a bundle, the same for everyone.
     ResultsDigest
 );
 digest_type!(

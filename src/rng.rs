@@ -12,10 +12,10 @@ use crate::math;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng as _, SeedableRng as _};
 
-/// What identifies a family of streams: the experiment's seed and the trial's declared coordinates.
+/// The identity of a family of streams: the experiment's seed and the trial's declared coordinates.
 ///
-/// Coordinates are `name=value` pairs in a fixed order (factor values, then the trial number). Trials that
-/// declare shared noise leave the factors they share over out.
+/// Coordinates are `name=value` pairs in a fixed order (factor values, then the trial number). Trials that declare
+/// shared noise leave out the factors over which they share it.
 ///
 /// ```
 /// use reenact::rng::Seeds;
@@ -33,12 +33,12 @@ pub struct Seeds {
 }
 
 impl Seeds {
-    /// Seeds of the experiment `experiment` at `coordinates`.
+    /// Creates the seeds of the experiment `experiment` at `coordinates`.
     pub fn new(experiment: u64, coordinates: Vec<(String, String)>) -> Self {
         Self { experiment, coordinates }
     }
 
-    /// The stream named `label` at these coordinates.
+    /// Returns the stream named `label` at these coordinates.
     pub fn stream(&self, label: &str) -> Stream {
         let mut hasher = Hasher::new();
         hasher.update(b"reenact-stream-1\0").update(self.experiment.to_le_bytes());
@@ -62,7 +62,7 @@ pub struct Stream {
 }
 
 impl Stream {
-    /// This stream positioned at the beginning of block `index`: 2^32 words, far more than a reading takes.
+    /// Positions this stream at the beginning of block `index`: 2^32 words, far more than a reading takes.
     ///
     /// The same index always yields the same numbers, whatever was drawn before.
     pub fn at(&mut self, index: u64) -> &mut Self {
@@ -72,24 +72,25 @@ impl Stream {
         self
     }
 
-    /// The next 64 random bits.
+    /// Draws the next 64 random bits.
     pub fn bits(&mut self) -> u64 {
         self.generator.next_u64()
     }
 
-    /// Uniform in [0, 1), with 53 random bits.
+    /// Draws a number uniform in [0, 1), with 53 random bits.
     pub fn uniform(&mut self) -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "53 bits are exact in an f64")]
         let mantissa = (self.bits() >> 11) as f64;
         mantissa * (1.0 / 9_007_199_254_740_992.0)
     }
 
-    /// Uniform in `low..high`.
+    /// Draws a number uniform in `low..high`.
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.uniform()
     }
 
-    /// Uniform in `0..bound`, without bias (Lemire 2019, "Fast random integer generation in an interval").
+    /// Draws a number uniform in `0..bound`, without bias (Lemire 2019, "Fast random integer generation in an
+    /// interval").
     ///
     /// # Panics
     /// Where `bound` is zero.
@@ -106,7 +107,7 @@ impl Stream {
         (product >> 64) as u64
     }
 
-    /// Two independent standard normal numbers (Box and Muller 1958).
+    /// Draws two independent standard normal numbers (Box and Muller 1958).
     pub fn normal_pair(&mut self) -> (f64, f64) {
         // 1 - u is in (0, 1], so the logarithm is finite.
         let radius = (-2.0 * math::ln(1.0 - self.uniform())).sqrt();
@@ -114,7 +115,7 @@ impl Stream {
         (radius * cos, radius * sin)
     }
 
-    /// `count` different places out of `of`, in order; all of them where there are no more.
+    /// Draws `count` different places out of `of`, in order; all of them where there are no more.
     pub fn places(&mut self, count: usize, of: usize) -> Vec<usize> {
         let mut places: Vec<usize> = (0..of).collect();
         let count = count.min(of);
@@ -128,7 +129,7 @@ impl Stream {
         places
     }
 
-    /// One standard normal number; the pair's other half is dropped, so that draws stay countable.
+    /// Draws one standard normal number; the pair's other half is dropped, so that draws stay countable.
     pub fn normal(&mut self) -> f64 {
         self.normal_pair().0
     }

@@ -13,7 +13,7 @@ macro_rules! unit {
         pub struct $name(pub f64);
 
         impl $name {
-            /// The bare number, in the unit the type is named after.
+            /// Returns the bare number, in the unit after which the type is named.
             pub const fn get(self) -> f64 {
                 self.0
             }
@@ -49,12 +49,12 @@ unit!(
 );
 
 impl Radians {
-    /// From degrees, as users write them (`heading-deg`).
+    /// Converts from degrees, as users write them (`heading-deg`).
     pub fn from_degrees(degrees: f64) -> Self {
         Self(degrees.to_radians())
     }
 
-    /// In degrees, as users read them.
+    /// Converts to degrees, as users read them.
     pub fn degrees(self) -> f64 {
         self.0.to_degrees()
     }
@@ -72,13 +72,13 @@ pub const TICKS_PER_SECOND: u64 = 3000;
 pub struct Tick(pub u64);
 
 impl Tick {
-    /// This instant in seconds.
+    /// Returns this instant in seconds.
     pub fn seconds(self) -> Seconds {
         #[expect(clippy::cast_precision_loss, reason = "2^53 ticks are 95 000 years")]
         Seconds(self.0 as f64 / TICKS_PER_SECOND as f64)
     }
 
-    /// The first instant not before `seconds` (≥ 0, finite).
+    /// Returns the first instant not before `seconds` (≥ 0, finite).
     pub fn at_or_after(seconds: Seconds) -> Self {
         #[expect(
             clippy::cast_possible_truncation,
@@ -89,7 +89,7 @@ impl Tick {
         Self((seconds.0 * TICKS_PER_SECOND as f64).ceil() as u64)
     }
 
-    /// The period of `rate_hz` in ticks, or `None` where the rate is not a positive divisor of the clock.
+    /// Returns the period of `rate_hz` in ticks, or `None` where the rate is not a positive divisor of the clock.
     pub fn period_of(rate_hz: f64) -> Option<Self> {
         #[expect(clippy::cast_precision_loss, reason = "3000 is exact")]
         let ticks = TICKS_PER_SECOND as f64 / rate_hz;

@@ -248,8 +248,8 @@ fn offset(steps: [i32; 2]) -> Offset {
     steps.map(|v| v as i8)
 }
 
-/// Ranks a mean: lower is nearer to the middle of the quarter. The offset itself decides between equally near ones, so
-/// that the nearest does not depend on the order of arrival.
+/// Ranks a mean: lower is nearer to the middle of the quarter. The offset itself decides between equally
+/// near ones, so that the nearest does not depend on the order of arrival.
 fn rank(quarter: usize, offset: Offset) -> (i32, Offset) {
     let middle = |is_far: bool| if is_far { 3 * STEPS / 4 } else { STEPS / 4 };
     let dx = i32::from(offset[0]) - middle(quarter & 1 != 0);
