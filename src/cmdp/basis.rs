@@ -1,7 +1,7 @@
 //! A basis of the programme: as many independent columns as there are rows, with their inverse.
 //!
 //! The inverse is dense and explicit. At the sizes of this planner (a map of up to a few hundred vertices)
-//! that is fast enough, and simple enough to be read.
+//! that is fast enough, and simple enough to read.
 
 use super::occupation::Programme;
 
@@ -21,7 +21,7 @@ pub(super) struct Basis {
 }
 
 impl Basis {
-    /// The first independent columns among those offered, by elimination; `None` where they do not span.
+    /// Factors the first independent columns among those offered, by elimination; `None` where they do not span.
     ///
     /// `smallest` is how far, relative to its largest entry, a reduced column's pivot may be from zero.
     pub(super) fn factor(
@@ -56,8 +56,8 @@ impl Basis {
         (missing == 0).then_some(basis)
     }
 
-    /// B⁻¹ a for a sparse column a. Entries that are nothing but cancelled rounding are zero: rows have scales
-    /// of their own, so that only the terms of an entry tell how small it may be.
+    /// Computes B⁻¹ a for a sparse column a. Entries that are nothing but cancelled rounding are zero: rows have scales
+    /// of their own, so that only the terms of an entry show how small it may be.
     pub(super) fn direction(&self, column: &[(usize, f64)]) -> Vec<f64> {
         let rows = self.basic.len();
         self.inverse
@@ -74,7 +74,7 @@ impl Basis {
             .collect()
     }
 
-    /// Lets `column` take the place of the basic column of `row`; `direction` is B⁻¹ of the newcomer.
+    /// Replaces the basic column of `row` by `column`; `direction` is B⁻¹ of the new column.
     pub(super) fn replace(&mut self, row: usize, column: usize, direction: &[f64]) {
         let rows = self.basic.len();
         self.basic[row] = column;
@@ -92,7 +92,7 @@ impl Basis {
         }
     }
 
-    /// B⁻¹ b, with one step of iterative refinement.
+    /// Computes B⁻¹ b, with one step of iterative refinement.
     pub(super) fn solve(&self, programme: &Programme, rhs: &[f64]) -> Vec<f64> {
         let mut solution = self.multiply(rhs);
         let mut residual = rhs.to_vec();
@@ -107,7 +107,7 @@ impl Basis {
         solution
     }
 
-    /// The multipliers y of the rows: y B = the basic columns' costs, with one step of refinement.
+    /// Computes the multipliers y of the rows: y B = the basic columns' costs, with one step of refinement.
     pub(super) fn multipliers(&self, programme: &Programme, costs: &[f64]) -> Vec<f64> {
         let basic_costs: Vec<f64> = self.basic.iter().map(|column| costs[*column]).collect();
         let mut y = self.multiply_transposed(&basic_costs);

@@ -18,7 +18,7 @@ pub(super) struct Chain {
 }
 
 impl Chain {
-    /// A chain of `states` states without transitions, whose visits cost nothing by each of `criteria`.
+    /// Creates a chain of `states` states without transitions, whose visits cost nothing by each of `criteria`.
     pub(super) fn new(states: usize, criteria: usize) -> Self {
         Self {
             states,
@@ -42,7 +42,7 @@ impl Chain {
         self.costs[criterion][x] += cost;
     }
 
-    /// The expected total cost from each state, by criterion and state; `None` where some state does not
+    /// Computes the expected total cost from each state, by criterion and state; `None` where some state does not
     /// surely reach absorption.
     pub(super) fn totals(mut self) -> Option<Vec<Vec<f64>>> {
         let n = self.states;
@@ -53,8 +53,8 @@ impl Chain {
             if exit <= 0.0 || !exit.is_finite() {
                 return None;
             }
-            // From here on, row k is where the chain goes next among the states before k, and its cost
-            // that of the whole stay.
+            // From here on, row k gives the chain's next state among the states before k, and its cost is that of the
+            // whole stay.
             for p in line.iter_mut() {
                 *p /= exit;
             }

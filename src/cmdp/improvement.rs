@@ -16,7 +16,7 @@ const SAME: f64 = 1e-11;
 /// More rounds than any instance needs; reaching it leaves a policy that still surely arrives.
 const ROUNDS: usize = 1000;
 
-/// The pair to take in each sure state outside M so that expected totals are least, criterion by criterion;
+/// Chooses the pair to take in each sure state outside M so that expected totals are least, criterion by criterion;
 /// equal ones are decided by the expected number of steps. `None` in the other states.
 ///
 /// `criteria` gives the cost of a pair of the model by each criterion, most important first.
@@ -57,7 +57,7 @@ pub(super) fn lexicographic_best(
     choice
 }
 
-/// Expected totals of a deterministic policy by each criterion and, last, in steps.
+/// Computes the expected totals of a deterministic policy by each criterion and, last, in steps.
 fn totals(
     cmdp: &Cmdp,
     criteria: &[Vec<f64>],
@@ -84,7 +84,7 @@ fn value(totals: &[Vec<f64>], row: Option<usize>) -> Vec<f64> {
     totals.iter().map(|by_state| row.map_or(0.0, |row| by_state[row])).collect()
 }
 
-/// Expected totals of taking `pair` until it leaves its state, and the policy from then on.
+/// Computes the expected totals of taking `pair` until it leaves its state, and the policy from then on.
 fn lookahead(
     pair: &Pair,
     index: usize,
@@ -105,7 +105,7 @@ fn lookahead(
         .collect()
 }
 
-/// Lexicographic order of expected totals that forgives rounding.
+/// Compares expected totals in lexicographic order, forgiving rounding.
 fn compare(a: &[f64], b: &[f64]) -> Ordering {
     for (x, y) in a.iter().zip(b) {
         if (x - y).abs() > SAME * (x + y) {

@@ -1,8 +1,8 @@
-//! The whole solution of a constrained MDP, in lexicographic order: primary cost, then each secondary cost.
+//! The complete solution of a constrained MDP, in lexicographic order: primary cost, then each secondary cost.
 //!
-//! The order is the tie-break that the deadline study needs and does not state: fast and slow take the same
-//! number of steps, so that without it the speed would be whatever a solver's column order gives. With it the
-//! expected totals are unique, and equal whichever way states and actions are numbered.
+//! The order is the tie-break that the deadline study needs and does not state: fast and slow take the same number of
+//! steps, so that without it the speed would be whatever a solver's column order gives. With it the expected totals are
+//! unique, and independent of how states and actions are numbered.
 //!
 //! 1. Drop what cannot take part in a policy that surely arrives ([`super::prune`]).
 //! 2. Solve the occupation-measure programme by interior point ([`super::solve`]).
@@ -10,8 +10,8 @@
 //!    policy without bounds instead and impose the bounds one by one. What cannot be met is found here.
 //! 4. Certify or improve the vertex by pivots, criterion by criterion, each on the optimal face of the last.
 //! 5. Read the policy off, and evaluate it exactly. The values reported are these.
-//! 6. Hold them against the bounds, and the primary against a lower bound by weak duality that owes nothing to
-//!    steps 2 to 4 but the multipliers.
+//! 6. Compare them with the bounds, and the primary with a lower bound by weak duality that owes nothing to steps 2 to
+//!    4 but the multipliers.
 
 use super::improvement::lexicographic_best;
 use super::model::{Cmdp, Pair};
@@ -27,7 +27,7 @@ pub const BOUND_TOLERANCE: f64 = 1e-9;
 /// The same for a bound or an optimum of zero, relative to the largest cost.
 const ZERO_BOUND_TOLERANCE: f64 = 1e-12;
 
-/// What to do about a bound that no policy meets together with the bounds before it.
+/// The handling of a bound that no policy meets together with the bounds before it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unmeetable {
     /// The answer is "infeasible".
@@ -58,7 +58,7 @@ pub enum Infeasible {
     Bound {
         /// Which secondary cost.
         index: usize,
-        /// The least expected total that policies meeting the bounds before it have.
+        /// The least expected total of the policies that meet the bounds before it.
         least: f64,
     },
 }
@@ -70,11 +70,11 @@ pub struct Solution {
     pub primary: f64,
     /// Expected secondary totals, in the model's order.
     pub secondary: Vec<f64>,
-    /// What to do.
+    /// The policy itself.
     pub policy: Policy,
-    /// λ ≥ 0 per bound: what one unit more of it would save of the primary cost; 0 for relaxed bounds.
+    /// λ ≥ 0 per bound: the primary cost that one unit more of it would save; 0 for relaxed bounds.
     pub multipliers: Vec<f64>,
-    /// Bounds that could not be met, with what was done; empty for a policy within all bounds.
+    /// Bounds that could not be met, with their handling; empty for a policy within all bounds.
     pub relaxed: Vec<Relaxation>,
     /// How the solution was found.
     pub effort: Effort,
@@ -85,13 +85,13 @@ pub struct Solution {
 pub struct Relaxation {
     /// Which secondary cost.
     pub index: usize,
-    /// What was done.
+    /// Its handling.
     pub how: Unmeetable,
-    /// The least expected total that policies meeting the bounds before it have.
+    /// The least expected total of the policies that meet the bounds before it.
     pub least: f64,
 }
 
-/// What it took to find a solution.
+/// The effort of finding a solution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Effort {
     /// Iterations of the interior-point method, or why it gave no solution to start from. The solution is
@@ -101,7 +101,7 @@ pub struct Effort {
     pub pivots: usize,
 }
 
-/// There may be an answer, but it could not be had.
+/// Failure to find an answer that may exist.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SolveError {
     /// Too large for dense algebra.
@@ -119,7 +119,7 @@ pub enum SolveError {
          or drop probabilities that are next to zero"
     )]
     Numerical {
-        /// What the interior-point method said.
+        /// The result of the interior-point method.
         interior: String,
     },
     /// The policy's exact evaluation does not confirm the programme's solution.
@@ -143,7 +143,7 @@ pub enum SolveError {
     Uncertified {
         /// Its exact expected primary total.
         primary: f64,
-        /// What every policy within the bounds costs at least.
+        /// A lower bound on the cost of every policy within the bounds.
         lower: f64,
     },
 }
@@ -168,8 +168,9 @@ pub fn solve(cmdp: &Cmdp) -> Result<Outcome, SolveError> {
     solve_with(cmdp, &vec![Unmeetable::Refuse; cmdp.secondary().len()])
 }
 
-/// Solves `cmdp`, treating bounds that cannot be met as `handling` says, one entry per secondary cost. Bounds
-/// are imposed in the model's order, so that what is relaxed last is declared last.
+/// Solves `cmdp`, handling bounds that cannot be met as `handling` says, one entry per secondary cost. Bounds are
+/// imposed in the model's order, so that the first to be relaxed is declared last. The steps are those of the module
+/// documentation.
 ///
 /// # Errors
 /// As [`solve`].
@@ -178,11 +179,12 @@ pub fn solve(cmdp: &Cmdp) -> Result<Outcome, SolveError> {
 /// Where `handling` does not have one entry per secondary cost.
 pub fn solve_with(cmdp: &Cmdp, handling: &[Unmeetable]) -> Result<Outcome, SolveError> {
     assert_eq!(handling.len(), cmdp.secondary().len(), "one handling per secondary cost");
+    // 1. Prune.
     let sure = Sure::of(cmdp, |_| true);
     if sure.reachable(cmdp).is_none() {
         return Ok(Outcome::Infeasible(Infeasible::NoSureArrival));
     }
-    // A bound of zero forbids every pair that costs. Said so beforehand it is kept exactly.
+    // A bound of zero forbids every pair that costs. Imposed here, it is kept exactly.
     let forbidding: Vec<usize> = (0..handling.len())
         .filter(|i| handling[*i] == Unmeetable::Refuse && cmdp.secondary()[*i].bound == 0.0)
         .collect();
@@ -199,6 +201,7 @@ pub fn solve_with(cmdp: &Cmdp, handling: &[Unmeetable]) -> Result<Outcome, Solve
     let programme = Programme::new(cmdp, &allowed, &reachable)?;
     let criteria = model_criteria(cmdp);
 
+    // 2. Solve by interior point.
     let start = interior_or_nothing(&programme);
     let found = start.as_ref().and_then(|result| result.as_ref().ok());
     let mut effort = Effort {
@@ -216,6 +219,7 @@ pub fn solve_with(cmdp: &Cmdp, handling: &[Unmeetable]) -> Result<Outcome, Solve
     };
     let stalled = |_: Stalled| numerical(&effort);
 
+    // 3. A vertex: purified, or that of the best policy without bounds, with the bounds imposed one by one.
     let mut relaxed = Vec::new();
     let mut kept_to_a_face = !forbidding.is_empty();
     let purified = found.and_then(|i| Vertex::of_interior(&programme, &i.columns));
@@ -238,8 +242,7 @@ pub fn solve_with(cmdp: &Cmdp, handling: &[Unmeetable]) -> Result<Outcome, Solve
             let tolerance = if bound > 0.0 { BOUND_TOLERANCE } else { ZERO_BOUND_TOLERANCE };
             let knife_edge = excess <= tolerance;
             if knife_edge || *how == Unmeetable::AchieveLeast {
-                // Solving on the face of least total is solving with that total as the bound, without the
-                // knife edge.
+                // Solving on the face of least total is solving with that total as the bound, without the knife edge.
                 vertex.keep_to(&optimum);
                 kept_to_a_face = true;
             }
@@ -255,6 +258,7 @@ pub fn solve_with(cmdp: &Cmdp, handling: &[Unmeetable]) -> Result<Outcome, Solve
         vertex
     };
 
+    // 4. Criterion by criterion, each on the optimal face of the last.
     let mut multipliers = vec![0.0; handling.len()];
     for (k, costs) in programme.objectives.iter().enumerate() {
         let optimum = vertex.optimise(costs).map_err(stalled)?;
@@ -267,9 +271,10 @@ pub fn solve_with(cmdp: &Cmdp, handling: &[Unmeetable]) -> Result<Outcome, Solve
     }
     effort.pivots = vertex.pivots;
 
+    // 5. Read the policy off and evaluate it.
     let fallback = fallback(cmdp, &sure, &criteria, &multipliers, &relaxed);
-    // A share of 1e-13 is rounding of zero, unless what it buys costs 1e13 as much as the rest: then the exact
-    // totals say so, and it is kept.
+    // A share of 1e-13 is rounding of zero, unless what it buys costs 1e13 as much as the rest: then the exact totals
+    // show it, and it is kept.
     let mut confirmed = Err(numerical(&effort));
     for negligible in [1e-12, 1e-15, 0.0] {
         let policy = of_vertex(cmdp, &programme, &vertex, &fallback, negligible);
@@ -277,6 +282,7 @@ pub fn solve_with(cmdp: &Cmdp, handling: &[Unmeetable]) -> Result<Outcome, Solve
         if totals.iter().chain(&multipliers).any(|total| !total.is_finite()) {
             return Err(SolveError::Overflow);
         }
+        // 6. Compare with the bounds, then with the lower bound.
         confirmed = confirm(cmdp, &programme, &totals[1..], &relaxed).map(|()| (policy, totals));
         if confirmed.is_ok() {
             break;
@@ -296,23 +302,23 @@ pub fn solve_with(cmdp: &Cmdp, handling: &[Unmeetable]) -> Result<Outcome, Solve
     }))
 }
 
-/// The interior point, or `None` where every state of β is absorbing and there is nothing to solve.
+/// Returns the interior point, or `None` where every state of β is absorbing and there is nothing to solve.
 fn interior_or_nothing(
     programme: &Programme,
 ) -> Option<Result<super::solve::Interior, InteriorFailure>> {
     (programme.flow_rows > 0).then(|| interior(programme))
 }
 
-/// Per criterion, the cost of each pair of the model.
+/// Returns, per criterion, the cost of each pair of the model.
 fn model_criteria(cmdp: &Cmdp) -> Vec<Vec<f64>> {
     (0..=cmdp.secondary().len())
         .map(|k| cmdp.pairs().iter().map(|pair| pair.costs[k]).collect())
         .collect()
 }
 
-/// What to do in states that the policy never visits (a wrong door, a mistaken vertex): what is best by the
-/// costs that the solution put on everything, c + Σ λᵢ cᵢ; then by the secondary costs in order, then by
-/// steps. Where a bound had to be relaxed to the least achievable, that cost comes first.
+/// Chooses the pairs for states that the policy never visits (a wrong door, a mistaken vertex): the best by the costs
+/// that the solution put on everything, c + Σ λᵢ cᵢ; then by the secondary costs in order, then by steps. Where a bound
+/// had to be relaxed to the least achievable, that cost comes first.
 fn fallback(
     cmdp: &Cmdp,
     sure: &Sure,
@@ -337,8 +343,8 @@ fn fallback(
     lexicographic_best(cmdp, sure, &order)
 }
 
-/// Weak duality: no policy within the bounds costs less than the best one without bounds by c + Σ λᵢ cᵢ, which
-/// is the fallback, minus Σ λᵢ Dᵢ.
+/// Certifies the optimum by weak duality: no policy within the bounds costs less than the best one without bounds by c
+/// + Σ λᵢ cᵢ, which is the fallback, minus Σ λᵢ Dᵢ.
 fn certify(
     cmdp: &Cmdp,
     fallback: &[Option<usize>],
@@ -362,7 +368,7 @@ fn certify(
     }
 }
 
-/// Holds the exact totals against the bounds, or against the least that was achievable.
+/// Compares the exact totals with the bounds, or with the least that was achievable.
 fn confirm(
     cmdp: &Cmdp,
     programme: &Programme,

@@ -1,15 +1,15 @@
 //! The planner of the deadline study: constrained MDPs with total costs, solved exactly.
 //!
-//! A robot in a state x takes an action a, pays c(x, a), and arrives somewhere by chance; it stops on entering
-//! an absorbing set M. Wanted is the randomised policy with the least expected total cost among those that
+//! A robot in a state x takes an action a, pays c(x, a), and arrives somewhere by chance; it stops on entering an
+//! absorbing set M. Sought is the randomised policy with the least expected total cost among those that
 //! reach M with certainty and keep the expected totals of further costs within bounds (Altman 1999; the
 //! deadline study, section 3).
 //!
 //! - [`Cmdp`], built by [`CmdpBuilder`]: the model, valid by construction.
-//! - [`prune`]: who can surely arrive at all.
+//! - [`prune`]: the states from which arrival can be sure at all.
 //! - [`solve()`], [`solve_with`]: a policy with at most as many randomised states as there are bounds, with
 //!   its exact totals; or that there is none; or an error, never a doubtful policy.
-//! - [`evaluate`]: what any policy exactly costs.
+//! - [`evaluate`]: the exact costs of any policy.
 //! - [`document`]: models as JSON files.
 
 mod basis;

@@ -21,7 +21,7 @@ pub struct Cmdp {
     secondary: Vec<Secondary>,
 }
 
-/// One action in one state: where it leads and what it costs.
+/// One action in one state: its successors and its costs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pair {
     /// The state x.
@@ -30,17 +30,17 @@ pub struct Pair {
     pub action: usize,
     /// P(x, a, ·): successors in ascending order with their probabilities.
     pub successors: Vec<(usize, f64)>,
-    /// c(x, a), then `c_1(x, a)` .. `c_L(x, a)`, in the units of whoever stated them.
+    /// c(x, a), then `c_1(x, a)` .. `c_L(x, a)`, in the units in which they were stated.
     pub costs: Vec<f64>,
 }
 
 impl Pair {
-    /// The probability of leaving the state, summed over the other states: exact where 1 - P(x, a, x) is not.
+    /// Returns the probability of leaving the state, summed over the other states: exact where 1 - P(x, a, x) is not.
     pub fn exit(&self) -> f64 {
         self.elsewhere().map(|(_, p)| p).sum()
     }
 
-    /// The successors other than the state itself.
+    /// Returns the successors other than the state itself.
     pub fn elsewhere(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         self.successors.iter().copied().filter(|(y, _)| *y != self.state)
     }
@@ -56,42 +56,42 @@ pub struct Secondary {
 }
 
 impl Cmdp {
-    /// |X|, absorbing states included.
+    /// Returns |X|, absorbing states included.
     pub fn states(&self) -> usize {
         self.absorbing.len()
     }
 
-    /// |A|.
+    /// Returns |A|.
     pub fn actions(&self) -> usize {
         self.actions
     }
 
-    /// Whether `state` is in M.
+    /// Returns whether `state` is in M.
     pub fn is_absorbing(&self, state: usize) -> bool {
         self.absorbing[state]
     }
 
-    /// β: states with positive initial probability, ascending.
+    /// Returns β: states with positive initial probability, ascending.
     pub fn initial(&self) -> &[(usize, f64)] {
         &self.initial
     }
 
-    /// All pairs, by state and then action. Pairs of absorbing states are kept but never used.
+    /// Returns all pairs, by state and then action. Pairs of absorbing states are kept but never used.
     pub fn pairs(&self) -> &[Pair] {
         &self.pairs
     }
 
-    /// The indices into [`Cmdp::pairs`] of the pairs of `state`.
+    /// Returns the indices into [`Cmdp::pairs`] of the pairs of `state`.
     pub fn pairs_of(&self, state: usize) -> std::ops::Range<usize> {
         self.first[state]..self.first[state + 1]
     }
 
-    /// The secondary costs, in the order in which they were declared.
+    /// Returns the secondary costs, in the order in which they were declared.
     pub fn secondary(&self) -> &[Secondary] {
         &self.secondary
     }
 
-    /// The same model with another bound on secondary cost `index`.
+    /// Returns the same model with another bound on secondary cost `index`.
     ///
     /// # Panics
     /// Where there is no such cost, or the bound is negative or not finite.
@@ -103,7 +103,7 @@ impl Cmdp {
     }
 }
 
-/// What is wrong with one entry; a document puts the entry's path in front.
+/// The fault of one entry; a document puts the entry's path in front.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum EntryError {
     /// An index beyond what was declared.
@@ -137,7 +137,7 @@ pub enum EntryError {
     },
 }
 
-/// What is wrong with a number, in words.
+/// Describes the fault of a number.
 fn fault(x: f64) -> &'static str {
     if !x.is_finite() {
         "not finite"
@@ -148,7 +148,7 @@ fn fault(x: f64) -> &'static str {
     }
 }
 
-/// What is wrong with the model as a whole.
+/// The fault of the model as a whole.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum ModelError {
     /// β does not sum to 1.
@@ -189,7 +189,7 @@ struct Draft {
 }
 
 impl CmdpBuilder {
-    /// An empty model of `states` states and `actions` actions.
+    /// Creates an empty model of `states` states and `actions` actions.
     pub fn new(states: usize, actions: usize) -> Self {
         Self {
             states,
@@ -298,14 +298,14 @@ impl CmdpBuilder {
         }
         match self.pairs.get_mut(&(state, action)) {
             Some(draft) => *draft.costs.entry(which).or_default() += cost,
-            // Costs stop on entering M, so that one stated there says nothing and harms nothing.
+            // Costs stop on entering M, so that one stated there has no effect.
             None if self.absorbing.contains(&state) => {}
             None => return Err(EntryError::UnlistedPair { state, action }),
         }
         Ok(())
     }
 
-    /// The model.
+    /// Builds the model.
     ///
     /// # Errors
     /// Probabilities that do not sum to 1.
@@ -353,7 +353,7 @@ fn check_index(what: &'static str, index: usize, count: usize) -> Result<(), Ent
     if index < count { Ok(()) } else { Err(EntryError::Index { what, index, count }) }
 }
 
-/// Rounding in whoever computed `1 - slip + slip` is forgiven.
+/// Checks a probability; rounding by a computation like `1 - slip + slip` is forgiven.
 fn check_probability(p: f64) -> Result<f64, EntryError> {
     if (0.0..=1.0 + SUM_TOLERANCE).contains(&p) { Ok(p) } else { Err(EntryError::Probability(p)) }
 }

@@ -8,10 +8,17 @@
 //! bound rows     sum rho(x,a) c_i(x,a) + slack_i = D_i                              i = 1..L
 //! ```
 //!
-//! Three scalings make it well behaved. A column stands for the expected number of *departures* by (x, a), not
-//! of attempts: self-loops are folded by dividing the column by the exit probability, so that its own flow
-//! entry is exactly 1 and the others sum to at least -1. A bound row is divided by its bound. And a column with
-//! entries above 1, one whose single departure would exceed a bound, is divided by the largest.
+//! Three scalings make it well behaved. A column stands for the expected number of *departures* by (x, a), not of
+//! attempts: self-loops are folded by dividing the column by the exit probability, so that its own flow entry is
+//! exactly 1 and the others sum to at least -1. A bound row is divided by its bound. And a column with entries above 1,
+//! one whose single departure would exceed a bound, is divided by the largest.
+//!
+//! 1. Number the flow rows and set their right-hand sides, the initial distribution.
+//! 2. Choose the pairs, one column each, and fold their self-loops into their costs.
+//! 3. Scale criteria and bound rows.
+//! 4. Write the columns: flow entries, then bound entries.
+//! 5. Divide columns by their largest entry, and append the slacks.
+//! 6. Scale the objectives like their columns, and refuse what has left the range of floating point.
 
 use super::model::Cmdp;
 use super::prune::Sure;
@@ -43,8 +50,10 @@ pub(super) struct Programme {
 pub(super) struct Overflow;
 
 impl Programme {
-    /// The programme over the `reachable` states and `sure` pairs of `cmdp`.
+    /// Writes the programme over the `reachable` states and `sure` pairs of `cmdp`, in the steps of the module
+    /// documentation.
     pub(super) fn new(cmdp: &Cmdp, sure: &Sure, reachable: &[bool]) -> Result<Self, Overflow> {
+        // 1. Flow rows.
         let mut row_of = vec![None; cmdp.states()];
         let mut flow_rows = 0;
         for x in (0..cmdp.states()).filter(|x| reachable[*x]) {
@@ -58,7 +67,7 @@ impl Programme {
                 rhs[row] = p;
             }
         }
-        // A pair that only stays where it is belongs to no policy that arrives.
+        // 2. Pairs. One that only stays where it is belongs to no policy that arrives.
         let pairs: Vec<usize> = (0..cmdp.pairs().len())
             .filter(|i| sure.pairs[*i] && reachable[cmdp.pairs()[*i].state])
             .filter(|i| cmdp.pairs()[*i].exit() > 0.0)
@@ -71,6 +80,7 @@ impl Programme {
                 pair.costs.iter().map(|c| c / exit).collect()
             })
             .collect();
+        // 3. Scales.
         let largest = |k: usize| folded.iter().map(|c| c[k]).fold(0.0, f64::max);
         let positive_or_one = |x: f64| if x > 0.0 { x } else { 1.0 };
         let objective_scale: Vec<f64> = (0..=bounds).map(|k| positive_or_one(largest(k))).collect();
@@ -88,6 +98,7 @@ impl Programme {
             rhs[flow_rows + i] = secondary.bound / bound_scale[i];
         }
 
+        // 4. Columns.
         let mut columns = Vec::with_capacity(pairs.len() + bounds);
         for (i, costs) in pairs.iter().zip(&folded) {
             let pair = &cmdp.pairs()[*i];
@@ -105,6 +116,7 @@ impl Programme {
             }
             columns.push(column);
         }
+        // 5. Units of columns, and slacks.
         let mut unit: Vec<f64> = columns
             .iter_mut()
             .map(|column: &mut Vec<(usize, f64)>| {
@@ -117,6 +129,7 @@ impl Programme {
             .collect();
         unit.resize(columns.len() + bounds, 1.0);
         columns.extend((0..bounds).map(|i| vec![(flow_rows + i, 1.0)]));
+        // 6. Objectives.
         let objectives: Vec<Vec<f64>> = objective_scale
             .iter()
             .enumerate()
@@ -135,12 +148,12 @@ impl Programme {
         Ok(Self { flow_rows, columns, unit, pairs, rhs, objectives, objective_scale, bound_scale })
     }
 
-    /// How many rows there are.
+    /// Returns how many rows there are.
     pub(super) fn rows(&self) -> usize {
         self.rhs.len()
     }
 
-    /// The column of the slack of bound `i`.
+    /// Returns the column of the slack of bound `i`.
     pub(super) fn slack(&self, i: usize) -> usize {
         self.pairs.len() + i
     }

@@ -1,12 +1,11 @@
-//! Stationary randomised policies: what a vertex says to do, what to do where it says nothing, and what a
-//! policy exactly costs.
+//! Stationary randomised policies: read off a vertex, completed by a fallback, and evaluated exactly.
 
 use super::chain::Chain;
 use super::model::Cmdp;
 use super::occupation::Programme;
 use super::vertex::Vertex;
 
-/// π(x, a): with which probability each action is taken in each state. To be drawn afresh at every visit.
+/// π(x, a): the probability with which each action is taken in each state. To be drawn afresh at every visit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Policy {
     choices: Vec<Vec<(usize, f64)>>,
@@ -14,8 +13,8 @@ pub struct Policy {
 }
 
 impl Policy {
-    /// The policy that takes `choices[x]`, actions with their probabilities, in each state x of `cmdp`.
-    /// States are visited if they can be reached from β by it.
+    /// Creates the policy that takes `choices[x]`, actions with their probabilities, in each state x of `cmdp`. States
+    /// are visited if they can be reached from β by it.
     ///
     /// # Panics
     /// Where an action does not exist in its state.
@@ -24,23 +23,23 @@ impl Policy {
         Self { choices, visited }
     }
 
-    /// Actions with their positive probabilities in `state`; empty in absorbing states and where no policy
+    /// Returns the actions with their positive probabilities in `state`; empty in absorbing states and where no policy
     /// surely arrives.
     pub fn at(&self, state: usize) -> &[(usize, f64)] {
         &self.choices[state]
     }
 
-    /// Whether `state` is ever visited from β. Elsewhere the policy is the fallback.
+    /// Returns whether `state` is ever visited from β. Elsewhere the policy is the fallback.
     pub fn visits(&self, state: usize) -> bool {
         self.visited[state]
     }
 
-    /// How many visited states have more than one action: at most as many as there are bounds.
+    /// Returns how many visited states have more than one action: at most as many as there are bounds.
     pub fn randomised(&self) -> usize {
         (0..self.choices.len()).filter(|x| self.visited[*x] && self.choices[*x].len() > 1).count()
     }
 
-    /// The action for a `uniform` number of [0, 1); `None` where the policy has none.
+    /// Draws the action for a `uniform` number of [0, 1); `None` where the policy has none.
     pub fn draw(&self, state: usize, uniform: f64) -> Option<usize> {
         let choices = self.at(state);
         let mut below = 0.0;
@@ -54,7 +53,7 @@ impl Policy {
     }
 }
 
-/// The expected totals of `policy` from β, primary first and then the secondaries, by state elimination;
+/// Computes the expected totals of `policy` from β, primary first and then the secondaries, by state elimination;
 /// `None` where it does not surely arrive.
 ///
 /// # Panics
@@ -86,8 +85,8 @@ pub fn evaluate(cmdp: &Cmdp, policy: &Policy) -> Option<Vec<f64>> {
     Some(totals.iter().map(from_start).collect())
 }
 
-/// The policy of a vertex, with `fallback` (a pair per state) where it never comes. Actions whose share of
-/// their state's largest is `negligible` or less are dropped.
+/// Reads the policy off a vertex, with `fallback` (a pair per state) where it never comes. Actions whose share of their
+/// state's largest is `negligible` or less are dropped.
 ///
 /// A state with a single basic column takes it however small its occupation: a state reached with
 /// probability 1e-14 is reached.

@@ -1,4 +1,4 @@
-//! Which states and pairs can take part in a policy that surely reaches the absorbing set.
+//! The states and pairs that can take part in a policy that surely reaches the absorbing set.
 //!
 //! The occupation-measure programme is only right among those: elsewhere its rows are dependent, or it is
 //! infeasible for the wrong reason. The set is the greatest fixpoint (outer) of a least fixpoint (inner):
@@ -20,7 +20,7 @@ pub struct Sure {
 }
 
 impl Sure {
-    /// The nested fixpoint on the pairs of `cmdp` that are `usable`.
+    /// Computes the nested fixpoint on the pairs of `cmdp` that are `usable`.
     pub fn of(cmdp: &Cmdp, usable: impl Fn(&Pair) -> bool) -> Self {
         let pairs = cmdp.pairs();
         let mut arrivals = vec![Vec::new(); cmdp.states()];
@@ -65,8 +65,8 @@ impl Sure {
         }
     }
 
-    /// The non-absorbing states that sure pairs can reach from β, or `None` where β is not wholly sure:
-    /// then no policy surely arrives.
+    /// Returns the non-absorbing states that sure pairs can reach from β, or `None` where β is not wholly sure: then no
+    /// policy surely arrives.
     pub fn reachable(&self, cmdp: &Cmdp) -> Option<Vec<bool>> {
         let mut reached = vec![false; cmdp.states()];
         let mut stack = Vec::new();
@@ -98,8 +98,8 @@ mod tests {
     use super::*;
     use crate::cmdp::model::CmdpBuilder;
 
-    /// 0 -> goal 4 by action 0 surely, by action 1 with a trap 3 (no action of its own) in the way;
-    /// 1 only by the trapped action; 2 only into 1; 5 loops between 5 and 0.
+    /// Returns a model: 0 -> goal 4 by action 0 surely, by action 1 with a trap 3 (no action of its own) in between; 1
+    /// only by the trapped action; 2 only into 1; 5 loops between 5 and 0.
     fn trapped() -> Cmdp {
         let mut builder = CmdpBuilder::new(6, 2);
         builder.absorb(4).unwrap();

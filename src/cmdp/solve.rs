@@ -1,8 +1,13 @@
-//! The programme handed to clarabel, an interior-point solver; the only file that names the crate.
+//! The programme solved by clarabel, an interior-point solver; the only file that names the crate.
 //!
-//! One thread, its own factorisation, no time limit (a clock would be a hole in determinism), tolerances of
-//! 1e-10: the default ones leave the objective 3e-8 low. The answer is an interior point of the optimal face,
-//! which randomises everywhere; [`super::vertex`] turns it into a vertex.
+//! One thread, its own factorisation, no time limit (a clock would be a hole in determinism), tolerances of 1e-10: the
+//! default ones leave the objective 3e-8 low. The answer is an interior point of the optimal face, which randomises
+//! everywhere; [`super::vertex`] turns it into a vertex.
+//!
+//! 1. Write the rows in the solver's form: A x + s = b with s = 0 on flow rows, s >= 0 on bound rows and on -x <= 0.
+//! 2. Solve.
+//! 3. Refuse every status but a full solution.
+//! 4. Return columns and slacks, rounding below zero removed.
 
 use super::occupation::Programme;
 use clarabel::algebra::CscMatrix;
@@ -11,7 +16,7 @@ use clarabel::solver::{
 };
 use thiserror::Error;
 
-/// What the interior-point method found.
+/// The result of the interior-point method.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Interior {
     /// A value for every column, slacks included; at least 0.
@@ -54,7 +59,7 @@ pub(super) fn interior(programme: &Programme) -> Result<Interior, InteriorFailur
     let rows = programme.rows();
     let count = programme.pairs.len();
     let bounds = rows - programme.flow_rows;
-    // clarabel: A x + s = b with s = 0 on flow rows, s >= 0 on bound rows and on -x <= 0.
+    // 1. clarabel: A x + s = b with s = 0 on flow rows, s >= 0 on bound rows and on -x <= 0.
     let mut pointers = Vec::with_capacity(count + 1);
     let mut row_indices = Vec::new();
     let mut values = Vec::new();
@@ -72,6 +77,7 @@ pub(super) fn interior(programme: &Programme) -> Result<Interior, InteriorFailur
     let mut rhs = programme.rhs.clone();
     rhs.resize(rows + count, 0.0);
     let cones = [ZeroConeT(programme.flow_rows), NonnegativeConeT(bounds + count)];
+    // 2. Solve.
     let settings = DefaultSettingsBuilder::default()
         .verbose(false)
         .max_threads(1)
@@ -87,6 +93,7 @@ pub(super) fn interior(programme: &Programme) -> Result<Interior, InteriorFailur
     let mut solver = DefaultSolver::new(&quadratic, objective, &matrix, &rhs, &cones, settings)
         .map_err(|_| InteriorFailure::Refused)?;
     solver.solve();
+    // 3. Only a full solution counts.
     let solution = &solver.solution;
     match solution.status {
         SolverStatus::Solved => {}
@@ -105,6 +112,7 @@ pub(super) fn interior(programme: &Programme) -> Result<Interior, InteriorFailur
             return Err(InteriorFailure::Refused);
         }
     }
+    // 4. Columns and slacks.
     let mut columns: Vec<f64> = solution.x.iter().map(|x| x.max(0.0)).collect();
     columns.extend((0..bounds).map(|i| solution.s[programme.flow_rows + i].max(0.0)));
     if columns.iter().any(|x| !x.is_finite()) {

@@ -1,19 +1,32 @@
 //! From an interior point to a vertex of the programme, and from vertex to better vertex.
 //!
-//! *Purification* walks from the interior point to a basic solution that is no worse (Megiddo 1991, "On finding
-//! primal- and dual-optimal bases"; the primal push of Bixby and Saltzman 1994). *Pivoting* is the primal
-//! simplex method from there: mostly it only certifies that no reduced cost is negative. It also answers what
-//! an interior point cannot: which bound cannot be met and what is least, exactly at the knife edge, and what
-//! is best on the optimal face by the next criterion.
+//! *Purification* walks from the interior point to a basic solution that is no worse (Megiddo 1991, "On finding primal-
+//! and dual-optimal bases"; the primal push of Bixby and Saltzman 1994). *Pivoting* is the primal simplex method from
+//! there: mostly it only certifies that no reduced cost is negative. It also answers what an interior point cannot:
+//! which bound cannot be met and what total is least, exactly at the knife edge, and what is best on the optimal face
+//! by the next criterion.
+//!
+//! Purification:
+//! 1. Factor a basis from independent columns, the heaviest first.
+//! 2. Give columns outside of it that carry mass their interior values.
+//! 3. Push them to zero one by one, or swap them in where a basic column reaches zero first.
+//! 4. Factor afresh, and check that no basic value is negative.
+//!
+//! Pivoting repeats:
+//! 1. Stop where the bound to be imposed holds.
+//! 2. Price: find a column of negative reduced cost. Where there is none with a fresh inverse either, the vertex is
+//!    optimal.
+//! 3. Ratio test: find the row whose column leaves, and the step.
+//! 4. Pivot, and factor afresh every fifty pivots.
 
 use super::basis::Basis;
 use super::occupation::Programme;
 
-/// A reduced cost this far below zero, relative to the terms it is the difference of, asks for a pivot.
+/// A reduced cost this far below zero, relative to the terms whose difference it is, calls for a pivot.
 const OPTIMALITY: f64 = 1e-12;
 /// The same for calling a column strictly worse than the optimal face.
 const STRICTLY_WORSE: f64 = 1e-11;
-/// After so much stalling a reduced cost this small is called zero.
+/// After long stalling a reduced cost this small counts as zero.
 const FORGIVEN: f64 = 1e-9;
 /// Entries of a direction this small, relative to its largest, are rounding.
 const ENTRY: f64 = 1e-13;
@@ -50,7 +63,7 @@ pub(super) struct Vertex<'a> {
     pub(super) pivots: usize,
 }
 
-/// What a criterion's optimum tells.
+/// The result of minimising a criterion.
 #[derive(Debug)]
 pub(super) struct Optimum {
     /// The multiplier of each bound row, at most 0, in the programme's scaling.
@@ -60,7 +73,7 @@ pub(super) struct Optimum {
 }
 
 impl<'a> Vertex<'a> {
-    /// The vertex of a policy that surely arrives, `choice` being one pair column per flow row. No bound is
+    /// Creates the vertex of a policy that surely arrives, `choice` being one pair column per flow row. No bound is
     /// imposed yet.
     pub(super) fn of_policy(programme: &'a Programme, choice: &[usize]) -> Option<Self> {
         let bounds = programme.rows() - programme.flow_rows;
@@ -76,11 +89,12 @@ impl<'a> Vertex<'a> {
     /// Purifies the interior point `interior` (a value per column). All bounds are imposed. `None` where
     /// rounding leaves no vertex that meets them.
     pub(super) fn of_interior(programme: &'a Programme, interior: &[f64]) -> Option<Self> {
+        // 1. A basis of the heaviest columns.
         let mut order: Vec<usize> = (0..interior.len()).collect();
         order.sort_by(|a, b| interior[*b].total_cmp(&interior[*a]).then(a.cmp(b)));
         let basis = Basis::factor(programme, order.iter().copied(), INDEPENDENT)?;
         let mut vertex = Self::at(programme, basis);
-        // Columns outside the basis that carry mass are pushed to zero one by one.
+        // 2. Columns outside the basis that carry mass keep it ...
         let extra: Vec<usize> = order
             .into_iter()
             .filter(|j| vertex.row_of[*j].is_none() && interior[*j] > NEGLIGIBLE)
@@ -92,9 +106,11 @@ impl<'a> Vertex<'a> {
                 *value -= interior[j] * step;
             }
         }
+        // 3. ... until they are pushed to zero one by one.
         for j in extra {
             vertex.push_to_zero(j, interior[j]);
         }
+        // 4. Fresh values.
         vertex.refresh(0.0)?;
         let tolerance = FEASIBILITY * vertex.largest_value();
         vertex.values.iter().all(|x| *x >= -tolerance).then_some(vertex)
@@ -118,18 +134,18 @@ impl<'a> Vertex<'a> {
         }
     }
 
-    /// The expected number of departures by every pair column, and the slacks.
+    /// Returns the expected number of departures by every pair column, and the slacks.
     pub(super) fn columns(&self) -> Vec<f64> {
         let value = |row: &Option<usize>| row.map_or(0.0, |row| self.values[row].max(0.0));
         self.row_of.iter().zip(&self.programme.unit).map(|(row, unit)| value(row) / unit).collect()
     }
 
-    /// Whether `column` is basic: only then can its value be positive.
+    /// Returns whether `column` is basic: only then can its value be positive.
     pub(super) fn is_basic(&self, column: usize) -> bool {
         self.row_of[column].is_some()
     }
 
-    /// What is left of bound `i`, in units of its row's scale; negative where it is exceeded.
+    /// Returns what is left of bound `i`, in units of its row's scale; negative where it is exceeded.
     pub(super) fn slack(&self, i: usize) -> f64 {
         self.row_of[self.programme.slack(i)].map_or(0.0, |row| self.values[row])
     }
@@ -162,14 +178,14 @@ impl<'a> Vertex<'a> {
         Ok(optimum)
     }
 
-    /// Holds every column at zero that would lead off the optimal face.
+    /// Holds at zero every column that would lead off the optimal face.
     pub(super) fn keep_to(&mut self, optimum: &Optimum) {
         for &column in &optimum.worse {
             self.banned[column] = true;
         }
     }
 
-    /// The primal simplex method: largest violation first, the smallest index (Bland 1977) after a stall.
+    /// Runs the primal simplex method: largest violation first, the smallest index (Bland 1977) after a stall.
     ///
     /// With `until`, a slack that is free and negative, ends without an optimum as soon as it is not negative.
     fn minimise(
@@ -183,15 +199,17 @@ impl<'a> Vertex<'a> {
         let mut stalled = 0;
         let mut fresh = false;
         for _ in 0..limit {
+            // 1. Does the bound hold?
             let restored =
                 until.filter(|slack| self.row_of[*slack].is_none_or(|row| self.values[row] >= 0.0));
             if restored.is_some() {
                 return Ok(None);
             }
+            // 2. Price.
             let y = self.basis.multipliers(self.programme, costs);
             let tolerance = if stalled > 2 * patience { FORGIVEN } else { OPTIMALITY };
             let Some(entering) = self.entering(costs, &y, tolerance, stalled > patience) else {
-                // Optimal by the running inverse; ask once more with a fresh one.
+                // Optimal by the running inverse; price once more with a fresh one.
                 if fresh {
                     return Ok(Some(self.optimum(costs, &y)));
                 }
@@ -200,9 +218,11 @@ impl<'a> Vertex<'a> {
                 continue;
             };
             fresh = false;
+            // 3. Ratio test.
             let direction = self.basis.direction(&self.programme.columns[entering]);
             let (row, step) = self.leaving(&direction, until, stalled > patience).ok_or(Stalled)?;
             stalled = if step > 0.0 { 0 } else { stalled + 1 };
+            // 4. Pivot.
             self.pivot(row, entering, &direction, -step, step);
             if self.pivots.is_multiple_of(FRESH) {
                 self.refresh(0.0).ok_or(Stalled)?;
@@ -211,7 +231,7 @@ impl<'a> Vertex<'a> {
         Err(Stalled)
     }
 
-    /// The reduced cost of a column and the size of the terms that it is made of, with a floor: what is
+    /// Computes the reduced cost of a column and the size of the terms of which it is made, with a floor: what is
     /// exactly zero comes out as rounding of the largest multiplier.
     fn reduced_cost(&self, column: usize, costs: &[f64], y: &[f64], floor: f64) -> (f64, f64) {
         let (mut reduced, mut scale) = (costs[column], costs[column].abs());
@@ -220,7 +240,7 @@ impl<'a> Vertex<'a> {
             reduced -= term;
             scale += term.abs();
         }
-        // A slack is measured in bounds, a whole one of which is worth something next to the total.
+        // A slack is measured in bounds, a whole one of which counts next to the total.
         let share = if column < self.programme.pairs.len() {
             FLOOR / self.programme.unit[column]
         } else {
@@ -229,7 +249,7 @@ impl<'a> Vertex<'a> {
         (reduced, scale.max(share * floor))
     }
 
-    /// The size of the numbers that multipliers are made of: the largest expected total from any state, or
+    /// Returns the size of the numbers of which multipliers are made: the largest expected total from any state, or
     /// basic cost, as the former may cancel.
     fn magnitude(&self, costs: &[f64], y: &[f64]) -> f64 {
         let basic = self.basis.basic.iter().map(|j| costs[*j] * self.programme.unit[*j]);
@@ -255,8 +275,8 @@ impl<'a> Vertex<'a> {
         best.1
     }
 
-    /// Which row's column leaves, and how far the entering one can rise. In two passes (Harris 1973): first
-    /// how far with a little slack, then the largest pivot within that.
+    /// Finds the row whose column leaves, and how far the entering one can rise. In two passes (Harris 1973): first how
+    /// far with a little slack, then the largest pivot within that.
     fn leaving(
         &self,
         direction: &[f64],

@@ -26,7 +26,7 @@ fn lower_bound(cmdp: &Cmdp, multipliers: &[f64]) -> f64 {
             .sum::<f64>()
 }
 
-/// Costs over `decades` orders of magnitude, and every move likely to fail where `patient`.
+/// Spreads costs over `decades` orders of magnitude, and makes every move likely to fail where `patient`.
 fn distorted(mut instance: Instance, decades: f64, patient: bool, stream: &mut Stream) -> Instance {
     let mut stretch = || crate::math::pow(10.0, stream.between(-0.5, 0.5) * decades);
     for (_, _, c) in &mut instance.primary {

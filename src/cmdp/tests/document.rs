@@ -1,4 +1,4 @@
-//! The JSON form: the example of the documentation, and each way to get it wrong.
+//! The JSON form: the example of the documentation, and each possible fault.
 
 use super::*;
 use crate::cmdp::tests::{Family, Instance, relative};
@@ -183,7 +183,7 @@ fn anything() -> impl Strategy<Value = Value> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Whatever stands in one place of a document: an answer or an error, never a panic.
+    /// Whatever value takes one place of a document: an answer or an error, never a panic.
     #[test]
     fn no_document_panics(place in 0_usize..14, value in anything()) {
         let places = [
@@ -225,7 +225,7 @@ proptest! {
     }
 }
 
-/// What is written is read as the same model, numbers to the bit.
+/// A written model is read as the same, numbers to the bit.
 #[test]
 fn a_written_model_is_read_as_the_same() {
     for family in Family::ALL {

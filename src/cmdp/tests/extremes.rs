@@ -74,12 +74,12 @@ fn a_bound_of_zero_is_kept_exactly() {
     assert_eq!(solution.secondary, [0.0]);
     assert!(relative(solution.primary, 3.0) < 1e-11);
     assert_eq!(solution.policy.at(2), &[(1, 1.0)], "reached with probability 1e-14 only");
-    // Without the free way there is none.
+    // Without the free action there is none.
     instance.secondary[0].1.push((1, 0, 1.0));
     assert_eq!(solve(&instance.cmdp()).unwrap(), Outcome::Infeasible(Infeasible::ZeroBounds));
 }
 
-/// All ways equal: still a vertex, still few randomised states.
+/// All actions equal: still a vertex, still few randomised states.
 #[test]
 fn ties_everywhere_leave_a_vertex() {
     let width = 6;
@@ -128,7 +128,7 @@ fn units_do_not_matter() {
     }
 }
 
-/// Each step succeeds with probability 1e-7 only, and a second way costs a million times as much.
+/// Each step succeeds with probability 1e-7 only, and a second action costs a million times as much.
 #[test]
 fn hardly_moving_has_its_closed_form() {
     let p = 1e-7;

@@ -1,4 +1,4 @@
-//! Numbering states and actions otherwise, or listing entries in another order, changes no expected total.
+//! Another numbering of states and actions, or another order of entries, changes no expected total.
 
 use super::*;
 use proptest::prelude::*;

@@ -51,7 +51,7 @@ impl Instance {
         builder.build().unwrap()
     }
 
-    /// The same model in the JSON form.
+    /// Writes the same model in the JSON form.
     pub(super) fn document(&self) -> serde_json::Value {
         let names = |n: usize| (0..n).map(|i| format!("n{i}")).collect::<Vec<_>>();
         let secondary: Vec<_> = self
@@ -76,7 +76,7 @@ impl Instance {
         }
     }
 
-    /// Expected totals of the policy without bounds that is best by criterion `k`.
+    /// Returns the expected totals of the policy without bounds that is best by criterion `k`.
     fn best_by(&self, k: usize) -> Vec<f64> {
         let cmdp = self.cmdp();
         let costs = cmdp.pairs().iter().map(|pair| pair.costs[k]).collect();
@@ -89,8 +89,8 @@ impl Instance {
         evaluate(&cmdp, &Policy::new(&cmdp, choices)).unwrap()
     }
 
-    /// Sets the bounds to what a mixture of the policies that are best by each secondary cost takes, or a
-    /// little more or less. Never nearly what is least: there, oracles with a tolerance cannot judge.
+    /// Sets the bounds to what a mixture of the policies that are best by each secondary cost takes, or a little more
+    /// or less. Never near the least: there, oracles with a tolerance cannot judge.
     fn bound(&mut self, stream: &mut Stream) {
         let extremes: Vec<_> = (0..self.secondary.len()).map(|i| self.best_by(i + 1)).collect();
         let weight = stream.between(0.1, 0.9);
@@ -103,7 +103,7 @@ impl Instance {
     }
 }
 
-/// Cost of a step at a speed: primary, failure, time.
+/// Draws the cost of a step at a speed: primary, failure, time.
 fn step_costs(stream: &mut Stream, literal: bool, fast: bool) -> [f64; 3] {
     let primary = if literal { 1.0 } else { stream.between(0.5, 3.0) };
     let (failure, time) = if fast { (0.03, 4.0) } else { (0.01, 9.0) };
@@ -125,19 +125,19 @@ impl Family {
     pub(super) const ALL: [Self; 6] =
         [Self::Corridor, Self::Tree, Self::Grid, Self::SlippyGrid, Self::Loop, Self::Trapped];
 
-    /// Whether every action has one outcome.
+    /// Returns whether every action has one outcome.
     fn deterministic(self) -> bool {
         matches!(self, Self::Corridor | Self::Tree | Self::Grid)
     }
 
-    /// The instance number `index` of the family, with about `size` states.
+    /// Draws the instance number `index` of the family, with about `size` states.
     pub(super) fn instance(self, index: u64, size: usize) -> Instance {
         let coordinates = vec![("family".to_owned(), format!("{self:?}"))];
         let mut stream = Seeds::new(index, coordinates).stream("cmdp-instance");
         let stream = &mut stream;
         let literal = index.is_multiple_of(2);
         let mut instance = Instance { initial: vec![(0, 1.0)], ..Instance::default() };
-        // Each undirected edge: a, b, and with which probability one slips (and to where).
+        // Each undirected edge: a, b, and the probability of slipping (and to where).
         let (states, edges) = match self {
             Self::Corridor => (size, (1..size).map(|x| (x - 1, x)).collect::<Vec<_>>()),
             Self::Tree => (size, (1..size).map(|x| (below(stream, x), x)).collect()),
@@ -175,7 +175,7 @@ impl Family {
             }
         }
         if self == Self::Trapped {
-            // A pit that nobody leaves, one that only circles, and fast but risky ways past them.
+            // A pit that nothing leaves, one that only circles, and fast but risky actions past them.
             let pit = states;
             instance.states += 2;
             instance.actions = action + 1;
@@ -207,7 +207,7 @@ fn below(stream: &mut Stream, bound: usize) -> usize {
     usize::try_from(stream.below(bound as u64)).unwrap()
 }
 
-/// |a - b| relative to the larger, with 1e-300 in place of zero.
+/// Returns |a - b| relative to the larger, with 1e-300 in place of zero.
 pub(super) fn relative(a: f64, b: f64) -> f64 {
     (a - b).abs() / a.abs().max(b.abs()).max(1e-300)
 }

@@ -1,10 +1,10 @@
-//! The planner held against two independent routes: the textbook programme in a simplex code (microlp), without
+//! The planner compared with two independent routes: the textbook programme in a simplex code (microlp), without
 //! our pruning, folding and scaling; and a Dantzig-Wolfe loop whose pricing is Dijkstra's shortest path.
 
 use super::*;
 use microlp::{ComparisonOp, OptimizationDirection, Problem};
 
-/// The textbook occupation-measure programme over every state outside M. `None` where infeasible.
+/// Solves the textbook occupation-measure programme over every state outside M. `None` where infeasible.
 pub(super) fn textbook(cmdp: &Cmdp) -> Option<f64> {
     let mut problem = Problem::new(OptimizationDirection::Minimize);
     let used: Vec<&Pair> =
@@ -41,7 +41,7 @@ pub(super) fn textbook(cmdp: &Cmdp) -> Option<f64> {
     }
 }
 
-/// Totals of the shortest path from each state of β by the weights, on a deterministic model.
+/// Returns the totals of the shortest path from each state of β by the weights, on a deterministic model.
 fn shortest_path(cmdp: &Cmdp, weight: impl Fn(&Pair) -> f64) -> Vec<f64> {
     let n = cmdp.states();
     let mut distance = vec![f64::INFINITY; n];
@@ -69,8 +69,8 @@ fn shortest_path(cmdp: &Cmdp, weight: impl Fn(&Pair) -> f64) -> Vec<f64> {
         .collect()
 }
 
-/// The least primary cost of a mixture of paths within the bounds, by column generation; `None` where even
-/// the best mixture needs its bounds exceeded.
+/// Computes the least primary cost of a mixture of paths within the bounds, by column generation; `None` where even the
+/// best mixture needs its bounds exceeded.
 fn dantzig_wolfe(cmdp: &Cmdp) -> Option<f64> {
     let bounds: Vec<f64> = cmdp.secondary().iter().map(|s| s.bound).collect();
     let mut paths = vec![shortest_path(cmdp, |pair| pair.costs[0])];
@@ -114,7 +114,7 @@ struct Row {
     worst_bound: f64,
 }
 
-/// Solves the instances of one family and holds each against the oracles.
+/// Solves the instances of one family and compares each with the oracles.
 fn judge(family: Family, count: u64) -> Row {
     let mut row = Row::default();
     for index in 0..count {
