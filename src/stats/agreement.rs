@@ -1,10 +1,10 @@
-//! How two sets of cell means agree: ours and those a paper prints with its spread and runs.
+//! Agreement of two sets of cell means: ours, and those a paper prints with its spread and runs.
 
 use super::distribution::student_t_quantile;
 use super::summary::{Summary, mean, sample_sd};
 use super::{Interval, length, real};
 
-/// A least squares line with what leaving out one block at a time says of its spread.
+/// A least squares line with the spread that leaving out one block at a time gives.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Line {
     /// Rise of y per unit of x; NaN where x does not vary.
@@ -15,8 +15,8 @@ pub struct Line {
     pub intervals: Option<(Interval, Interval)>,
 }
 
-/// The line through the points (x, y) with intervals by the jackknife over `blocks`, lists of places in `points`
-/// that cover each of them once (Quenouille 1956, Tukey 1958; t with one degree of freedom less than blocks).
+/// Fits the line through the points (x, y) with intervals by the jackknife over `blocks`, lists of indices into
+/// `points` that cover each of them once (Quenouille 1956, Tukey 1958; t with one degree of freedom less than blocks).
 ///
 /// Points of one block may depend on each other in any way: a block counts as one observation.
 pub fn line(points: &[(f64, f64)], blocks: &[Vec<usize>], confidence: f64) -> Line {
@@ -53,20 +53,21 @@ fn least_squares(points: impl Iterator<Item = (f64, f64)>) -> (f64, f64) {
     (slope, my - slope * mx)
 }
 
-/// Standard deviation of the difference between a printed mean and that of an exact replicate of `runs` runs.
+/// Computes the standard deviation of the difference between a printed mean and that of an exact replicate of `runs`
+/// runs.
 pub fn replicate_sd(printed: Summary, runs: u64) -> f64 {
     printed.sd * (1.0 / real(printed.n) + 1.0 / real(runs)).sqrt()
 }
 
-/// Half the width of the interval around a printed mean in which the mean of `runs` runs of an exact replicate lies
-/// with `confidence`: t(n - 1) sd √(1/n + 1/runs). The spread is the paper's alone, so that no agreement can be won by
-/// a spread of one's own.
+/// Computes half the width of the interval around a printed mean in which the mean of `runs` runs of an exact replicate
+/// lies with `confidence`: t(n - 1) sd √(1/n + 1/runs). The spread is the paper's alone, so that no agreement can be
+/// won by a spread of one's own.
 pub fn prediction_half_width(printed: Summary, runs: u64, confidence: f64) -> f64 {
     student_t_quantile(0.5 + 0.5 * confidence, real(printed.n) - 1.0) * replicate_sd(printed, runs)
 }
 
-/// The same of the log of a ratio of two printed means, by the delta method, with Satterthwaite's degrees of freedom;
-/// means are positive. Each comes with the runs of its replicate.
+/// Computes the same for the log of a ratio of two printed means, by the delta method, with Satterthwaite's degrees of
+/// freedom; means are positive. Each comes with the runs of its replicate.
 pub fn log_ratio_half_width(above: (Summary, u64), below: (Summary, u64), confidence: f64) -> f64 {
     let relative = |(printed, runs): (Summary, u64)| {
         let sd = replicate_sd(printed, runs) / printed.mean;
@@ -81,8 +82,8 @@ pub fn log_ratio_half_width(above: (Summary, u64), below: (Summary, u64), confid
     student_t_quantile(0.5 + 0.5 * confidence, df) * (a + b).sqrt()
 }
 
-/// By how much the mean square error of a prediction is below that of the best constant, the mean of what is predicted:
-/// 1 for a perfect one, 0 for the constant, negative for worse; NaN where nothing varies.
+/// Computes by how much the mean square error of a prediction is below that of the best constant, the mean of the
+/// truth: 1 for a perfect one, 0 for the constant, negative for worse; NaN where nothing varies.
 pub fn skill_over_constant(predicted: &[f64], truth: &[f64]) -> f64 {
     let constant = mean(truth);
     let squares = |guess: &dyn Fn(usize) -> f64| -> f64 {
@@ -92,7 +93,7 @@ pub fn skill_over_constant(predicted: &[f64], truth: &[f64]) -> f64 {
     if of_constant > 0.0 { 1.0 - squares(&|i| predicted[i]) / of_constant } else { f64::NAN }
 }
 
-/// Root mean square difference; NaN of nothing.
+/// Computes the root mean square difference; NaN for no values.
 pub fn rmse(a: &[f64], b: &[f64]) -> f64 {
     let squares: Vec<f64> = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).collect();
     mean(&squares).sqrt()
@@ -130,7 +131,7 @@ mod tests {
         assert!(found.slope.is_nan() && found.intervals.is_none());
     }
 
-    /// A block counts once, however often its points are told.
+    /// A block counts once, however often its points are listed.
     #[test]
     fn telling_the_points_of_a_block_twice_narrows_nothing() {
         let y = [0.2, 0.7, 2.4, 2.9, 3.8, 5.1];

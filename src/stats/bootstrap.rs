@@ -7,10 +7,10 @@ use super::{Interval, real};
 use crate::math::{exp, ln};
 use crate::rng::Stream;
 
-/// A statistic with what resampling says of its spread.
+/// A statistic with its spread by resampling.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bootstrapped {
-    /// The statistic of the samples as seen.
+    /// The statistic of the samples as observed.
     pub estimate: f64,
     /// Percentile interval (Efron and Tibshirani 1993, section 13.3).
     pub interval: Interval,
@@ -20,7 +20,7 @@ pub struct Bootstrapped {
     pub statistics: Vec<f64>,
 }
 
-/// Resamples each of `samples` on its own, with replacement, `resamples` times, and takes `statistic` of all.
+/// Resamples each of `samples` on its own, with replacement, `resamples` times, and computes `statistic` of all.
 ///
 /// Samples are non-empty; draws come in the order of samples and values.
 pub fn bootstrap(
@@ -45,7 +45,7 @@ pub fn bootstrap(
     summed_up(estimate, std::iter::repeat_with(resample).take(resamples as usize), confidence)
 }
 
-/// [`bootstrap`] of the shares of `groups`: a resample of zeros and ones has a binomial number of ones, which is
+/// Does [`bootstrap`] of the shares of `groups`: a resample of zeros and ones has a binomial number of ones, which is
 /// drawn at once.
 pub fn bootstrap_shares(
     groups: &[Proportion],
@@ -68,7 +68,7 @@ pub fn bootstrap_shares(
     summed_up(estimate, std::iter::repeat_with(resample).take(resamples as usize), confidence)
 }
 
-/// Probabilities of at most 0, 1, ... successes among as many trials as `seen` has, each with its share.
+/// Computes the probabilities of at most 0, 1, ... successes among as many trials as `seen` has, each with its share.
 fn cumulative(seen: Proportion) -> Vec<f64> {
     let (n, p) = (seen.trials, seen.share());
     if seen.successes == 0 || seen.successes == n {

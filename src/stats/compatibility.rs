@@ -1,11 +1,11 @@
-//! Whether what we found and what a paper prints agree, by the strongest method that the printed numbers allow: a reading
-//! aid beside tables, never a verdict.
+//! Agreement of our results with the numbers a paper prints, by the strongest method that the printed numbers allow: a
+//! reading aid beside tables, never a verdict.
 //!
 //! - Shares of known numbers of trials: Newcombe's 95 % interval of the difference, at both numbers.
 //! - Means with a printed standard deviation and number of runs: the 95 % interval in which the mean of as many runs as
 //!   ours of an exact replicate lies; the spread is the paper's alone.
-//! - Everything else, a printed deviation of unknown number of runs too: the relative difference, which knows no chance and
-//!   says neither compatible nor not.
+//! - Everything else, including a printed deviation of an unknown number of runs: the relative difference, which knows
+//!   no chance and says neither compatible nor not.
 
 use super::agreement::prediction_half_width;
 use super::proportion::{Proportion, newcombe};
@@ -15,7 +15,7 @@ use super::{Interval, real};
 /// Confidence of every interval here.
 pub const CONFIDENCE: f64 = 0.95;
 
-/// What we found in a cell.
+/// Our result in a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Ours {
     /// So many of so many trials.
@@ -26,7 +26,7 @@ pub enum Ours {
     Bare(f64),
 }
 
-/// What the paper prints of it.
+/// The paper's number for it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Printed {
     /// The number; shares in percent.
@@ -48,7 +48,7 @@ pub enum Method {
     RelativeDifference,
 }
 
-/// How near a number without spread is.
+/// The nearness of a number without spread.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Closeness {
     /// Within 10 % of the printed value.
@@ -59,7 +59,7 @@ pub enum Closeness {
     Farther,
 }
 
-/// Why nothing is said of a cell.
+/// Why a cell has no comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Silence {
     /// The paper prints no number.
@@ -73,23 +73,23 @@ pub enum Silence {
     NotReached,
 }
 
-/// Two interval limits of ours less the paper's, and by which method.
+/// The limits of the interval of ours less the paper's, and the method.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Evidence {
-    /// How it was found: never the relative difference.
+    /// How it was computed: never the relative difference.
     pub method: Method,
-    /// Where ours less the paper's lies (in the unit of the cell; of shares, percentage points).
+    /// The interval of ours less the paper's (in the unit of the cell; for shares, percentage points).
     pub difference: Interval,
 }
 
-/// How one cell agrees.
+/// The agreement of one cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Agreement {
     /// The interval of the difference holds 0.
     Compatible(Evidence),
     /// It does not.
     Apart(Evidence),
-    /// No spread to go by: nearness, and the relative difference (percent), which a printed 0 has none of.
+    /// No spread available: nearness, and the relative difference (percent), which a printed 0 has none of.
     Near(Closeness, Option<f64>),
     /// Nothing to compare.
     Silent(Silence),
@@ -101,7 +101,7 @@ impl Default for Agreement {
     }
 }
 
-/// Why a cell without a number of ours has none.
+/// Returns why a cell without a number of ours has none.
 pub fn absence(is_in_design: bool, trials: u64) -> Silence {
     match (is_in_design, trials) {
         (_, 1..) => Silence::NotReached,
@@ -111,7 +111,7 @@ pub fn absence(is_in_design: bool, trials: u64) -> Silence {
 }
 
 impl Agreement {
-    /// Compares what we found, or why there is nothing, with what the paper prints.
+    /// Compares our result, or the reason for its absence, with the paper's.
     pub fn between(ours: Result<Ours, Silence>, printed: Option<Printed>) -> Self {
         let ours = match ours {
             Ok(ours) => ours,
@@ -147,7 +147,7 @@ impl Agreement {
         }
     }
 
-    /// The method that was used; `None` where nothing was compared.
+    /// Returns the method that was used; `None` where nothing was compared.
     pub fn method(self) -> Option<Method> {
         match self {
             Self::Compatible(evidence) | Self::Apart(evidence) => Some(evidence.method),
@@ -156,7 +156,7 @@ impl Agreement {
         }
     }
 
-    /// The interval of ours less the paper's, where there is one.
+    /// Returns the interval of ours less the paper's, where there is one.
     pub fn difference(self) -> Option<Interval> {
         match self {
             Self::Compatible(evidence) | Self::Apart(evidence) => Some(evidence.difference),
@@ -164,12 +164,12 @@ impl Agreement {
         }
     }
 
-    /// The relative difference (percent of the printed value), where that is the method.
+    /// Returns the relative difference (percent of the printed value), where that is the method.
     pub fn relative_percent(self) -> Option<f64> {
         if let Self::Near(_, percent) = self { percent } else { None }
     }
 
-    /// The mark beside a cell: a shape, so that colour adds nothing needed; empty where nothing is compared.
+    /// Returns the mark beside a cell: a shape, so that colour adds nothing needed; empty where nothing is compared.
     pub fn mark(self) -> &'static str {
         match self {
             Self::Compatible(_) => "\u{2713}",
@@ -181,7 +181,7 @@ impl Agreement {
         }
     }
 
-    /// What it is called in tables.
+    /// Returns its name in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Compatible(_) => "compatible",
@@ -196,7 +196,7 @@ impl Agreement {
         }
     }
 
-    /// Every name there is, in this order.
+    /// Every name, in this order.
     pub const NAMES: [&'static str; 9] = [
         "compatible",
         "apart",
@@ -209,7 +209,7 @@ impl Agreement {
         "not-reached",
     ];
 
-    /// The mark in words.
+    /// Returns the mark in words.
     pub fn words(self) -> &'static str {
         match self {
             Self::Compatible(_) => "compatible at 95 %",
@@ -223,7 +223,7 @@ impl Agreement {
 }
 
 impl Silence {
-    /// In words, as they stand in a cell.
+    /// Returns the reason in words, as they stand in a cell.
     pub fn words(self) -> &'static str {
         match self {
             Self::NotPrinted => "not printed",
@@ -238,7 +238,7 @@ impl Method {
     /// All of them, the strongest first.
     pub const ALL: [Self; 3] = [Self::Newcombe, Self::PredictionInterval, Self::RelativeDifference];
 
-    /// What it is called in tables.
+    /// Returns its name in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Newcombe => "newcombe",
@@ -247,7 +247,7 @@ impl Method {
         }
     }
 
-    /// What the marks mean by this method, in a clause.
+    /// Returns what the marks mean by this method, in a clause.
     pub fn rule(self) -> &'static str {
         match self {
             Self::Newcombe => {
@@ -266,7 +266,7 @@ impl Method {
     }
 }
 
-/// The rules of the methods that occur in `found`, in one sentence; `None` where nothing was compared.
+/// Returns the rules of the methods that occur in `found`, in one sentence; `None` where nothing was compared.
 pub fn rules(found: impl IntoIterator<Item = Agreement>) -> Option<String> {
     let used: Vec<Method> = found.into_iter().filter_map(Agreement::method).collect();
     let rules: Vec<&str> =
@@ -274,7 +274,7 @@ pub fn rules(found: impl IntoIterator<Item = Agreement>) -> Option<String> {
     (!rules.is_empty()).then(|| rules.join("; "))
 }
 
-/// How many cells one method compared, by what it found.
+/// How many cells one method compared, by result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Tally {
     /// The method: counts of different ones are never added.
@@ -288,7 +288,7 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// One tally a method that occurs in `found`.
+    /// Counts the cells, one tally per method that occurs in `found`.
     pub fn of(found: &[Agreement]) -> Vec<Self> {
         let tally = |method: Method| {
             let by = || found.iter().filter(|agreement| agreement.method() == Some(method));
@@ -307,12 +307,12 @@ impl Tally {
         Method::ALL.into_iter().map(tally).filter(|tally| tally.all() > 0).collect()
     }
 
-    /// All cells that the method compared.
+    /// Returns the number of cells that the method compared.
     pub fn all(self) -> usize {
         self.good + self.fair + self.bad
     }
 
-    /// `118 of 180 published percentages are compatible with ours at 95 %`.
+    /// Returns, for example, `118 of 180 published percentages are compatible with ours at 95 %`.
     pub fn in_words(self) -> String {
         let (good, all) = (self.good, self.all());
         let are = if good == 1 { "is" } else { "are" };
@@ -332,7 +332,7 @@ impl Tally {
     }
 }
 
-/// A printed percentage of `n` trials as a count of them: the nearest there is.
+/// Converts a printed percentage of `n` trials to a count of them: the nearest there is.
 pub fn printed_share(percent: f64, n: u64) -> Proportion {
     let hits = (percent.clamp(0.0, 100.0) / 100.0 * real(n)).round();
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to n")]

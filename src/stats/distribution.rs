@@ -4,12 +4,12 @@ use super::special::{incomplete_beta, incomplete_gamma, ln_beta};
 use crate::math::{exp, ln, ln_1p};
 use std::f64::consts::PI;
 
-/// Lower tail of the standard normal distribution.
+/// Computes the lower tail of the standard normal distribution.
 pub fn normal_cdf(z: f64) -> f64 {
     normal_sf(-z)
 }
 
-/// Upper tail of the standard normal distribution: half of Q(1/2, z²/2) (Abramowitz and Stegun 26.2.30).
+/// Computes the upper tail of the standard normal distribution: half of Q(1/2, z²/2) (Abramowitz and Stegun 26.2.30).
 pub fn normal_sf(z: f64) -> f64 {
     if z.is_nan() {
         return f64::NAN;
@@ -18,17 +18,17 @@ pub fn normal_sf(z: f64) -> f64 {
     if z > 0.0 { 0.5 * outer } else { 0.5 + 0.5 * inner }
 }
 
-/// The error function: P(1/2, x²) with the sign of `x` (Abramowitz and Stegun 6.5.16).
+/// Computes the error function: P(1/2, x²) with the sign of `x` (Abramowitz and Stegun 6.5.16).
 pub fn erf(x: f64) -> f64 {
     incomplete_gamma(0.5, x * x).0.copysign(x)
 }
 
-/// The complementary error function, accurate in its tail.
+/// Computes the complementary error function, accurate in its tail.
 pub fn erfc(x: f64) -> f64 {
     2.0 * normal_sf(x * std::f64::consts::SQRT_2)
 }
 
-/// The `z` below which a standard normal number falls with probability `p`; NaN outside [0, 1].
+/// Computes the `z` below which a standard normal number falls with probability `p`; NaN outside [0, 1].
 ///
 /// Abramowitz and Stegun 26.2.23 as the start, Newton's method on the logarithm of the tail to the end.
 pub fn normal_quantile(p: f64) -> f64 {
@@ -62,7 +62,7 @@ fn lower_normal_quantile(p: f64) -> f64 {
     -z
 }
 
-/// Upper tail of Student's t with `df` > 0 degrees of freedom (Abramowitz and Stegun 26.7.1, 26.5.27).
+/// Computes the upper tail of Student's t with `df` > 0 degrees of freedom (Abramowitz and Stegun 26.7.1, 26.5.27).
 pub fn student_t_sf(t: f64, df: f64) -> f64 {
     if t.is_nan() {
         return f64::NAN;
@@ -71,12 +71,12 @@ pub fn student_t_sf(t: f64, df: f64) -> f64 {
     if t > 0.0 { 0.5 * outside } else { 1.0 - 0.5 * outside }
 }
 
-/// Lower tail of Student's t.
+/// Computes the lower tail of Student's t.
 pub fn student_t_cdf(t: f64, df: f64) -> f64 {
     student_t_sf(-t, df)
 }
 
-/// Probability of a t at least as far from zero.
+/// Computes the probability of a t at least as far from zero.
 pub fn student_t_two_sided(t: f64, df: f64) -> f64 {
     if t.is_infinite() {
         return 0.0;
@@ -94,9 +94,9 @@ pub fn student_t_two_sided(t: f64, df: f64) -> f64 {
     incomplete_beta(0.5 * df, 0.5, x, y).0
 }
 
-/// The `t` below which Student's t falls with probability `p` in (0, 1).
+/// Computes the `t` below which Student's t falls with probability `p` in (0, 1).
 ///
-/// Newton's method on the logarithm of the tail, kept inside a bracket that halves where a step leaves it.
+/// Newton's method on the logarithm of the tail, kept inside a bracket that is halved where a step leaves it.
 pub fn student_t_quantile(p: f64, df: f64) -> f64 {
     if !(0.0..=1.0).contains(&p) {
         return f64::NAN;
@@ -135,12 +135,12 @@ pub fn student_t_quantile(p: f64, df: f64) -> f64 {
     sign * t
 }
 
-/// Upper tail of the F distribution with `df1`, `df2` > 0 (Abramowitz and Stegun 26.6.2).
+/// Computes the upper tail of the F distribution with `df1`, `df2` > 0 (Abramowitz and Stegun 26.6.2).
 pub fn f_sf(f: f64, df1: f64, df2: f64) -> f64 {
     f_tails(f, df1, df2).1
 }
 
-/// Lower tail of the F distribution.
+/// Computes the lower tail of the F distribution.
 pub fn f_cdf(f: f64, df1: f64, df2: f64) -> f64 {
     f_tails(f, df1, df2).0
 }
@@ -153,18 +153,18 @@ fn f_tails(f: f64, df1: f64, df2: f64) -> (f64, f64) {
     incomplete_beta(0.5 * df1, 0.5 * df2, df1 * f / whole, df2 / whole)
 }
 
-/// Upper tail of chi-square with `df` > 0 degrees of freedom (Abramowitz and Stegun 26.4.19).
+/// Computes the upper tail of chi-square with `df` > 0 degrees of freedom (Abramowitz and Stegun 26.4.19).
 pub fn chi_square_sf(x: f64, df: f64) -> f64 {
     incomplete_gamma(0.5 * df, 0.5 * x).1
 }
 
-/// Lower tail of chi-square.
+/// Computes the lower tail of chi-square.
 pub fn chi_square_cdf(x: f64, df: f64) -> f64 {
     incomplete_gamma(0.5 * df, 0.5 * x).0
 }
 
-/// Probability that at least `k` of `n` independent events of probability `p` occur
-/// (Abramowitz and Stegun 26.5.24).
+/// Computes the probability that at least `k` of `n` independent events of probability `p` occur (Abramowitz and Stegun
+/// 26.5.24).
 pub fn binomial_sf_inclusive(k: u64, n: u64, p: f64) -> f64 {
     if k == 0 {
         return 1.0;

@@ -7,23 +7,23 @@ use super::means::welch_shifted;
 use super::proportion::{Proportion, newcombe_limits};
 use super::summary::Summary;
 
-/// How a difference lies to the margins ± `margin`.
+/// The position of a difference relative to the margins ± `margin`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Equivalence {
     /// p-value of "inside": the larger of the two one-sided ones.
     pub inside: f64,
-    /// p-value of "beyond": the difference exceeds the margin on the side where it was seen.
+    /// p-value of "beyond": the difference exceeds the margin on the side where it was observed.
     pub beyond: f64,
 }
 
-/// Equivalence of two means by Welch's test against both margins.
+/// Tests the equivalence of two means by Welch's test against both margins.
 pub fn tost_means(a: Summary, b: Summary, margin: f64) -> Equivalence {
     let upper = welch_shifted(a, b, margin).tails;
     let lower = welch_shifted(a, b, -margin).tails;
     Equivalence { inside: upper.less.max(lower.greater), beyond: upper.greater.min(lower.less) }
 }
 
-/// Equivalence of two shares by Newcombe's interval.
+/// Tests the equivalence of two shares by Newcombe's interval.
 ///
 /// The p-value belongs to the narrowest interval of confidence 1 - 2p that a margin touches, so `p <= alpha`
 /// and "the 1 - 2 alpha interval lies inside" are the same statement. Unlike Wald's test it does not call
@@ -35,7 +35,7 @@ pub fn tost_proportions(a: Proportion, b: Proportion, margin: f64) -> Equivalenc
     Equivalence { inside: below_upper.max(above_lower), beyond: beyond_upper.min(beyond_lower) }
 }
 
-/// p-values of "the difference is below `margin`" and "above": the limit that faces the margin is moved
+/// Computes the p-values of "the difference is below `margin`" and "above": the limit that faces the margin is moved
 /// until it touches.
 fn tails_at(a: Proportion, b: Proportion, margin: f64) -> (f64, f64) {
     let difference = a.share() - b.share();

@@ -20,7 +20,7 @@ pub struct TTest {
 }
 
 impl TTest {
-    /// The test of `difference` against `shift`.
+    /// Computes the test of `difference` against `shift`.
     fn new(difference: f64, standard_error: f64, df: f64, shift: f64) -> Self {
         let t = if difference == shift { 0.0 } else { (difference - shift) / standard_error };
         let tails = Tails {
@@ -31,21 +31,21 @@ impl TTest {
         Self { t, df, difference, standard_error, tails }
     }
 
-    /// Interval of the difference.
+    /// Computes the interval of the difference.
     pub fn interval(&self, confidence: f64) -> Interval {
         let half = student_t_quantile(0.5 + 0.5 * confidence, self.df) * self.standard_error;
         Interval { low: self.difference - half, high: self.difference + half, confidence }
     }
 }
 
-/// Welch's t test of two means with unequal variances (Welch 1947, df by Satterthwaite 1946).
+/// Computes Welch's t test of two means with unequal variances (Welch 1947, df by Satterthwaite 1946).
 ///
 /// Each group has at least two values. Where neither group varies the df is that of equal variances.
 pub fn welch(a: Summary, b: Summary) -> TTest {
     welch_shifted(a, b, 0.0)
 }
 
-/// [`welch`] against a difference of `shift` instead of zero.
+/// Computes [`welch`] against a difference of `shift` instead of zero.
 pub fn welch_shifted(a: Summary, b: Summary, shift: f64) -> TTest {
     let (va, vb) = (a.variance_of_mean(), b.variance_of_mean());
     let (na, nb) = (real(a.n), real(b.n));
@@ -60,9 +60,9 @@ pub fn welch_shifted(a: Summary, b: Summary, shift: f64) -> TTest {
     TTest::new(a.mean - b.mean, variance.sqrt(), df, shift)
 }
 
-/// Welch's test of matched groups: the difference, first less second, is the mean of each pair's own, so that what moves
-/// both groups of a pair alike is no part of it; the variance of either side is that within its groups, pooled over pairs.
-/// One pair gives [`welch`].
+/// Computes Welch's test of matched groups: the difference, first less second, is the mean of each pair's own, so that
+/// what moves both groups of a pair alike is no part of it; the variance of either side is that within its groups,
+/// pooled over pairs. One pair gives [`welch`].
 ///
 /// Each group has at least one value. `None` where a side has no group of two, which leaves its variance unknown.
 pub fn welch_matched(pairs: &[(Summary, Summary)]) -> Option<TTest> {
@@ -88,7 +88,7 @@ pub fn welch_matched(pairs: &[(Summary, Summary)]) -> Option<TTest> {
     Some(TTest::new(difference, variance.sqrt(), df, 0.0))
 }
 
-/// Student's t test of two means with one common variance: the square root of two-group ANOVA.
+/// Computes Student's t test of two means with one common variance: the square root of two-group ANOVA.
 pub fn student(a: Summary, b: Summary) -> TTest {
     let (na, nb) = (real(a.n), real(b.n));
     let df = na + nb - 2.0;
@@ -96,7 +96,7 @@ pub fn student(a: Summary, b: Summary) -> TTest {
     TTest::new(a.mean - b.mean, (pooled * (1.0 / na + 1.0 / nb)).sqrt(), df, 0.0)
 }
 
-/// Interval of one mean by Student's t.
+/// Computes the interval of one mean by Student's t.
 pub fn mean_interval(a: Summary, confidence: f64) -> Interval {
     let half =
         student_t_quantile(0.5 + 0.5 * confidence, real(a.n) - 1.0) * a.variance_of_mean().sqrt();
@@ -116,7 +116,7 @@ pub struct Anova {
     pub p: f64,
 }
 
-/// One-way analysis of variance (Fisher 1925) from group summaries, each of at least two values.
+/// Computes a one-way analysis of variance (Fisher 1925) from group summaries, each of at least two values.
 pub fn anova(groups: &[Summary]) -> Anova {
     let all: u64 = groups.iter().map(|g| g.n).sum();
     let df_between = super::length(groups) - 1.0;

@@ -1,6 +1,6 @@
 //! Statistics of the claims engine: distribution functions, summaries, intervals and tests.
 //!
-//! Everything stands on [`crate::math`], so a p-value has the same bits on every supported platform.
+//! Everything rests on [`crate::math`], so a p-value has the same bits on every supported platform.
 //! Sums run in the order of the values given; random tests take a named [`crate::rng::Stream`].
 //! Each function cites its formula, and each is checked against values of scipy, statsmodels or mpmath
 //! (the call stands beside the number in the tests).
@@ -42,19 +42,19 @@ pub struct Tails {
     pub two_sided: f64,
 }
 
-/// A count as a number.
+/// Converts a count to a number.
 pub(crate) fn real(count: u64) -> f64 {
     #[expect(clippy::cast_precision_loss, reason = "counts of trials stay far below 2^53")]
     let number = count as f64;
     number
 }
 
-/// The length of a slice as a number.
+/// Returns the length of a slice as a number.
 pub(crate) fn length<T>(values: &[T]) -> f64 {
     real(values.len() as u64)
 }
 
-/// Equality of test values with published ones, relative to the published size.
+/// Asserts equality of test values with published ones, relative to the published size.
 #[cfg(test)]
 pub(crate) fn assert_close(found: f64, expected: f64, tolerance: f64) {
     let scale = if expected == 0.0 { 1.0 } else { expected.abs() };

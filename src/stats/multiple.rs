@@ -2,7 +2,7 @@
 
 use super::length;
 
-/// Holm's step-down adjustment (Holm 1979): p-values that may each be held against the same alpha, with the
+/// Computes Holm's step-down adjustment (Holm 1979): p-values that may each be compared with the same alpha, with the
 /// probability of any false rejection kept below it, whatever the dependence between the tests.
 pub fn holm(p_values: &[f64]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..p_values.len()).collect();

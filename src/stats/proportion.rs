@@ -10,12 +10,12 @@ use crate::math::exp;
 pub struct Proportion {
     /// How many succeeded.
     pub successes: u64,
-    /// Of how many.
+    /// The number of trials.
     pub trials: u64,
 }
 
 impl Proportion {
-    /// `successes` of `trials`.
+    /// Creates the proportion of `successes` in `trials`.
     ///
     /// # Panics
     /// Where there are more successes than trials.
@@ -24,16 +24,16 @@ impl Proportion {
         Self { successes, trials }
     }
 
-    /// The share that succeeded; NaN without trials.
+    /// Computes the share that succeeded; NaN without trials.
     pub fn share(&self) -> f64 {
         real(self.successes) / real(self.trials)
     }
 }
 
-/// Fisher's exact test of two proportions; "less" means that `a` has the lower share.
+/// Computes Fisher's exact test of two proportions; "less" means that `a` has the lower share.
 ///
-/// The two-sided value sums all tables at most as probable as the one seen (Fisher 1935, as scipy and R do,
-/// with their relative tolerance of 1e-7 for ties).
+/// The two-sided value sums all tables at most as probable as the one observed (Fisher 1935, as scipy and R do, with
+/// their relative tolerance of 1e-7 for ties).
 pub fn fisher_exact(a: Proportion, b: Proportion) -> Tails {
     let successes = a.successes + b.successes;
     let all = a.trials + b.trials;
@@ -44,7 +44,7 @@ pub fn fisher_exact(a: Proportion, b: Proportion) -> Tails {
     let seen = ln_probability(a.successes);
     let (mut less, mut greater, mut two_sided) = (0.0, 0.0, 0.0);
     for k in first..=last {
-        // Relative to the table seen, so that far tails keep their digits.
+        // Relative to the table observed, so that far tails keep their digits.
         let ratio = if k == a.successes { 1.0 } else { exp(ln_probability(k) - seen) };
         if k <= a.successes {
             less += ratio;
@@ -64,7 +64,7 @@ pub fn fisher_exact(a: Proportion, b: Proportion) -> Tails {
     }
 }
 
-/// What a test on one statistic yields.
+/// The result of a test on one statistic.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChiSquare {
     /// Pearson's statistic.
@@ -75,9 +75,9 @@ pub struct ChiSquare {
     pub p: f64,
 }
 
-/// Pearson's chi-square test that all groups have one share (Pearson 1900), without continuity correction.
+/// Computes Pearson's chi-square test that all groups have one share (Pearson 1900), without continuity correction.
 ///
-/// Where nobody or everybody succeeded there is nothing to tell apart: statistic 0, p 1.
+/// Where none or all succeeded there is nothing to distinguish: statistic 0, p 1.
 pub fn chi_square_homogeneity(groups: &[Proportion]) -> ChiSquare {
     let pooled = pool(groups);
     let df = super::length(groups) - 1.0;
@@ -104,10 +104,10 @@ pub struct Trend {
     pub tails: Tails,
 }
 
-/// Cochran-Armitage test for a trend of shares along `scores` (Cochran 1954, Armitage 1955).
+/// Computes the Cochran-Armitage test for a trend of shares along `scores` (Cochran 1954, Armitage 1955).
 ///
-/// z = Σ sᵢ (kᵢ - nᵢ p) / √(p (1 - p) (Σ nᵢ sᵢ² - (Σ nᵢ sᵢ)² / N)). Where nobody or everybody succeeded,
-/// or all scores are equal, z is 0.
+/// z = Σ sᵢ (kᵢ - nᵢ p) / √(p (1 - p) (Σ nᵢ sᵢ² - (Σ nᵢ sᵢ)² / N)). Where none or all succeeded, or all scores are
+/// equal, z is 0.
 pub fn cochran_armitage(groups: &[Proportion], scores: &[f64]) -> Trend {
     let pooled = pool(groups);
     let (n, share) = (real(pooled.trials), pooled.share());
@@ -120,12 +120,12 @@ pub fn cochran_armitage(groups: &[Proportion], scores: &[f64]) -> Trend {
     Trend { z, tails: normal_tails(z) }
 }
 
-/// All groups together.
+/// Pools all groups.
 pub fn pool(groups: &[Proportion]) -> Proportion {
     Proportion::new(groups.iter().map(|g| g.successes).sum(), groups.iter().map(|g| g.trials).sum())
 }
 
-/// The p-values of a statistic that is standard normal under equality.
+/// Computes the p-values of a statistic that is standard normal under equality.
 pub(crate) fn normal_tails(z: f64) -> Tails {
     Tails {
         less: normal_sf(-z),
@@ -134,7 +134,7 @@ pub(crate) fn normal_tails(z: f64) -> Tails {
     }
 }
 
-/// Wilson's score interval of a share (Wilson 1927).
+/// Computes Wilson's score interval of a share (Wilson 1927).
 ///
 /// ```
 /// use reenact::stats::proportion::{Proportion, wilson};
@@ -161,8 +161,7 @@ fn wilson_limits(k: Proportion, z: f64) -> (f64, f64) {
     (low, high)
 }
 
-/// Newcombe's hybrid score interval of the difference of two shares, `a` less `b`
-/// (Newcombe 1998, method 10).
+/// Computes Newcombe's hybrid score interval of the difference of two shares, `a` less `b` (Newcombe 1998, method 10).
 pub fn newcombe(a: Proportion, b: Proportion, confidence: f64) -> Interval {
     let z = normal_quantile(0.5 + 0.5 * confidence);
     let (low, high) = newcombe_limits(a, b, z);

@@ -6,7 +6,7 @@ use super::{Tails, length, real};
 use crate::math::{exp, ln};
 use crate::rng::Stream;
 
-/// Ranks from one, ties sharing their mean rank.
+/// Computes ranks from one, ties sharing their mean rank.
 pub fn midranks(values: &[f64]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..values.len()).collect();
     order.sort_by(|&i, &j| values[i].total_cmp(&values[j]));
@@ -22,7 +22,7 @@ pub fn midranks(values: &[f64]) -> Vec<f64> {
     ranks
 }
 
-/// The Mann-Whitney test.
+/// The result of a Mann-Whitney test.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MannWhitney {
     /// Pairs in which the first group's value is the greater, ties counting one half.
@@ -33,7 +33,7 @@ pub struct MannWhitney {
     pub exact: bool,
 }
 
-/// Mann-Whitney (Wilcoxon rank sum) test of two groups (Mann and Whitney 1947).
+/// Computes the Mann-Whitney (Wilcoxon rank sum) test of two groups (Mann and Whitney 1947).
 ///
 /// Exact where the smaller group has at most eight values and none are tied; otherwise normal with the
 /// correction for ties and for continuity (the rule and the formulas of `scipy.stats.mannwhitneyu`).
@@ -71,8 +71,8 @@ pub fn mann_whitney(a: &[f64], b: &[f64]) -> MannWhitney {
     MannWhitney { u, tails, exact: false }
 }
 
-/// Tails of U from the numbers of arrangements: the coefficients of the Gaussian binomial,
-/// in which one group's values choose their places among the other's.
+/// Computes the tails of U from the numbers of arrangements: the coefficients of the Gaussian binomial, in which one
+/// group's values choose their places among the other's.
 fn exact_tails(u: f64, na: usize, nb: usize) -> Tails {
     let (few, many) = (na.min(nb), na.max(nb));
     // ways[j][s]: j values of the smaller group that exceed s values of the larger in all, each at least
@@ -99,7 +99,7 @@ fn exact_tails(u: f64, na: usize, nb: usize) -> Tails {
     Tails { less, greater, two_sided: (2.0 * less.min(greater)).min(1.0) }
 }
 
-/// Sign test: whether of `positive + negative` differences (zeros left out) the positive are half
+/// Computes the sign test: whether of `positive + negative` differences (zeros left out) the positive are half
 /// (Arbuthnot 1710). "greater" means more positive ones.
 pub fn sign_test(positive: u64, negative: u64) -> Tails {
     let n = positive + negative;
@@ -108,7 +108,7 @@ pub fn sign_test(positive: u64, negative: u64) -> Tails {
     Tails { less, greater, two_sided: (2.0 * less.min(greater)).min(1.0) }
 }
 
-/// Pearson's product-moment correlation, in [-1, 1]; NaN where either side does not vary.
+/// Computes Pearson's product-moment correlation, in [-1, 1]; NaN where either side does not vary.
 pub fn pearson(x: &[f64], y: &[f64]) -> f64 {
     let (mx, my) = (mean(x), mean(y));
     let (mut xy, mut xx, mut yy) = (0.0, 0.0, 0.0);
@@ -121,18 +121,18 @@ pub fn pearson(x: &[f64], y: &[f64]) -> f64 {
     (xy / (xx.sqrt() * yy.sqrt())).clamp(-1.0, 1.0)
 }
 
-/// Spearman's rank correlation: Pearson's of the midranks (Spearman 1904).
+/// Computes Spearman's rank correlation: Pearson's of the midranks (Spearman 1904).
 pub fn spearman(x: &[f64], y: &[f64]) -> f64 {
     pearson(&midranks(x), &midranks(y))
 }
 
-/// Up to this many pairs all orders are gone through instead of drawn: 8! = 40320.
+/// Up to this many pairs all orders are enumerated instead of drawn: 8! = 40320.
 const EXACT_PAIRS: usize = 8;
 
-/// Permutation p-values of Spearman's correlation; "greater" is a positive one.
+/// Computes permutation p-values of Spearman's correlation; "greater" is a positive one.
 ///
-/// All orders for up to eight pairs; otherwise `permutations` orders drawn from `stream`, with the order
-/// seen counted in, so that p is never zero (Phipson and Smyth 2010).
+/// All orders for up to eight pairs; otherwise `permutations` orders drawn from `stream`, with the order observed
+/// counted in, so that p is never zero (Phipson and Smyth 2010).
 pub fn spearman_permutation(x: &[f64], y: &[f64], permutations: u32, stream: &mut Stream) -> Tails {
     let (rx, mut ry) = (midranks(x), midranks(y));
     // Only the cross product changes with the order.
@@ -165,7 +165,7 @@ pub fn spearman_permutation(x: &[f64], y: &[f64], permutations: u32, stream: &mu
     Tails { less: share(at_most), greater: share(at_least), two_sided: share(as_far) }
 }
 
-/// Heap's algorithm (1963), without recursion.
+/// Visits every order of `values` by Heap's algorithm (1963), without recursion.
 fn every_order(values: &mut [f64], visit: &mut impl FnMut(&[f64])) {
     let mut counters = vec![0; values.len()];
     visit(values);
@@ -183,7 +183,7 @@ fn every_order(values: &mut [f64], visit: &mut impl FnMut(&[f64])) {
     }
 }
 
-/// Interval of Spearman's correlation by Fisher's z with the standard error √((1 + r²/2) / (n - 3))
+/// Computes the interval of Spearman's correlation by Fisher's z with the standard error √((1 + r²/2) / (n - 3))
 /// (Bonett and Wright 2000). The whole range for fewer than four pairs.
 pub fn spearman_interval(r: f64, n: u64, confidence: f64) -> super::Interval {
     if n < 4 || r.is_nan() {

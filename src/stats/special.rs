@@ -14,28 +14,28 @@ const STIRLING: [f64; 7] = [
     1.0 / 156.0,
 ];
 
-/// Where Stirling's series is exact to the last bit or two with the terms above.
+/// From here on Stirling's series is exact to the last bit or two with the terms above.
 const STIRLING_FROM: f64 = 10.0;
 
-/// Where a continued fraction or a series has settled.
+/// Relative change at which a continued fraction or a series has settled.
 const SETTLED: f64 = 1e-16;
 
 /// More terms than any argument in use needs (about the square root of the largest shape).
 const MOST_TERMS: u32 = 1_000_000;
 
-/// `ln Γ(x) - ((x - 1/2) ln x - x + ln √(2π))` for `x` of at least [`STIRLING_FROM`].
+/// Computes `ln Γ(x) - ((x - 1/2) ln x - x + ln √(2π))` for `x` of at least [`STIRLING_FROM`].
 fn stirling_rest(x: f64) -> f64 {
     let inverse = 1.0 / x;
     let square = inverse * inverse;
     STIRLING.iter().rev().fold(0.0, |sum, c| sum * square + c) * inverse
 }
 
-/// Half the logarithm of 2π.
+/// Returns half the logarithm of 2π.
 fn ln_root_two_pi() -> f64 {
     0.5 * ln(2.0 * PI)
 }
 
-/// Logarithm of the gamma function for `x` > 0; NaN elsewhere.
+/// Computes the logarithm of the gamma function for `x` > 0; NaN elsewhere.
 ///
 /// Stirling's series (Abramowitz and Stegun 6.1.41), small arguments lifted by Γ(x + 1) = x Γ(x).
 pub fn ln_gamma(x: f64) -> f64 {
@@ -53,7 +53,7 @@ pub fn ln_gamma(x: f64) -> f64 {
     (lifted - 0.5) * ln(lifted) - lifted + ln_root_two_pi() + stirling_rest(lifted) - ln(product)
 }
 
-/// Logarithm of the beta function for `a`, `b` > 0.
+/// Computes the logarithm of the beta function for `a`, `b` > 0.
 ///
 /// Large arguments by Stirling's series with its leading terms cancelled by hand (as SLATEC's `DLBETA`).
 pub fn ln_beta(a: f64, b: f64) -> f64 {
@@ -70,7 +70,7 @@ pub fn ln_beta(a: f64, b: f64) -> f64 {
     }
 }
 
-/// Logarithm of the number of ways to choose `k` of `n`; `k` at most `n`.
+/// Computes the logarithm of the number of combinations of `k` out of `n`; `k` at most `n`.
 pub fn ln_choose(n: u64, k: u64) -> f64 {
     let (n, k) = (super::real(n), super::real(k));
     if k == 0.0 || k == n {
@@ -80,7 +80,7 @@ pub fn ln_choose(n: u64, k: u64) -> f64 {
     -ln_beta(k + 1.0, n - k + 1.0) - ln_1p(n)
 }
 
-/// Regularised lower and upper incomplete gamma functions (P, Q) for `a` > 0, `x` >= 0.
+/// Computes the regularised lower and upper incomplete gamma functions (P, Q) for `a` > 0, `x` >= 0.
 ///
 /// P by its power series below `a + 1`, Q by its continued fraction above (Abramowitz and Stegun 6.5.29
 /// and 6.5.31, the latter by Lentz's method); the other is the complement, which is then never the small one.
@@ -124,11 +124,12 @@ pub fn incomplete_gamma(a: f64, x: f64) -> (f64, f64) {
     }
 }
 
-/// Regularised incomplete beta function `I_x(a, b)` and its complement, for `a`, `b` > 0 and `x` in [0, 1].
+/// Computes the regularised incomplete beta function `I_x(a, b)` and its complement, for `a`, `b` > 0 and `x` in [0,
+/// 1].
 ///
-/// The complement `y` = 1 - `x` is an argument of its own, so that a caller who knows it exactly loses
-/// nothing near one. Continued fraction of Abramowitz and Stegun 26.5.8 by Lentz's method, on whichever side
-/// of the mean it converges fast.
+/// The complement `y` = 1 - `x` is an argument of its own, so that a caller that has it exactly loses nothing near one.
+/// Continued fraction of Abramowitz and Stegun 26.5.8 by Lentz's method, on whichever side of the mean it converges
+/// fast.
 pub fn incomplete_beta(a: f64, b: f64, x: f64, y: f64) -> (f64, f64) {
     if x <= 0.0 {
         return (0.0, 1.0);
@@ -169,7 +170,7 @@ fn beta_fraction(a: f64, b: f64, x: f64, y: f64) -> f64 {
     scale * h
 }
 
-/// Lentz's method divides by its partial results, which may pass through zero.
+/// Moves `x` away from zero: Lentz's method divides by its partial results, which may pass through it.
 fn away_from_zero(x: f64) -> f64 {
     if x.abs() < 1e-300 { 1e-300 } else { x }
 }

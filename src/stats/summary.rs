@@ -14,23 +14,23 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// The summary of `values`.
+    /// Computes the summary of `values`.
     pub fn of(values: &[f64]) -> Self {
         Self { n: values.len() as u64, mean: mean(values), sd: sample_sd(values) }
     }
 
-    /// Variance of the mean, sd² / n.
+    /// Computes the variance of the mean, sd² / n.
     pub fn variance_of_mean(&self) -> f64 {
         self.sd * self.sd / real(self.n)
     }
 }
 
-/// Arithmetic mean; NaN for no values.
+/// Computes the arithmetic mean; NaN for no values.
 pub fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / length(values)
 }
 
-/// Sample standard deviation, divisor n - 1, in two passes; NaN for fewer than two values.
+/// Computes the sample standard deviation, divisor n - 1, in two passes; NaN for fewer than two values.
 pub fn sample_sd(values: &[f64]) -> f64 {
     let centre = mean(values);
     // A sum of deviations that are zero on paper corrects the rounding of the mean (Chan et al. 1983).
@@ -46,19 +46,19 @@ pub fn sample_sd(values: &[f64]) -> f64 {
     ((squares - rest * rest / length(values)).max(0.0) / (length(values) - 1.0)).sqrt()
 }
 
-/// Middle value; mean of the two middle ones for an even number; NaN for no values.
+/// Computes the middle value; the mean of the two middle ones for an even number; NaN for no values.
 pub fn median(values: &[f64]) -> f64 {
     quantile(values, 0.5)
 }
 
-/// The `p` quantile, linear between order statistics (Hyndman and Fan 1996, type 7); NaN for no values.
+/// Computes the `p` quantile, linear between order statistics (Hyndman and Fan 1996, type 7); NaN for no values.
 pub fn quantile(values: &[f64], p: f64) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     sorted_quantile(&sorted, p)
 }
 
-/// [`quantile`] of values that ascend already.
+/// Computes the [`quantile`] of values that ascend already.
 pub(crate) fn sorted_quantile(sorted: &[f64], p: f64) -> f64 {
     if sorted.is_empty() {
         return f64::NAN;

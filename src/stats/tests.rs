@@ -213,7 +213,7 @@ fn correlation_by_ranks() {
     assert_eq!(spearman_interval(0.3, 3, 0.95).low, -1.0);
 }
 
-/// Drawn orders estimate what all orders count: nine pairs, one more than are gone through exactly.
+/// Drawn orders estimate what all orders count: nine pairs, one more than are enumerated exactly.
 #[test]
 fn drawn_permutations_agree_with_all_of_them() {
     let x: Vec<f64> = (0..9).map(f64::from).collect();
@@ -249,7 +249,7 @@ fn equivalence_needs_evidence() {
     let found = tost_proportions(prop(28, 50), prop(20, 50), 0.1);
     assert_close(found.inside, 0.726_476_940_147_199_3, COARSE);
     assert_close(found.beyond, 0.273_523_059_852_800_7, COARSE);
-    // Nothing seen is not nothing there.
+    // Nothing observed is not nothing there.
     let found = tost_proportions(prop(0, 5), prop(0, 5), 0.1);
     assert_close(found.inside, 0.228_028_270_125_127_97, COARSE);
     assert!(tost_proportions(prop(150, 200), prop(90, 200), 0.1).beyond < 1e-4);
@@ -361,7 +361,7 @@ proptest! {
         let (ab, ba) = (fisher_exact(a, b), fisher_exact(b, a));
         prop_assert!((ab.less - ba.greater).abs() < 1e-12);
         prop_assert!((ab.two_sided - ba.two_sided).abs() < 1e-9);
-        // The table seen is in both tails.
+        // The table observed is in both tails.
         prop_assert!(ab.less + ab.greater >= 1.0 - 1e-12);
     }
 

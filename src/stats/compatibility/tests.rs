@@ -60,7 +60,7 @@ fn the_half_width_is_that_of_statrs() {
     }
 }
 
-/// No sd, a sd of nobody knows how many runs, of one run, or of none at all: nearness, and no compatibility.
+/// No sd, an sd of an unknown number of runs, of one run, or of none at all: nearness, and no compatibility.
 #[test]
 fn numbers_without_spread_are_only_near_or_far() {
     for (sd, n) in [(None, Some(48)), (Some(2.0), None), (Some(2.0), Some(1)), (Some(0.0), Some(9))]
@@ -92,7 +92,7 @@ fn what_is_missing_says_why() {
     assert_eq!(Agreement::between(share(1, 2), None), Agreement::default());
 }
 
-/// Marks differ in shape, names and words each in themselves.
+/// Marks differ in shape, as names and words do.
 #[test]
 fn every_answer_has_a_mark_a_name_and_words_of_its_own() {
     let difference = Interval { low: 0.0, high: 1.0, confidence: CONFIDENCE };
