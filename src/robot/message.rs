@@ -1,4 +1,4 @@
-//! What body and mind tell each other, after ROS's `sensor_msgs` and `geometry_msgs`.
+//! The messages between body and mind, after ROS's `sensor_msgs` and `geometry_msgs`.
 
 use crate::geometry::Pose;
 use crate::units::Tick;
@@ -6,9 +6,9 @@ use crate::units::Tick;
 /// One sweep of a range scanner (`sensor_msgs/LaserScan`).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scan {
-    /// When it was taken; all beams at once.
+    /// Time of the scan; all beams at once.
     pub stamp: Tick,
-    /// Where the sensor sits on the robot (m, rad).
+    /// Pose of the sensor on the robot (m, rad).
     pub mount: Pose,
     /// Direction of the first beam in the sensor's frame (rad).
     pub min_angle: f64,
@@ -23,7 +23,7 @@ pub struct Scan {
 }
 
 impl Scan {
-    /// Direction of beam `i` in the sensor's frame (rad).
+    /// Returns the direction of beam `i` in the sensor's frame (rad).
     pub fn angle(&self, i: usize) -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "beam numbers are small")]
         let steps = i as f64;
@@ -41,12 +41,12 @@ pub struct Twist {
 }
 
 impl Twist {
-    /// Standing still.
+    /// The twist of a robot at rest.
     pub const STOP: Self = Self { linear: 0.0, angular: 0.0 };
 }
 
-/// Where the wheels say the robot is (`nav_msgs/Odometry`): a pose in the odometry frame, which is the frame
-/// the robot began in.
+/// The robot's pose by its wheels (`nav_msgs/Odometry`): in the odometry frame, which is the frame in which the robot
+/// began.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Odometry {
     /// When it was measured.
@@ -57,20 +57,20 @@ pub struct Odometry {
     pub twist: Twist,
 }
 
-/// A tag that a logical camera detects (after `gazebo_msgs`' `LogicalCameraImage`): an opaque id, a colour, and where it
-/// is as seen from the robot.
+/// A tag that a logical camera detects (after `gazebo_msgs`' `LogicalCameraImage`): an opaque id, a colour, and its
+/// pose relative to the robot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Detection {
-    /// Opaque id: equal ids are the same tag, and nothing else can be told from one.
+    /// Opaque id: equal ids are the same tag, and an id carries no other information.
     pub id: String,
     /// Colour, by name.
     pub color: String,
-    /// Where it stands and faces, in the robot's base frame (m, rad).
+    /// Its pose in the robot's base frame (m, rad).
     pub pose: Pose,
 }
 
-/// What a compass reads: the heading of the base frame's x axis, counter-clockwise from east (rad, in -pi..=pi), with the
-/// sensor's error.
+/// A reading of a compass: the heading of the base frame's x axis, counter-clockwise from east (rad, in -pi..=pi), with
+/// the sensor's error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CompassReading {
     /// When it was read.

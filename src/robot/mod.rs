@@ -32,7 +32,7 @@ pub struct Robot {
     pub name: String,
     /// Outline of the body seen from above, in the base frame (m); convex.
     pub footprint: Outline,
-    /// Lowest and highest point of the body above ground (m): what of the world it can touch.
+    /// Lowest and highest point of the body above ground (m): the heights of the world that it can touch.
     pub body_z: [f64; 2],
     /// Mass (kg), the sum over all links.
     pub mass: f64,
@@ -40,7 +40,7 @@ pub struct Robot {
     pub drive: Drive,
     /// The range scanner, if it has one.
     pub lidar: Option<Lidar>,
-    /// The logical camera, if it has one. Absent from the meaning where it is, so that robots without one keep theirs.
+    /// The logical camera, if it has one. Left out of the meaning where absent, so that robots without one keep theirs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub camera: Option<LogicalCamera>,
     /// The compass, if it has one; as with the camera.
@@ -49,12 +49,12 @@ pub struct Robot {
 }
 
 impl Robot {
-    /// Digest of what the description means, whatever the file looked like.
+    /// Returns the digest of the description's meaning, whatever the file looked like.
     pub fn meaning(&self) -> MeaningDigest {
         MeaningDigest(Sha256Digest::of(json::canonical_of(self)))
     }
 
-    /// Radius (m) of the smallest disc around the base frame's origin that holds the footprint.
+    /// Returns the radius (m) of the smallest disc around the base frame's origin that holds the footprint.
     pub fn circumscribed_radius(&self) -> f64 {
         match &self.footprint {
             Outline::Circle { center, radius } => center.norm() + radius,
@@ -67,7 +67,7 @@ impl Robot {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub struct Drive {
-    /// Which plugin's geometry this is.
+    /// The plugin whose geometry this is.
     pub kind: DriveKind,
     /// Distance between left and right wheels (m).
     pub wheel_separation: f64,
@@ -95,7 +95,7 @@ pub enum DriveKind {
 pub struct Lidar {
     /// Name of the sensor in the description.
     pub name: String,
-    /// Where it sits, in the base frame (m, rad).
+    /// Its pose in the base frame (m, rad).
     pub mount: Pose,
     /// Height of the scan plane above ground (m).
     pub height: f64,
@@ -116,7 +116,7 @@ pub struct Lidar {
 }
 
 impl Lidar {
-    /// Angle between neighbouring beams (rad).
+    /// Returns the angle between neighbouring beams (rad).
     pub fn increment(&self) -> f64 {
         (self.max_angle - self.min_angle) / f64::from(self.beams - 1)
     }
@@ -128,7 +128,7 @@ impl Lidar {
 pub struct LogicalCamera {
     /// Name of the sensor in the description.
     pub name: String,
-    /// Where it sits and looks, in the base frame (m, rad).
+    /// Its pose in the base frame (m, rad).
     pub mount: Pose,
     /// Shortest distance at which it sees a tag (m), 0 or more.
     pub near: f64,
@@ -141,7 +141,7 @@ pub struct LogicalCamera {
 }
 
 impl LogicalCamera {
-    /// Whether a tag at `point` (base frame, m) lies within the cone.
+    /// Returns whether a tag at `point` (base frame, m) lies within the cone.
     pub fn covers(&self, point: Point) -> bool {
         let seen = self.mount.inverse_transform(point);
         let distance = seen.norm();

@@ -1,9 +1,13 @@
 //! Robots as ROS describes them: URDF links and joints with the `<gazebo>` blocks of sensors and drives.
 //!
-//! Hermetic: no package path is resolved, no macro expanded, no mesh opened. Links and joints are read by
-//! `urdf-rs` (this file alone names it); a strict pass before it reports, with lines, what that crate lets
-//! through. Joints stand at zero. The base frame is the root link's. The floor is that link's origin where it
-//! is called `base_footprint` (REP-120), else the lowest point of the collision shapes.
+//! Hermetic: no package path is resolved, no macro expanded, no mesh opened. Joints stand at zero. The base frame is
+//! the root link's. Reading goes as follows:
+//! 1. A strict pass reports, with lines, what `urdf-rs` would let through.
+//! 2. Links and joints are read by `urdf-rs` (this file alone names it).
+//! 3. The collision shapes give the footprint.
+//! 4. The floor is the root link's origin where that link is called `base_footprint` (REP-120), else the lowest point
+//!    of the collision shapes.
+//! 5. The `<gazebo>` blocks give drive and sensors.
 
 mod gazebo;
 mod shape;
@@ -22,16 +26,18 @@ pub const MAX_BYTES: usize = 1 << 20;
 /// Largest body read (m): beyond it the unit is wrong.
 const MAX_SIZE: f64 = 20.0;
 
-/// Reads a robot with what was noticed on the way (warnings).
+/// Reads a robot and the warnings about it.
 ///
 /// # Errors
 /// Every fault found, warnings among them, where the description cannot be used.
 pub fn read(source: &Source) -> Result<(Robot, Vec<Diagnostic>), Vec<Diagnostic>> {
     let document = xml::parse(source, MAX_BYTES)?;
     let mut faults = Faults::new(source);
+    // 1. The strict pass.
     let tree = strict::check(&document, &mut faults);
     let (Some(tree), false) = (tree, faults.any_error()) else { return Err(faults.finish()) };
 
+    // 2. Links and joints.
     let description = match urdf_rs::read_from_string(&source.text) {
         Ok(description) => description,
         Err(fault) => {
@@ -40,6 +46,7 @@ pub fn read(source: &Source) -> Result<(Robot, Vec<Diagnostic>), Vec<Diagnostic>
         }
     };
     let frames = place(&description, &tree.root);
+    // 3. The footprint.
     let mut shapes = Vec::new();
     for link in &description.links {
         for collision in &link.collision {
@@ -78,6 +85,7 @@ pub fn read(source: &Source) -> Result<(Robot, Vec<Diagnostic>), Vec<Diagnostic>
             .help("URDF lengths are in metres; is this in millimetres?"),
         );
     }
+    // 4. The floor.
     let ground = if tree.root == "base_footprint" { 0.0 } else { low };
     let mass: f64 = description.links.iter().map(|link| link.inertial.mass.value).sum();
     if mass <= 0.0 || !mass.is_finite() {
@@ -86,6 +94,7 @@ pub fn read(source: &Source) -> Result<(Robot, Vec<Diagnostic>), Vec<Diagnostic>
                 .help("give its base link an <inertial> with a <mass>"),
         );
     }
+    // 5. Drive and sensors.
     let drive = gazebo::drive(&document, &mut faults);
     let sensors = gazebo::sensors(&document, &mut faults, &frames, ground);
     match drive {
@@ -106,7 +115,7 @@ pub fn read(source: &Source) -> Result<(Robot, Vec<Diagnostic>), Vec<Diagnostic>
     }
 }
 
-/// Where every link stands in the root link's frame, joints at zero.
+/// Returns the placement of every link in the root link's frame, joints at zero.
 fn place(description: &urdf_rs::Robot, root: &str) -> BTreeMap<String, Placement> {
     let mut frames = BTreeMap::from([(root.to_owned(), Placement::IDENTITY)]);
     let mut open = vec![root];

@@ -1,4 +1,4 @@
-//! World YAML: what people write (the `*Doc` structs), and the [`World`] it means.
+//! World YAML: the written form (the `*Doc` structs), and the [`World`] it describes.
 //!
 //! Layers hold walls, boxes, circles and polygons, each upright from one height to another. Lengths are metres,
 //! angles degrees, and the key says so. The layer `walls` always belongs to the world; others are chosen.
@@ -170,16 +170,16 @@ pub struct GoalDoc {
     pub at_m: [f64; 2],
 }
 
-/// Heights (m) of what says none: a storey.
+/// Heights (m) of whatever gives none: a storey.
 const STOREY: [f64; 2] = [0.0, 2.5];
 
-/// Largest coordinate (m) that is no slip of the unit.
+/// Largest coordinate (m) that is taken for metres.
 const MAX_DISTANCE: f64 = 1e4;
 
 /// Reads a world: the layer `walls` and those of `layers`, or every layer where `layers` is `None`.
 ///
 /// # Errors
-/// Every fault of the document, layers asked for that it does not have among them.
+/// Every fault of the document, including layers asked for that it does not have.
 pub fn read(source: &Source, layers: Option<&[String]>) -> Result<World, Vec<Diagnostic>> {
     let parsed = document::parse::<WorldDoc>(source)?;
     let mut reader =
@@ -188,7 +188,8 @@ pub fn read(source: &Source, layers: Option<&[String]>) -> Result<World, Vec<Dia
     if reader.faults.is_empty() { Ok(world) } else { Err(reader.faults) }
 }
 
-/// The solids of `layer`, which is written at `pointer` of a document that makes faults by `fault_at` (pointer, message).
+/// Reads the solids of `layer`, which is written at `pointer` of a document that makes faults by `fault_at` (pointer,
+/// message).
 ///
 /// # Errors
 /// Every fault of it.
@@ -339,7 +340,7 @@ impl Reader<'_> {
         length
     }
 
-    /// In radians.
+    /// Converts to radians.
     fn heading(&mut self, at: &str, degrees: f64) -> f64 {
         self.expect(degrees.abs() <= 360.0, at, "heading out of range", "degrees from -360 to 360");
         degrees.to_radians()
@@ -358,7 +359,7 @@ impl Reader<'_> {
     }
 }
 
-/// A name as part of a JSON pointer (RFC 6901).
+/// Escapes a name as part of a JSON pointer (RFC 6901).
 fn escaped(name: &str) -> String {
     name.replace('~', "~0").replace('/', "~1")
 }
@@ -367,8 +368,8 @@ fn titled(name: &str, kind: &str, number: usize) -> String {
     if name.is_empty() { format!("{kind} {number}") } else { name.to_owned() }
 }
 
-/// A rectangle per piece of the path. At joints pieces reach half a thickness further, which fills corners; a
-/// path that ends where it began is joined there too.
+/// Returns a rectangle for each segment of the path. At joints the segments reach half a thickness further, which fills
+/// corners; a path that ends where it began is joined there too.
 fn wall_outlines(path: &[Point], thickness: f64) -> Vec<Outline> {
     let (half, last) = (thickness / 2.0, path.len().saturating_sub(2));
     let closed = path.len() > 2 && path.first() == path.last();

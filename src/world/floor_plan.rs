@@ -1,4 +1,4 @@
-//! Prior knowledge derived from a world: what its floor plan, its footprint and its bounding box show.
+//! Prior knowledge derived from a world: floor plan, footprint and bounding box.
 //!
 //! The three kinds of the prior-knowledge study (section 4.1). All are drawn at the lidar's height, so that
 //! lintels do not close doors, on a grid that reaches half a metre beyond the walls; as in the images released
@@ -40,7 +40,7 @@ pub enum PlanError {
     },
 }
 
-/// What is drawn, and how finely.
+/// The layers to draw, and the resolution.
 #[derive(Debug, Clone, Copy)]
 pub struct Plan<'a> {
     /// Height of the cut (m): the lidar's.
@@ -51,7 +51,7 @@ pub struct Plan<'a> {
     pub layers: Option<&'a [String]>,
 }
 
-/// The floor plan: a cell is occupied where something solid comes within half a cell of its centre.
+/// Draws the floor plan: a cell is occupied where something solid comes within half a cell of its centre.
 ///
 /// # Errors
 /// Nothing to draw, or too much.
@@ -90,10 +90,10 @@ pub fn floor_plan(world: &World, plan: Plan<'_>) -> Result<OccupancyGrid, PlanEr
     Ok(grid)
 }
 
-/// The footprint: of the floor plan only the walls that can be touched from outside, so without inner walls.
+/// Draws the footprint: of the floor plan only the walls that can be touched from outside, so without inner walls.
 ///
-/// Outside is what a flood fill over free cells (by sides) reaches from the border of the grid. Where the
-/// building stands open, the fill goes in and inner walls stay.
+/// Outside is the part that a flood fill over free cells (by sides) reaches from the border of the grid. Where the
+/// building stands open, the fill enters and inner walls stay.
 ///
 /// # Errors
 /// As [`floor_plan`].
@@ -121,7 +121,7 @@ pub fn footprint(world: &World, plan: Plan<'_>) -> Result<OccupancyGrid, PlanErr
     Ok(touched)
 }
 
-/// The bounding box: the outermost cells of the floor plan's occupied extent, a rectangle one cell thick.
+/// Draws the bounding box: the outermost cells of the floor plan's occupied extent, a rectangle one cell thick.
 ///
 /// # Errors
 /// As [`floor_plan`].
@@ -152,7 +152,7 @@ mod tests {
     use crate::world::{Body, Solid, originals, sdf};
     use std::collections::BTreeMap;
 
-    /// A 4 x 3 m room, walls 0.2 m thick, with an inner wall that leaves a door, a lintel over it, and a chair.
+    /// Returns a 4 x 3 m room, walls 0.2 m thick, with an inner wall that leaves a door, a lintel over it, and a chair.
     fn world() -> World {
         let solid = |layer: &str, x: [f64; 2], y: [f64; 2], z: [f64; 2]| {
             let outline = Outline::Polygon(vec![

@@ -22,10 +22,10 @@ use crate::json;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// How a warning of something that could not be read ends.
+/// The end of every warning of something that could not be read.
 const MISSING: &str = " missing";
 
-/// A building: everything a robot can see, touch or be told to reach.
+/// A building: everything that a robot can see or touch, or that can be its goal.
 ///
 /// ```
 /// use reenact::document::Source;
@@ -47,13 +47,13 @@ pub struct World {
     pub solids: Vec<Solid>,
     /// Rooms and corridors.
     pub regions: Vec<Region>,
-    /// What a logical camera can detect.
+    /// The tags that a logical camera can detect.
     pub tags: Vec<Tag>,
     /// Named start poses.
     pub starts: BTreeMap<String, Pose>,
     /// Named goals (m).
     pub goals: BTreeMap<String, Point>,
-    /// What could not be read, in words, each naming the thing; never a silent hole.
+    /// Whatever could not be read, each warning naming the thing; never a silent hole.
     #[serde(skip)]
     pub warnings: Vec<String>,
 }
@@ -88,12 +88,12 @@ pub struct Tag {
     pub id: String,
     /// Colour, by name.
     pub color: String,
-    /// Where it stands and faces (m, rad).
+    /// Its pose (m, rad).
     pub pose: Pose,
 }
 
 impl World {
-    /// The names of all layers, sorted.
+    /// Returns the names of all layers, sorted.
     pub fn layers(&self) -> Vec<&str> {
         let mut names: Vec<&str> = self.solids.iter().map(|s| s.layer.as_str()).collect();
         names.sort_unstable();
@@ -101,22 +101,22 @@ impl World {
         names
     }
 
-    /// How many things of the file could not be read and so do not stand here; each has its warning.
+    /// Returns how many things of the file could not be read and are therefore missing; each has its warning.
     pub fn missing(&self) -> usize {
         self.warnings.iter().filter(|warning| warning.ends_with(MISSING)).count()
     }
 
-    /// Outlines of everything cut by the plane at height `z` (m): what a lidar at that height sees.
+    /// Returns the outlines of everything cut by the plane at height `z` (m): what a lidar at that height sees.
     pub fn slice(&self, z: f64) -> Vec<Outline> {
         self.solids.iter().flat_map(|solid| solid.body.slice(z)).collect()
     }
 
-    /// Outlines of everything between the heights `low` and `high` (m): what a body of that height touches.
+    /// Returns the outlines of everything between the heights `low` and `high` (m): what a body of that height touches.
     pub fn contact(&self, low: f64, high: f64) -> Vec<Outline> {
         self.solids.iter().flat_map(|solid| solid.body.shadow(low, high)).collect()
     }
 
-    /// The smallest box around all solids.
+    /// Returns the smallest box around all solids.
     pub fn bounds(&self) -> Bounds {
         self.solids
             .iter()
@@ -124,7 +124,7 @@ impl World {
             .fold(Bounds::EMPTY, |bounds, outline| bounds.union(outline.bounds()))
     }
 
-    /// Digest of what the description means: not of names of files, comments or formatting.
+    /// Returns the digest of the description's meaning: without names of files, comments or formatting.
     pub fn meaning(&self) -> MeaningDigest {
         MeaningDigest(Sha256Digest::of(json::canonical_of(self)))
     }

@@ -3,7 +3,7 @@
 use crate::document::Source;
 use std::path::PathBuf;
 
-/// The folder named by `REENACT_ORIGINAL_WORLDS`; without it the test says that it is skipped.
+/// Returns the folder named by `REENACT_ORIGINAL_WORLDS`; without it the test says that it is skipped.
 #[expect(clippy::disallowed_methods, clippy::print_stderr, reason = "tests may ask and tell")]
 pub(crate) fn folder(test: &str) -> Option<PathBuf> {
     let folder = std::env::var_os("REENACT_ORIGINAL_WORLDS").map(PathBuf::from);
@@ -13,7 +13,7 @@ pub(crate) fn folder(test: &str) -> Option<PathBuf> {
     folder
 }
 
-/// The text file at `path`.
+/// Reads the text file at `path`.
 pub(crate) fn source(path: &std::path::Path) -> Source {
     Source::new(path.to_string_lossy(), std::fs::read_to_string(path).unwrap())
 }

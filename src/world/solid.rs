@@ -1,5 +1,5 @@
-//! Solid things in three dimensions, and the two ways the plane sees them: cut by a lidar's scan plane, and
-//! as the shadow of what a robot's body could touch.
+//! Solid things in three dimensions, and their two projections to the plane: the cut by a lidar's scan plane, and the
+//! shadow of what a robot's body could touch.
 
 use super::mesh::{Mesh, section};
 use crate::geometry::{Outline, Placement, Point, convex_hull};
@@ -14,7 +14,7 @@ pub struct Solid {
     /// Name, for messages and drawings; not part of the meaning.
     #[serde(skip)]
     pub name: String,
-    /// The layer it belongs to (`walls`, `furniture`, ...).
+    /// The layer to which it belongs (`walls`, `furniture`, ...).
     #[serde(skip)]
     pub layer: String,
     /// Its shape and place.
@@ -36,7 +36,7 @@ pub enum Body {
     Box {
         /// Full lengths along its x, y and z (m).
         size: [f64; 3],
-        /// Where its centre is and how it is turned.
+        /// Position and orientation of its centre.
         placement: Placement,
     },
     /// A cylinder along its own z axis, centred on its placement.
@@ -45,14 +45,14 @@ pub enum Body {
         radius: f64,
         /// Length (m).
         length: f64,
-        /// Where its centre is and how it is turned.
+        /// Position and orientation of its centre.
         placement: Placement,
     },
     /// A surface of triangles.
     Mesh {
         /// The triangles in their own frame.
         mesh: Mesh,
-        /// Where they stand.
+        /// Their placement.
         standing: Standing,
     },
 }
@@ -61,8 +61,8 @@ pub enum Body {
 const ROUND: u32 = 32;
 
 impl Body {
-    /// Outlines of the cut at height `z` (m): none where the plane misses the body, one of a solid, thin ones of the lines
-    /// of a mesh.
+    /// Returns the outlines of the cut at height `z` (m): none where the plane misses the body, one of a solid, thin
+    /// ones of the lines of a mesh.
     pub fn slice(&self, z: f64) -> Vec<Outline> {
         match self {
             Self::Mesh { mesh, standing } => section::cut(mesh, standing, z),
@@ -70,8 +70,9 @@ impl Body {
         }
     }
 
-    /// Outlines of the part between the heights `low` and `high` (m) seen from above: at most one of a solid, one for each
-    /// face of a mesh. Exact for boxes, meshes and upright prisms and cylinders; the hull of a 32-gon for tilted cylinders.
+    /// Returns the outlines of the part between the heights `low` and `high` (m) seen from above: at most one of a
+    /// solid, one for each face of a mesh. Exact for boxes, meshes and upright prisms and cylinders; the hull of a
+    /// 32-gon for tilted cylinders.
     pub fn shadow(&self, low: f64, high: f64) -> Vec<Outline> {
         match self {
             Self::Mesh { mesh, standing } => section::shadow(mesh, standing, low, high),
@@ -79,7 +80,7 @@ impl Body {
         }
     }
 
-    /// The one outline of a solid between two heights; none of a mesh.
+    /// Returns the one outline of a solid between two heights; none of a mesh.
     fn whole(&self, low: f64, high: f64) -> Option<Outline> {
         match self {
             Self::Mesh { .. } => None,
@@ -128,10 +129,10 @@ impl Body {
     }
 }
 
-/// Hull, seen from above, of the convex body spanned by `corners`, cut to `low..=high`.
+/// Computes the hull, seen from above, of the convex body spanned by `corners`, cut to `low..=high`.
 ///
-/// A section of a convex body is spanned by the corners within it and by where its edges pierce a cutting plane.
-/// `edges` name corners by number and may hold inner lines too.
+/// A section of a convex body is spanned by the corners within it and by the points where its edges pierce a cutting
+/// plane. `edges` name corners by number and may hold inner lines too.
 fn hull_between(
     corners: &[[f64; 3]],
     edges: &[(usize, usize)],

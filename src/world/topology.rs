@@ -1,8 +1,8 @@
 //! The true graph of a building, read from its tags by the convention of the deadline study (docs/world.md).
 //!
-//! A vertex tag stands on every place of the graph: corridor vertices (intersections, places beside doors, dead
-//! ends) and rooms. Beside it stands an exit tag for every way out, which faces that way. An edge runs from an
-//! exit straight to the nearest vertex tag in its direction, and comes back by the opposite exit there.
+//! A vertex tag stands on every place of the graph: corridor vertices (intersections, places beside doors, dead ends)
+//! and rooms. Beside it stands an exit tag for every exit, facing in its direction. An edge runs from an exit straight
+//! to the nearest vertex tag in its direction, and comes back by the opposite exit there.
 
 mod fault;
 
@@ -13,7 +13,7 @@ use crate::geometry::{Cardinal, Outline, Point};
 use crate::math;
 use std::collections::VecDeque;
 
-/// What the colours of tags mean and how near they stand to what they belong to.
+/// The meaning of the colours of tags, and how near they stand to what they belong to.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TagScheme {
     /// Colour of the vertex tags of corridors.
@@ -26,9 +26,9 @@ pub struct TagScheme {
     pub door_exit: String,
     /// Colour of the mark of a goal.
     pub goal: String,
-    /// How far (m) a mark may stand from the vertex tag it belongs to. Vertices are twice this apart.
+    /// Largest distance (m) of a mark from its vertex tag. Vertices are twice this apart.
     pub grouping: f64,
-    /// How far (m) the other end of an edge may lie off the exit's line.
+    /// Largest distance (m) of the other end of an edge from the exit's line.
     pub aside: f64,
 }
 
@@ -47,10 +47,10 @@ impl Default for TagScheme {
     }
 }
 
-/// How far (rad) an exit's heading may be from its cardinal direction: one degree.
+/// Largest angle (rad) of an exit's heading to its cardinal direction: one degree.
 const ASKEW: f64 = std::f64::consts::PI / 180.0;
 
-/// What an edge passes.
+/// What an edge leads through.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Opening {
     /// A corridor.
@@ -59,12 +59,12 @@ pub enum Opening {
     Door,
 }
 
-/// A way out of a vertex.
+/// An exit of a vertex.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Exit {
-    /// Which way.
+    /// Its direction.
     pub direction: Cardinal,
-    /// Through what.
+    /// Whether it leads through a corridor or a door.
     pub opening: Opening,
     /// The vertex at the other end, by its number.
     pub to: usize,
@@ -77,9 +77,9 @@ pub struct Vertex {
     pub tag: String,
     /// Corridor or room.
     pub kind: RegionKind,
-    /// Where it is (m).
+    /// Its position (m).
     pub at: Point,
-    /// Ways out, counter-clockwise from east; at most one in each direction.
+    /// Its exits, counter-clockwise from east; at most one in each direction.
     pub exits: Vec<Exit>,
     /// Whether the mark of a goal stands here.
     pub is_goal: bool,
@@ -94,7 +94,7 @@ pub struct Edge {
     pub to: usize,
     /// East or north.
     pub direction: Cardinal,
-    /// What it passes.
+    /// Whether it leads through a corridor or a door.
     pub opening: Opening,
 }
 
@@ -109,7 +109,7 @@ impl Topology {
     /// Reads the graph from `tags`. Tags of colours that `scheme` does not name are no part of it.
     ///
     /// # Errors
-    /// Every way in which the tags break the convention.
+    /// Every breach of the convention by the tags.
     pub fn read(tags: &[Tag], scheme: &TagScheme) -> Result<Self, Vec<TagFault>> {
         let mut reader =
             Reader { scheme, vertices: Vec::new(), ways: Vec::new(), faults: Vec::new() };
@@ -137,7 +137,7 @@ impl Topology {
         }
     }
 
-    /// Every edge once, by its western or southern end.
+    /// Returns every edge once, by its western or southern end.
     pub fn edges(&self) -> impl Iterator<Item = Edge> + '_ {
         self.vertices.iter().enumerate().flat_map(|(from, vertex)| {
             let forward = |exit: &&Exit| matches!(exit.direction, Cardinal::East | Cardinal::North);
@@ -150,17 +150,19 @@ impl Topology {
         })
     }
 
-    /// Numbers of the vertices where a goal is.
+    /// Returns the numbers of the vertices where a goal is.
     pub fn goals(&self) -> impl Iterator<Item = usize> + '_ {
         self.vertices.iter().enumerate().filter(|(_, v)| v.is_goal).map(|(number, _)| number)
     }
 
-    /// Edges from every vertex to the nearest goal (breadth first); `None` where there is no way.
+    /// Returns the number of edges from every vertex to the nearest goal (breadth first); `None` where it is
+    /// unreachable.
     pub fn distances_to_goal(&self) -> Vec<Option<u32>> {
         self.distances(self.goals())
     }
 
-    /// Edges from every vertex to the nearest of `sources`, by number; `None` where there is no way.
+    /// Returns the number of edges from every vertex to the nearest of `sources`, by number; `None` where it is
+    /// unreachable.
     pub fn distances(&self, sources: impl IntoIterator<Item = usize>) -> Vec<Option<u32>> {
         let mut distances = vec![None; self.vertices.len()];
         let mut open: VecDeque<usize> = sources.into_iter().collect();
@@ -179,7 +181,7 @@ impl Topology {
         distances
     }
 
-    /// The number of the vertex within `within` m of `point`, the nearest if there are several.
+    /// Returns the number of the vertex within `within` m of `point`, the nearest if there are several.
     pub fn vertex_near(&self, point: Point, within: f64) -> Option<usize> {
         let distance = |number: &usize| self.vertices[*number].at.distance(point);
         (0..self.vertices.len())
@@ -187,8 +189,9 @@ impl Topology {
             .filter(|number| distance(number) <= within)
     }
 
-    /// Names of the vertices for people, as in the paper's Figure 2: that of the `regions` they lie in, with a letter where
-    /// it holds several (`C1a`, `C1b`, ... from west to east, then from south to north). Outside of all, the tag's id.
+    /// Returns the names of the vertices for people, as in the paper's Figure 2: that of the one of the `regions` in
+    /// which each lies, with a letter where it holds several (`C1a`, `C1b`, ... from west to east, then from south to
+    /// north). Outside of all, the tag's id.
     pub fn names(&self, regions: &[Region]) -> Vec<String> {
         let region_of = |vertex: &Vertex| {
             regions.iter().position(|r| Outline::Polygon(r.polygon.clone()).contains(vertex.at))
@@ -212,7 +215,7 @@ impl Topology {
         (0..self.vertices.len()).map(name).collect()
     }
 
-    /// How many edges could be taken away before the graph has no loop.
+    /// Returns how many edges can be removed before the graph has no loop.
     pub fn loops(&self) -> usize {
         let mut parts = 0;
         let mut reached = vec![false; self.vertices.len()];
@@ -227,7 +230,7 @@ impl Topology {
         (self.edges().count() + parts).saturating_sub(self.vertices.len())
     }
 
-    /// Whether every vertex can be reached from every other one.
+    /// Returns whether every vertex can be reached from every other one.
     pub fn is_connected(&self) -> bool {
         self.vertices.is_empty() || self.distances([0]).iter().all(Option::is_some)
     }
@@ -249,7 +252,7 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// Takes in the vertex tags.
+    /// Registers the vertex tags.
     fn place(&mut self, tags: &[Tag]) {
         for tag in tags {
             let kind = match &tag.color {
@@ -271,7 +274,7 @@ impl Reader<'_> {
         }
     }
 
-    /// The vertex that the mark `tag` belongs to: the nearest within the grouping distance.
+    /// Returns the vertex to which the mark `tag` belongs: the nearest within the grouping distance.
     fn owner(&mut self, tag: &Tag) -> Option<usize> {
         let at = tag.pose.position();
         let distance = |number: &usize| self.vertices[*number].at.distance(at);
@@ -312,7 +315,7 @@ impl Reader<'_> {
         self.ways.push(Way { tag: tag.id.clone(), vertex, direction, opening });
     }
 
-    /// The nearest vertex in `direction` from `from`.
+    /// Returns the nearest vertex in `direction` from `from`.
     fn other_end(&self, from: usize, direction: Cardinal) -> Option<usize> {
         let ahead = |number: &usize| {
             (self.vertices[*number].at - self.vertices[from].at).dot(unit(direction))
@@ -328,7 +331,7 @@ impl Reader<'_> {
 
     /// Gives every exit its other end.
     fn join(&mut self) {
-        // A fault in the tags of one vertex would be told again by its neighbours.
+        // A fault in the tags of one vertex would be reported again by its neighbours.
         if !self.faults.is_empty() {
             return;
         }
@@ -347,7 +350,7 @@ impl Reader<'_> {
                 continue;
             };
             if found.opening != way.opening {
-                // Told once, by the way east or north.
+                // Reported once, by the exit east or north.
                 if matches!(direction, Cardinal::East | Cardinal::North) {
                     let tags = [tag, found.tag.clone()];
                     self.faults.push(TagFault::Unequal { tags });
@@ -381,7 +384,7 @@ impl Reader<'_> {
     }
 }
 
-/// One metre in `direction`.
+/// Returns the vector of one metre in `direction`.
 fn unit(direction: Cardinal) -> Point {
     match direction {
         Cardinal::East => Point::new(1.0, 0.0),

@@ -1,4 +1,4 @@
-//! The `<gazebo>` blocks: which sensors the robot carries, and how its wheels drive it.
+//! The `<gazebo>` blocks: the sensors that the robot carries, and the drive of its wheels.
 //!
 //! Sensors after SDF 1.6 (`ray`, `gpu_ray`, also `lidar` of later versions; `logical_camera`; `magnetometer` and `imu`,
 //! either of which is read as a compass); drives after the plugins of gazebo_ros_pkgs (`diff_drive`,
@@ -42,7 +42,7 @@ pub(super) struct Sensors {
     pub(super) compass: Option<Compass>,
 }
 
-/// What a sensor is simulated as.
+/// The kind of sensor that is simulated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Scanner,
@@ -51,7 +51,7 @@ enum Kind {
 }
 
 impl Kind {
-    /// The kind that SDF's `type` names.
+    /// Returns the kind that SDF's `type` names.
     fn of(name: &str) -> Option<Self> {
         match name {
             "ray" | "gpu_ray" | "lidar" | "gpu_lidar" => Some(Self::Scanner),
@@ -70,7 +70,7 @@ impl Kind {
     }
 }
 
-/// The drive plugin of the robot, or a fault.
+/// Reads the drive plugin of the robot; `None` with a fault where there is none.
 pub(super) fn drive(document: &Document<'_>, faults: &mut Faults<'_>) -> Option<Drive> {
     let mut found: Option<Drive> = None;
     let mut any = false;
@@ -136,7 +136,8 @@ fn read_drive(plugin: Node<'_, '_>, kind: DriveKind, faults: &mut Faults<'_>) ->
     })
 }
 
-/// The positive number in the first child called one of `names`; a fault where it is there and is not one.
+/// Returns the positive number in the first child called one of `names`; a fault where it is present and not such a
+/// number.
 fn positive(node: Node<'_, '_>, names: &[&str], faults: &mut Faults<'_>) -> Option<f64> {
     let child = names.iter().find_map(|name| xml::child(node, name))?;
     let number = faults.number(child)?;
@@ -150,7 +151,7 @@ fn positive(node: Node<'_, '_>, names: &[&str], faults: &mut Faults<'_>) -> Opti
     None
 }
 
-/// The first sensor of every kind that is simulated. Others are warned of.
+/// Reads the first sensor of every kind that is simulated. Others are warned of.
 pub(super) fn sensors(
     document: &Document<'_>,
     faults: &mut Faults<'_>,
@@ -169,7 +170,7 @@ pub(super) fn sensors(
             if let Some(near) = suggestion(link, frames.keys().map(String::as_str)) {
                 fault = fault.help(format!("did you mean `{near}`?"));
             }
-            // What only colours a link that is not there does no harm.
+            // A block that only colours a missing link does no harm.
             faults.push(if sensors.is_empty() { fault.warning() } else { fault });
             continue;
         }
@@ -224,12 +225,12 @@ struct Sensor<'a, 'i> {
 }
 
 impl Sensor<'_, '_> {
-    /// What and which it is, for messages.
+    /// Returns its kind and name, for messages.
     fn title(&self) -> String {
         format!("{} `{}`", self.kind.name(), self.name)
     }
 
-    /// Where it sits in the base frame; a fault where it is not level.
+    /// Returns its placement in the base frame; a fault where it is not level.
     fn level_placement(&self, plane: &str, faults: &mut Faults<'_>) -> Option<Placement> {
         let within = match xml::child(self.node, "pose") {
             Some(pose) => Placement::from_xyz_rpy(faults.numbers(pose)?),
@@ -245,7 +246,7 @@ impl Sensor<'_, '_> {
         Some(placement)
     }
 
-    /// Its `<update_rate>` (Hz); a fault where the clock cannot serve it.
+    /// Returns its `<update_rate>` (Hz); a fault where the clock cannot serve it.
     fn rate(&self, meaning: &str, faults: &mut Faults<'_>) -> Option<f64> {
         let rate = faults.required(self.node, "update_rate", meaning)?;
         if Tick::period_of(rate).is_none() {
@@ -260,7 +261,7 @@ impl Sensor<'_, '_> {
     }
 }
 
-/// The `<gazebo>` blocks of the robot.
+/// Returns the `<gazebo>` blocks of the robot.
 fn blocks<'a, 'i>(document: &'a Document<'i>) -> impl Iterator<Item = Node<'a, 'i>> + use<'a, 'i> {
     document.root_element().children().filter(|e| e.is_element() && e.tag_name().name() == "gazebo")
 }

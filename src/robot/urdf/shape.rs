@@ -1,4 +1,4 @@
-//! The body from above: what the collision shapes of all links cover together.
+//! The body from above: the area that the collision shapes of all links cover together.
 
 use crate::geometry::{Outline, Placement, Point, convex_hull};
 use crate::math;
@@ -24,8 +24,8 @@ const ROUND: u32 = 64;
 /// How far (m) shapes may stand out of a round base that is still taken for round: rounding in the numbers.
 const TOLERANCE: f64 = 1e-3;
 
-/// Outline of all shapes from above: a circle where one upright cylinder (or sphere) covers the others, else
-/// their convex hull; `None` where there is no shape.
+/// Computes the outline of all shapes from above: a circle where one upright cylinder (or sphere) covers the others,
+/// else their convex hull; `None` where there is no shape.
 pub(super) fn footprint(shapes: &[Shape]) -> Option<Outline> {
     let corners: Vec<Point> =
         shapes.iter().flat_map(Shape::corners).map(|[x, y, _]| Point::new(x, y)).collect();
@@ -39,7 +39,7 @@ pub(super) fn footprint(shapes: &[Shape]) -> Option<Outline> {
     (hull.len() >= 3).then_some(Outline::Polygon(hull))
 }
 
-/// Lowest and highest point (m) of all shapes in the base frame.
+/// Computes the lowest and highest point (m) of all shapes in the base frame.
 pub(super) fn extent(shapes: &[Shape]) -> [f64; 2] {
     shapes
         .iter()
@@ -50,7 +50,7 @@ pub(super) fn extent(shapes: &[Shape]) -> [f64; 2] {
 }
 
 impl Shape {
-    /// Centre and radius where the shape seen from above is a disc.
+    /// Returns centre and radius where the shape seen from above is a disc.
     fn disc(&self) -> Option<(Point, f64)> {
         let [x, y, _] = self.placement.translation;
         match self.kind {
@@ -62,7 +62,7 @@ impl Shape {
         }
     }
 
-    /// Points that span the shape.
+    /// Returns the points that span the shape.
     fn corners(&self) -> Vec<[f64; 3]> {
         let signs = [-0.5, 0.5];
         let circle = |radius: f64| {

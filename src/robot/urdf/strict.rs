@@ -1,12 +1,16 @@
-//! What a URDF must be before anything is made of it: one tree of uniquely named links, numbers that are
-//! numbers, no macro left unexpanded.
+//! The requirements on a URDF before it is used: one tree of uniquely named links, numbers that are numbers, no macro
+//! left unexpanded. The tree is checked in four steps:
+//! 1. Links and joints have unique names.
+//! 2. Every joint names a known parent and child, and no link is the child of two joints.
+//! 3. One link has no parent: the root.
+//! 4. Every link leads to the root: there is no loop.
 
 use crate::document::suggestion;
 use crate::document::xml::{self, Faults};
 use roxmltree::{Document, Node};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What the strict pass found.
+/// The result of the strict pass.
 pub(super) struct Tree {
     /// The link that is no joint's child.
     pub(super) root: String,
@@ -45,7 +49,7 @@ enum Least {
 const TOP_LEVEL: [&str; 6] =
     ["link", "joint", "gazebo", "material", "transmission", "ros2_control"];
 
-/// Reports every fault of the document; the tree where its links and joints form one.
+/// Reports every fault of the document, and returns the tree where its links and joints form one.
 pub(super) fn check(document: &Document<'_>, faults: &mut Faults<'_>) -> Option<Tree> {
     let robot = document.root_element();
     if robot.tag_name().name() != "robot" {
@@ -80,7 +84,7 @@ pub(super) fn check(document: &Document<'_>, faults: &mut Faults<'_>) -> Option<
     tree(robot, faults)
 }
 
-/// The `name` of an element, or a fault.
+/// Returns the `name` of an element, or a fault.
 fn named<'a>(node: Node<'a, '_>, faults: &mut Faults<'_>) -> Option<&'a str> {
     let name = node.attribute("name").filter(|name| !name.trim().is_empty());
     if name.is_none() {
@@ -142,6 +146,7 @@ fn check_numbers(node: Node<'_, '_>, faults: &mut Faults<'_>) {
 }
 
 fn tree(robot: Node<'_, '_>, faults: &mut Faults<'_>) -> Option<Tree> {
+    // 1. Names.
     let mut links = BTreeSet::new();
     let mut joints = BTreeSet::new();
     let children_named =
@@ -158,6 +163,7 @@ fn tree(robot: Node<'_, '_>, faults: &mut Faults<'_>) -> Option<Tree> {
             }
         }
     }
+    // 2. Parents.
     let mut parent_of = BTreeMap::new();
     for joint in children_named("joint") {
         let mut end = |role: &str| {
@@ -188,6 +194,7 @@ fn tree(robot: Node<'_, '_>, faults: &mut Faults<'_>) -> Option<Tree> {
     if faults.any_error() {
         return None;
     }
+    // 3. The root.
     let roots: Vec<&str> =
         links.iter().copied().filter(|link| !parent_of.contains_key(link)).collect();
     let [root] = roots[..] else {
@@ -200,7 +207,7 @@ fn tree(robot: Node<'_, '_>, faults: &mut Faults<'_>) -> Option<Tree> {
         faults.push(fault);
         return None;
     };
-    // Every other link has one parent, so what does not reach the root is on a loop.
+    // 4. Every other link has one parent, so what does not reach the root is on a loop.
     for link in &links {
         let (mut at, mut steps) = (*link, 0);
         while let Some(parent) = parent_of.get(at) {

@@ -17,13 +17,13 @@ fn faults(text: &str) -> Vec<String> {
     list.iter().map(|fault| fault.render(false)).collect()
 }
 
-/// The Kobuki with one piece of its text replaced.
+/// Returns the Kobuki with one piece of its text replaced.
 fn changed(from: &str, to: &str) -> Vec<String> {
     assert!(KOBUKI.contains(from), "{from}");
     faults(&KOBUKI.replacen(from, to, 1))
 }
 
-/// The Pioneer with one piece of its text replaced.
+/// Returns the Pioneer with one piece of its text replaced.
 fn changed_pioneer(from: &str, to: &str) -> Vec<String> {
     assert!(PIONEER.contains(from), "{from}");
     faults(&PIONEER.replacen(from, to, 1))
@@ -88,7 +88,7 @@ fn the_pioneer_is_what_its_data_sheet_says() {
     );
 }
 
-/// The digest is part of every trial's key: a robot without camera and compass keeps the one it always had.
+/// The digest is part of every trial's key: a robot without camera and compass keeps its earlier one.
 #[test]
 fn the_kobuki_s_meaning_is_pinned() {
     let (robot, _) = read(&Source::new("robots/kobuki.urdf", KOBUKI)).unwrap();

@@ -125,7 +125,7 @@ error: length out of range
     }
 }
 
-/// Area (m2) of a simple polygon, by the shoelace formula.
+/// Returns the area (m2) of a simple polygon, by the shoelace formula.
 fn area(corners: &[Point]) -> f64 {
     let sides = (0..corners.len()).map(|i| corners[i].cross(corners[(i + 1) % corners.len()]));
     sides.sum::<f64>().abs() / 2.0
@@ -151,7 +151,7 @@ fn the_basic_apartment_is_as_described() {
         })
         .sum();
     assert!((0.105..0.115).contains(&(furniture / floor)), "{furniture} of {floor} m2");
-    // Nobody starts inside a wall, and nothing stands in a wall's way: every piece is within one region.
+    // No start lies inside a wall, and no furniture reaches into one: every piece is within one region.
     for solid in furnished.solids.iter().filter(|solid| solid.layer == "furniture") {
         let middle = solid.body.slice(0.1602)[0].bounds();
         let middle = (middle.min + middle.max) * 0.5;
@@ -165,7 +165,7 @@ fn the_basic_apartment_is_as_described() {
     assert!(furnished.slice(0.1602).iter().all(|outline| outline.distance(start) > 0.5));
 }
 
-/// Our walls against those measured in the authors' world, as cells of 0.2 m: F1 of precision and recall.
+/// Our walls compared with those measured in the authors' world, as cells of 0.2 m: F1 of precision and recall.
 #[test]
 fn the_basic_apartment_has_the_walls_of_the_original() {
     let Some(folder) = originals::folder("the_basic_apartment_has_the_walls_of_the_original")

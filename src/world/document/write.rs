@@ -1,4 +1,4 @@
-//! Writes a building as world YAML that people can read and edit: one solid, region or tag a line.
+//! Writes a building as world YAML that people can read and edit: one solid, region or tag per line.
 
 use super::{AreaDoc, BoxDoc, CircleDoc, LayerDoc, PolygonDoc, RegionDoc, WallDoc, WorldDoc};
 use crate::json;
@@ -9,7 +9,7 @@ const NOT_TEXT: [&str; 12] =
     ["y", "n", "yes", "no", "on", "off", "true", "false", "null", "nan", "inf", "infinity"];
 
 impl WorldDoc {
-    /// The document as YAML; reading it gives the same document again.
+    /// Writes the document as YAML; reading it gives the same document again.
     pub fn to_yaml(&self) -> String {
         let mut text = format!("reenact-world: {}\n", self.reenact_world);
         let _ = writeln!(text, "name: {}\nsource: {}", scalar(&self.name), scalar(&self.source));
@@ -121,12 +121,12 @@ fn numbers(values: &[f64]) -> String {
     format!("[{}]", each.join(", "))
 }
 
-/// The shortest decimals that read back as `value`; no exponents and no negative zero.
+/// Writes the shortest decimals that read back as `value`; no exponents and no negative zero.
 fn number(value: f64) -> String {
     if value == 0.0 { "0".to_owned() } else { format!("{value}") }
 }
 
-/// A text plainly where that is safe, and in quotes otherwise.
+/// Writes a text plainly where that is safe, and in quotes otherwise.
 fn scalar(text: &str) -> String {
     let plain = text.starts_with(|c: char| c.is_ascii_alphabetic())
         && text.bytes().all(|b| b.is_ascii_alphanumeric() || b" .-_/".contains(&b))

@@ -24,19 +24,19 @@ pub(super) const END: Cm = 130;
 /// A straight corridor.
 #[derive(Debug, Clone)]
 pub(super) struct Hall {
-    /// How it runs.
+    /// Its axis.
     pub(super) axis: Axis,
     /// Its middle line: y of an E-W hall, x of a N-S one.
     pub(super) center: Cm,
-    /// From its middle line to those of its side walls.
+    /// Distance from its middle line to those of its side walls.
     pub(super) half: Cm,
     /// Its ends along its axis, to the middle lines of the end walls (or of the wall it opens from).
     pub(super) span: [Cm; 2],
-    /// Its vertices along its axis, ascending; a branch does not hold the junction that it starts from.
+    /// Its vertices along its axis, ascending; a branch does not hold the junction from which it starts.
     pub(super) stops: Vec<Cm>,
 }
 
-/// Where a door can be: beside a stop, on one side.
+/// A possible place of a door: beside a stop, on one side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Site {
     /// The hall, by number.
@@ -50,7 +50,7 @@ pub(super) struct Site {
 /// A door and the place behind it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Door {
-    /// Where it is.
+    /// The site of the door.
     pub(super) site: Site,
     /// Its width, even.
     pub(super) width: Cm,
@@ -79,7 +79,7 @@ pub(super) struct Floor {
 }
 
 impl Hall {
-    /// The two sides of a hall: of smaller and of larger coordinates.
+    /// Returns the two sides of a hall: of smaller and of larger coordinates.
     pub(super) fn sides(&self) -> [Cardinal; 2] {
         match self.axis {
             Axis::EastWest => [Cardinal::South, Cardinal::North],
@@ -87,7 +87,8 @@ impl Hall {
         }
     }
 
-    /// Whether the hall ends at stop number `stop`: the main hall at its first and last, a branch at its outer one.
+    /// Returns whether the hall ends at stop number `stop`: the main hall at its first and last, a branch at its outer
+    /// one.
     pub(super) fn ends_at(&self, stop: usize) -> bool {
         let (first, last) = (stop == 0, stop + 1 == self.stops.len());
         match self.axis {
@@ -113,7 +114,7 @@ impl Hall {
         self.beside(self.span, [-self.half, self.half])
     }
 
-    /// The area `along` the hall at these distances `off` its middle line (west and south are negative).
+    /// Returns the area `along` the hall at these distances `off` its middle line (west and south are negative).
     fn beside(&self, along: [Cm; 2], off: [Cm; 2]) -> Area {
         let across = off.map(|off| self.center + off);
         match self.axis {
@@ -122,7 +123,7 @@ impl Hall {
         }
     }
 
-    /// `area` as seen from the hall: along it, and how far off its middle line on `side`, near and far.
+    /// Returns `area` relative to the hall: along it, and how far off its middle line on `side`, near and far.
     fn seen(&self, area: Area, side: Cardinal) -> ([Cm; 2], [Cm; 2]) {
         let (along, across) = match self.axis {
             Axis::EastWest => (area.x, area.y),
@@ -135,7 +136,7 @@ impl Hall {
 }
 
 impl Floor {
-    /// All sites without a door and without a branch.
+    /// Returns all sites without a door and without a branch.
     pub(super) fn free_sites(&self) -> Vec<Site> {
         let mut sites = Vec::new();
         for (number, hall) in self.halls.iter().enumerate() {
@@ -155,7 +156,7 @@ impl Floor {
         self.rooms.iter().any(|room| room.doors.iter().any(|door| door.site == site))
     }
 
-    /// The branch that opens at `site`.
+    /// Returns the branch that opens at `site`.
     fn branch_at(&self, site: Site) -> Option<&Hall> {
         let hall = &self.halls[site.hall];
         let at = hall.at(hall.stops[site.stop]);
@@ -164,7 +165,7 @@ impl Floor {
         })
     }
 
-    /// The piece of a hall's side that is nearest to the stop of `site`: to halfway to the stops beside it, to a
+    /// Returns the part of a hall's side that is nearest to the stop of `site`: to halfway to the stops beside it, to a
     /// branch's wall, or to the hall's end.
     pub(super) fn bay(&self, site: Site) -> [Cm; 2] {
         let hall = &self.halls[site.hall];
@@ -179,7 +180,7 @@ impl Floor {
         [end(site.stop.checked_sub(1), hall.span[0], -1), end(Some(site.stop + 1), hall.span[1], 1)]
     }
 
-    /// A room behind `site` that takes what is left of `along` (a piece of the hall) and about `depth`.
+    /// Fits a room behind `site` that takes what is left of `along` (a part of the hall) and about `depth`.
     pub(super) fn fit(&self, site: Site, along: [Cm; 2], depth: Cm) -> Option<Area> {
         let hall = &self.halls[site.hall];
         let (here, near) = (hall.stops[site.stop], hall.half);
@@ -211,15 +212,15 @@ impl Floor {
         Some(hall.beside([low, high], off))
     }
 
-    /// The vertex `inside` m from the wall with the door at `site`.
+    /// Returns the vertex `inside` m from the wall with the door at `site`.
     pub(super) fn vertex(&self, site: Site, inside: Cm) -> (Cm, Cm) {
         let hall = &self.halls[site.hall];
         let at = hall.at(hall.stops[site.stop]);
         ahead(at, site.side, hall.half + self.thickness / 2 + inside)
     }
 
-    /// Adds a room of `area` behind `site`, its vertex about `inside` from the wall; false where that is too near
-    /// another vertex.
+    /// Adds a room of `area` behind `site`, its vertex about `inside` from the wall; returns false where that is too
+    /// near another vertex.
     pub(super) fn add(&mut self, site: Site, area: Area, width: Cm, inside: Cm) -> bool {
         let (_, off) = self.halls[site.hall].seen(area, site.side);
         let most = off[1] - off[0] - self.thickness - BEHIND;
@@ -231,7 +232,7 @@ impl Floor {
         true
     }
 
-    /// The room with one door whose wall stands at `site` and leaves space for a second one.
+    /// Returns the room with one door whose wall stands at `site` and leaves space for a second one.
     pub(super) fn room_behind(&self, site: Site) -> Option<usize> {
         let hall = &self.halls[site.hall];
         let here = hall.stops[site.stop];
@@ -244,7 +245,7 @@ impl Floor {
         })
     }
 
-    /// Gives `room` a second door at `site` with a vertex of its own; false where that is too near another one.
+    /// Gives `room` a second door at `site` with a vertex of its own; returns false where that is too near another one.
     pub(super) fn add_door(&mut self, room: usize, site: Site, width: Cm, inside: Cm) -> bool {
         let (_, off) = self.halls[site.hall].seen(self.rooms[room].area, site.side);
         let most = off[1] - off[0] - self.thickness - BEHIND;
@@ -256,8 +257,8 @@ impl Floor {
         apart
     }
 
-    /// Gives `room` a second door at `site`, around the corner of the first, and one vertex on the axes of both:
-    /// a way through. False where there is no such place.
+    /// Gives `room` a second door at `site`, around the corner of the first, and one vertex on the axes of both: a
+    /// passage through the room. Returns false where there is no such place.
     pub(super) fn add_way_through(&mut self, room: usize, site: Site, width: Cm) -> bool {
         let first = self.rooms[room].doors[0];
         if first.site.side.axis() == site.side.axis() {
@@ -281,7 +282,7 @@ impl Floor {
         true
     }
 
-    /// Whether `vertex` is too near another one than `but`.
+    /// Returns whether `vertex` is too near another one than `but`.
     fn is_crowded(&self, vertex: (Cm, Cm), but: Option<(Cm, Cm)>) -> bool {
         let stops = self.halls.iter().flat_map(|hall| hall.stops.iter().map(|stop| hall.at(*stop)));
         let rooms = self.rooms.iter().flat_map(|room| room.doors.iter().map(|door| door.vertex));
@@ -291,13 +292,13 @@ impl Floor {
         })
     }
 
-    /// The place of a hall's stop, counted over all halls: the number of its vertex.
+    /// Returns the number of a hall's stop, counted over all halls: the number of its vertex.
     pub(super) fn stop_number(&self, hall: usize, stop: usize) -> usize {
         self.halls[..hall].iter().map(|hall| hall.stops.len()).sum::<usize>() + stop
     }
 
-    /// The floor as a layout. Corridors are named C1, C2, ..., rooms R1, R2, ... in their order; the goal is the
-    /// vertex behind the first door of room `goal`.
+    /// Converts the floor to a layout. Corridors are named C1, C2, ..., rooms R1, R2, ... in their order; the goal is
+    /// the vertex behind the first door of room `goal`.
     pub(super) fn layout(&self, goal: usize) -> Layout {
         let mut layout = Layout {
             thickness: self.thickness,

@@ -1,5 +1,5 @@
-//! A floor as rectangles: spaces that share walls, gaps in the walls, places and the links between them; and the
-//! document it is. Lengths are whole centimetres, so that walls meet exactly.
+//! A floor as rectangles: spaces that share walls, gaps in the walls, places and the links between them; and its
+//! conversion to a document. Lengths are whole centimetres, so that walls meet exactly.
 
 use super::walls::walls;
 use crate::geometry::{Axis, Cardinal, Point, Pose};
@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 /// A length or coordinate in centimetres.
 pub(super) type Cm = i32;
 
-/// Where an exit tag stands before its vertex, and the goal's mark beside it.
+/// Distance of an exit tag from its vertex, and of the goal's mark beside it.
 const EXIT_AHEAD: Cm = 50;
 const GOAL_ASIDE: Cm = 30;
 
@@ -25,12 +25,12 @@ pub(super) struct Area {
 }
 
 impl Area {
-    /// This one grown by `by` on every side.
+    /// Returns this rectangle grown by `by` on every side.
     pub(super) fn grown(self, by: Cm) -> Self {
         Self { x: [self.x[0] - by, self.x[1] + by], y: [self.y[0] - by, self.y[1] + by] }
     }
 
-    /// The smallest one around this one and `other`.
+    /// Returns the smallest rectangle around this one and `other`.
     pub(super) fn union(self, other: Self) -> Self {
         let both = |a: [Cm; 2], b: [Cm; 2]| [a[0].min(b[0]), a[1].max(b[1])];
         Self { x: both(self.x, other.x), y: both(self.y, other.y) }
@@ -53,7 +53,7 @@ pub(super) struct Space {
 /// A gap in the wall along `line`: a door, or the mouth of a corridor.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Gap {
-    /// How the wall runs.
+    /// The axis of the wall.
     pub(super) line: Axis,
     /// Its middle, on the middle line of the wall.
     pub(super) at: (Cm, Cm),
@@ -64,7 +64,7 @@ pub(super) struct Gap {
 /// A vertex of the graph.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Place {
-    /// Where.
+    /// Its position.
     pub(super) at: (Cm, Cm),
     /// Corridor or room.
     pub(super) kind: RegionKind,
@@ -77,9 +77,9 @@ pub(super) struct Link {
     pub(super) from: usize,
     /// The other.
     pub(super) to: usize,
-    /// Where the other end lies.
+    /// The direction of the other end.
     pub(super) direction: Cardinal,
-    /// What it passes.
+    /// Whether it leads through a corridor or a door.
     pub(super) opening: Opening,
 }
 
@@ -101,14 +101,14 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// From outer face to outer face.
+    /// Returns the extent from outer face to outer face.
     pub(super) fn extent(&self) -> Area {
         let mut spaces = self.spaces.iter().map(|space| space.area.grown(self.thickness / 2));
         let first = spaces.next().unwrap_or(Area { x: [0, 0], y: [0, 0] });
         spaces.fold(first, Area::union)
     }
 
-    /// The floor seen in mirrors (west and east exchanged, south and north exchanged), with its lower left outer
+    /// Returns the floor mirrored (west and east exchanged, south and north exchanged), with its lower left outer
     /// corner at the origin.
     pub(super) fn placed(mut self, mirrored: [bool; 2]) -> Self {
         let turn = |at: (Cm, Cm)| {
@@ -148,7 +148,7 @@ impl Layout {
         }
     }
 
-    /// The marks of all places and links (id left out): colour, place and heading.
+    /// Returns the marks of all places and links (id left out): colour, place and heading.
     fn marks(&self, scheme: &TagScheme) -> Vec<(String, (Cm, Cm), Cardinal)> {
         let mut marks = Vec::new();
         for (number, place) in self.places.iter().enumerate() {
@@ -190,12 +190,12 @@ impl Layout {
         })
     }
 
-    /// How many tags the floor carries.
+    /// Returns how many tags the floor carries.
     pub(super) fn tag_count(&self) -> usize {
         self.places.len() + 1 + 2 * self.links.len()
     }
 
-    /// The tags, the n-th mark with the n-th of `ids`.
+    /// Returns the tags, the n-th mark with the n-th of `ids`.
     pub(super) fn tags(&self, ids: &[String], scheme: &TagScheme) -> Vec<Tag> {
         let mut tags: Vec<Tag> = self
             .marks(scheme)
@@ -210,7 +210,7 @@ impl Layout {
         tags
     }
 
-    /// The floor as a document without starts.
+    /// Converts the floor to a document without starts.
     pub(super) fn document(&self, name: String, source: String, tags: &[Tag]) -> WorldDoc {
         let layer = LayerDoc {
             z_m: Some([0.0, 2.5]),
@@ -246,7 +246,7 @@ impl Layout {
     }
 }
 
-/// A heading as written: 0, 90, 180 or -90.
+/// Returns a heading as written: 0, 90, 180 or -90.
 pub(super) fn degrees(direction: Cardinal) -> f64 {
     match direction {
         Cardinal::East => 0.0,
@@ -256,7 +256,7 @@ pub(super) fn degrees(direction: Cardinal) -> f64 {
     }
 }
 
-/// `at`, moved by `by` in `direction`.
+/// Returns `at`, moved by `by` in `direction`.
 pub(super) fn ahead(at: (Cm, Cm), direction: Cardinal, by: Cm) -> (Cm, Cm) {
     match direction {
         Cardinal::East => (at.0 + by, at.1),
@@ -266,12 +266,12 @@ pub(super) fn ahead(at: (Cm, Cm), direction: Cardinal, by: Cm) -> (Cm, Cm) {
     }
 }
 
-/// Centimetres as metres: the number that is written with two decimals.
+/// Converts centimetres to metres: the number that is written with two decimals.
 pub(super) fn metres(at: (Cm, Cm)) -> [f64; 2] {
     [f64::from(at.0) / 100.0, f64::from(at.1) / 100.0]
 }
 
-/// As a point (m).
+/// Converts to a point (m).
 pub(super) fn point(at: (Cm, Cm)) -> Point {
     let [x, y] = metres(at);
     Point::new(x, y)

@@ -1,4 +1,4 @@
-//! Generated buildings: a family and a seed name one building, on every machine.
+//! Generated buildings: a family and a seed identify one building, on every machine.
 //!
 //! A building is made as a [`WorldDoc`], so that it can be written as world YAML, and read as any other.
 
@@ -30,7 +30,7 @@ pub enum Family {
 }
 
 impl Family {
-    /// Its name in manifests.
+    /// Returns its name in manifests.
     pub const fn name(self) -> &'static str {
         match self {
             Self::OfficeFloor => "office-floor",
@@ -38,7 +38,7 @@ impl Family {
     }
 }
 
-/// A building that could not be made.
+/// Failure to make a building.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("no building of the family `{}` was found for seed {seed} in {attempts} attempts", family.name())]
 pub struct Unsatisfied {
@@ -46,7 +46,7 @@ pub struct Unsatisfied {
     pub family: Family,
     /// The seed.
     pub seed: u64,
-    /// How often it was tried.
+    /// The number of attempts.
     pub attempts: u32,
 }
 
@@ -56,7 +56,7 @@ const ATTEMPTS: u32 = 500;
 /// Edges from the goal to the starts A, B and C: at least, at most (the deadline study's tables, facts on them).
 pub const START_DISTANCES: [(&str, [u32; 2]); 3] = [("A", [2, 3]), ("B", [5, 9]), ("C", [11, 18])];
 
-/// The building `seed` of `family`, as a document.
+/// Generates the building `seed` of `family`, as a document.
 ///
 /// # Errors
 /// Where no draw of the seed fits together.
@@ -66,13 +66,13 @@ pub fn document(family: Family, seed: u64) -> Result<WorldDoc, Unsatisfied> {
     found.ok_or(Unsatisfied { family, seed, attempts: ATTEMPTS })
 }
 
-/// The building `seed` of `family`.
+/// Generates the building `seed` of `family`.
 ///
 /// # Errors
 /// As [`document()`].
 ///
 /// # Panics
-/// Never: what is written here is read by the same format.
+/// Never: the document written here is read by the same format.
 pub fn generate(family: Family, seed: u64) -> Result<World, Unsatisfied> {
     let doc = document(family, seed)?;
     let source = Source::new(doc.name.clone(), doc.to_yaml());
@@ -108,8 +108,8 @@ fn office_floor(seed: u64, attempt: u32) -> Option<WorldDoc> {
     Some(doc)
 }
 
-/// Starts at the corridor vertices that have the right distances from the goal, each facing along its corridor. A does
-/// not stand on the `large` branch; C is as far away as it may be, B nearest to 40 % of that.
+/// Chooses starts at the corridor vertices that have the right distances from the goal, each facing along its corridor.
+/// A does not stand on the `large` branch; C is as far away as possible, B nearest to 40 % of that.
 fn choose_starts(
     topology: &Topology,
     large: &[usize],

@@ -1,14 +1,28 @@
 //! Office floors: an E-W corridor of about 60 m, two or three branches to the north and south of it, rooms on both
-//! sides. What is drawn follows from what Tables 1 and 2 of the deadline study imply about its building.
+//! sides. The counts and sizes follow from what Tables 1 and 2 of the deadline study imply about its building.
 //!
 //! Canonically the goal's branch goes north near the west end and the largest branch south near it; mirrors turn that.
+//!
+//! Corridors:
+//! 1. From the west: stops up to the goal's branch, then up to the largest one.
+//! 2. From the east: stops up to the third branch, where there is one.
+//! 3. Between them: stops about evenly spaced.
+//! 4. The branches with their stops; the draw is refused where the largest branch has no more stops than the goal's.
+//!
+//! Rooms:
+//! 1. The goal on its branch, not at the end, opposite another room.
+//! 2. Rooms on most sites of the largest branch, for its four-way vertices.
+//! 3. Every other place gets a door unless it is a junction or an end.
+//! 4. Second doors, up to the number drawn.
+//! 5. Further rooms, up to the number of vertices drawn.
+//! 6. The draw is refused where a count is out of its range.
 
 use super::hall::{END, Floor, Hall, INSIDE, Site};
 use super::layout::{Cm, Layout};
 use crate::geometry::{Axis, Cardinal};
 use crate::rng::Stream;
 
-/// Counts of what a floor has, vertices of the graph.
+/// Counts of a floor: vertices of the graph.
 pub const VERTICES: [usize; 2] = [45, 50];
 /// Of these, vertices of rooms.
 pub const ROOM_VERTICES: [usize; 2] = [17, 25];
@@ -28,7 +42,7 @@ const MAIN: [Cm; 2] = [5_800, 6_200];
 const GOAL_BRANCH: [Cm; 2] = [1_500, 1_700];
 const LARGE_BRANCH: [Cm; 2] = [2_000, 2_300];
 const EAST_BRANCH: [Cm; 2] = [1_550, 1_800];
-/// From one stop to the next.
+/// Distance from one stop to the next.
 const STEP: [Cm; 2] = [410, 530];
 const USUAL_STEP: Cm = 475;
 /// Depth of rooms.
@@ -42,7 +56,7 @@ pub(super) struct Drawn {
     pub(super) largest_branch: Vec<usize>,
 }
 
-/// Draws a floor; `None` where what was drawn does not fit together.
+/// Draws a floor; `None` where the parts drawn do not fit together.
 pub(super) fn draw(stream: &mut Stream) -> Option<Drawn> {
     let halls = draw_halls(stream)?;
     let mut pen = Pen {
@@ -74,7 +88,7 @@ fn draw_halls(stream: &mut Stream) -> Option<Halls> {
     let length = even(stream, MAIN) + thickness;
     let (first, last) = (END + thickness / 2, length - END - thickness / 2);
 
-    // From the west: stops up to the junction of the goal's branch, then up to that of the large one.
+    // 1. From the west: stops up to the junction of the goal's branch, then up to that of the large one.
     let mut stops = vec![first];
     let steps = |stops: &mut Vec<Cm>, count: u64, stream: &mut Stream| {
         for _ in 0..count {
@@ -87,7 +101,7 @@ fn draw_halls(stream: &mut Stream) -> Option<Halls> {
     let goal = steps(&mut stops, west, stream);
     let between = stream.below(3);
     let large = steps(&mut stops, between, stream);
-    // From the east: stops up to the junction of the third branch, where there is one.
+    // 2. From the east: stops up to the junction of the third branch, where there is one.
     let mut eastern = vec![last];
     let third = (stream.below(4) > 0).then(|| {
         let mut from_east = vec![0];
@@ -96,11 +110,13 @@ fn draw_halls(stream: &mut Stream) -> Option<Halls> {
         eastern.extend(from_east[1..].iter().map(|off| last - off));
         last - off
     });
+    // 3. Between them.
     let (from, to) = (large, eastern[eastern.len() - 1]);
     stops.extend(between_stops(stream, from, to)?);
     eastern.reverse();
     stops.extend(eastern);
 
+    // 4. The branches.
     let main = Hall { axis: Axis::EastWest, center: 0, half: halves[0], span: [0, length], stops };
     let north = stream.below(2) == 1;
     let mut branch = |center: Cm, north: bool, half: Cm, length: [Cm; 2]| {
@@ -128,7 +144,7 @@ fn draw_halls(stream: &mut Stream) -> Option<Halls> {
     Some(Halls { thickness, halls })
 }
 
-/// Stops between `from` and `to`, about evenly spaced; `None` where they come too near or too far apart.
+/// Draws stops between `from` and `to`, about evenly spaced; `None` where they come too near or too far apart.
 fn between_stops(stream: &mut Stream, from: Cm, to: Cm) -> Option<Vec<Cm>> {
     let count = (to - from + USUAL_STEP / 2) / USUAL_STEP;
     let mut stops = Vec::new();
@@ -147,14 +163,14 @@ struct Pen<'a> {
 }
 
 impl Pen<'_> {
-    /// Draws all rooms and yields the number of the goal's.
+    /// Draws all rooms and returns the number of the goal's.
     fn draw_rooms(&mut self) -> Option<usize> {
         let corridor: usize = self.floor.halls.iter().map(|hall| hall.stops.len()).sum();
         let least = ROOM_VERTICES[0].max(VERTICES[0].saturating_sub(corridor));
         let most = ROOM_VERTICES[1].min(VERTICES[1].checked_sub(corridor)?);
         let target = least + self.below(most.checked_sub(least)? + 1);
 
-        // The goal: on its branch, not at the end, opposite another room.
+        // 1. The goal: on its branch, not at the end, opposite another room.
         let stops = self.floor.halls[GOAL].stops.len();
         let stop = self.below(stops.checked_sub(1)?);
         let [west, east] = self.floor.halls[GOAL].sides();
@@ -165,7 +181,7 @@ impl Pen<'_> {
                 return None;
             }
         }
-        // The large branch has many four-way vertices.
+        // 2. The large branch has many four-way vertices.
         for stop in 0..self.floor.halls[LARGE].stops.len() {
             for side in self.floor.halls[LARGE].sides() {
                 if self.stream.uniform() < 0.85 {
@@ -173,12 +189,13 @@ impl Pen<'_> {
                 }
             }
         }
-        // Every other place has a door or is a junction or an end.
+        // 3. Every other place has a door or is a junction or an end.
         for number in 0..self.floor.halls.len() {
             for stop in 0..self.floor.halls[number].stops.len() {
                 self.draw_for(number, stop)?;
             }
         }
+        // 4. Second doors.
         let two = TWO_DOORS[0] + self.below(TWO_DOORS[1] - TWO_DOORS[0]);
         let loops = self.below(2) == 1;
         for site in self.shuffled_sites() {
@@ -186,11 +203,13 @@ impl Pen<'_> {
                 self.second_door(site, loops);
             }
         }
+        // 5. Further rooms.
         for site in self.shuffled_sites() {
             if self.room_vertices() < target {
                 self.draw_room(site, 0.3);
             }
         }
+        // 6. The counts.
         let fits = self.room_vertices() == target
             && self.floor.rooms.len() >= ROOM_VERTICES[0]
             && (TWO_DOORS[0]..=TWO_DOORS[1]).contains(&self.two_door_rooms())
@@ -199,7 +218,7 @@ impl Pen<'_> {
         fits.then(|| self.name_rooms())
     }
 
-    /// Sees to it that the place has a door, unless it needs none.
+    /// Gives the place a door, unless it needs none.
     fn draw_for(&mut self, hall: usize, stop: usize) -> Option<()> {
         let floor = &self.floor;
         let sides = floor.halls[hall].sides();
@@ -217,7 +236,7 @@ impl Pen<'_> {
         drawn.then_some(())
     }
 
-    /// A room behind `site`, with probability `wide` over the bay beside it too.
+    /// Draws a room behind `site`, with probability `wide` over the bay beside it too.
     fn draw_room(&mut self, site: Site, wide: f64) -> bool {
         let mut along = self.floor.bay(site);
         if self.stream.uniform() < wide {
@@ -246,7 +265,8 @@ impl Pen<'_> {
         self.floor.add(site, area, width, inside)
     }
 
-    /// A second door at `site` for the room whose wall is there; with `through`, one way through a room at most.
+    /// Draws a second door at `site` for the room whose wall is there; with `through`, at most one room becomes a
+    /// passage.
     fn second_door(&mut self, site: Site, through: bool) -> bool {
         let (width, inside) = (even(self.stream, DOOR), whole(self.stream, INSIDE));
         // The first room is the goal's, which stays with one door.
@@ -268,7 +288,7 @@ impl Pen<'_> {
         self.floor.rooms.iter().map(|room| room.doors.len()).sum()
     }
 
-    /// Doors, but for ways through, whose two doors share a vertex.
+    /// Counts the doors, but for passages, whose two doors share a vertex.
     fn room_vertices(&self) -> usize {
         let shared =
             self.floor.rooms.iter().filter(|room| {
@@ -277,7 +297,7 @@ impl Pen<'_> {
         self.doors() - shared.count()
     }
 
-    /// Four-way vertices of a branch: doors on both sides, and not its end.
+    /// Counts the four-way vertices of a branch: doors on both sides, and not its end.
     fn four_ways(&self, branch: usize) -> usize {
         let hall = &self.floor.halls[branch];
         let both = |stop: &usize| {
@@ -291,7 +311,7 @@ impl Pen<'_> {
         self.floor.rooms.iter().filter(|room| room.doors.len() == 2).count()
     }
 
-    /// Puts the rooms in the order of their first doors and yields the number of the goal's.
+    /// Puts the rooms in the order of their first doors and returns the number of the goal's.
     fn name_rooms(&mut self) -> usize {
         let goal = self.floor.rooms[0].area;
         self.floor.rooms.sort_by_key(|room| {
@@ -311,13 +331,13 @@ fn below(stream: &mut Stream, bound: usize) -> usize {
     usize::try_from(stream.below(bound.max(1) as u64)).unwrap_or(0)
 }
 
-/// A whole number from `range[0]` to `range[1]`.
+/// Draws a whole number from `range[0]` to `range[1]`.
 fn whole(stream: &mut Stream, range: [Cm; 2]) -> Cm {
     let span = u64::try_from(range[1] - range[0]).unwrap_or(0);
     range[0] + Cm::try_from(stream.below(span + 1)).unwrap_or(0)
 }
 
-/// An even number from `range[0]` to `range[1]`, which are even.
+/// Draws an even number from `range[0]` to `range[1]`, which are even.
 fn even(stream: &mut Stream, range: [Cm; 2]) -> Cm {
     2 * whole(stream, [range[0] / 2, range[1] / 2])
 }

@@ -8,7 +8,7 @@ const CLEAR: f64 = 0.28;
 
 const ENGINEERING: &str = include_str!("../../../worlds/engineering-building.yaml");
 
-/// Asserts what every building of the family is, and yields its graph.
+/// Asserts the properties of every building of the family, and returns its graph.
 fn check(world: &World) -> Topology {
     let name = &world.name;
     let topology = Topology::read(&world.tags, &TagScheme::default())
@@ -57,7 +57,7 @@ fn check(world: &World) -> Topology {
     }
     assert_eq!(entered.len(), world.regions.len(), "{name}");
 
-    // Every edge can be driven: the straight way is clear, doors and corridors are as wide as they should be.
+    // Every edge can be driven: the straight line is clear, doors and corridors are as wide as they should be.
     for edge in topology.edges() {
         let (from, to) = (topology.vertices[edge.from].at, topology.vertices[edge.to].at);
         let length = from.distance(to);
@@ -149,7 +149,7 @@ fn every_seed_to_a_thousand_is_a_building_and_a_sample_keeps_every_rule() {
     }
 }
 
-/// The generator's version is the engine's: raise that with these.
+/// The generator's version is the engine's: raise that together with these.
 #[test]
 fn buildings_are_pinned() {
     let meanings: Vec<String> =

@@ -5,12 +5,12 @@ use crate::geometry::Axis;
 use crate::world::document::WallDoc;
 use std::collections::BTreeMap;
 
-/// The walls around `spaces`, `thickness` thick, but for `gaps`: those along E-W from south to north, then those
+/// Builds the walls around `spaces`, `thickness` thick, but for `gaps`: those along E-W from south to north, then those
 /// along N-S from west to east.
 pub(super) fn walls(spaces: &[Space], gaps: &[Gap], thickness: Cm) -> Vec<WallDoc> {
     let mut walls = Vec::new();
     for line in Axis::ALL {
-        // What is built along each line: by its distance from the origin, from and to.
+        // The pieces built along each line: by its distance from the origin, from and to.
         let mut built: BTreeMap<Cm, Vec<[Cm; 2]>> = BTreeMap::new();
         for space in spaces {
             let (length, sides) = match line {
@@ -58,7 +58,7 @@ fn across(line: Axis, at: (Cm, Cm)) -> Cm {
     if line == Axis::EastWest { at.1 } else { at.0 }
 }
 
-/// Pieces that touch or overlap, as one.
+/// Merges pieces that touch or overlap.
 fn merged(mut pieces: Vec<[Cm; 2]>) -> Vec<[Cm; 2]> {
     pieces.sort_unstable();
     let mut merged: Vec<[Cm; 2]> = Vec::new();
@@ -71,7 +71,8 @@ fn merged(mut pieces: Vec<[Cm; 2]>) -> Vec<[Cm; 2]> {
     merged
 }
 
-/// What of `piece` stands between the `open` parts. Ends at corners reach on to the far face of the other wall.
+/// Returns the parts of `piece` that stand between the `open` parts. Ends at corners reach on to the far face of the
+/// other wall.
 fn standing(piece: [Cm; 2], open: &[[Cm; 2]], half: Cm) -> Vec<[Cm; 2]> {
     let mut standing = Vec::new();
     let mut from = piece[0] - half;

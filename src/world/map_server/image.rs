@@ -1,4 +1,4 @@
-//! Images as `map_server` sees them: colours of 8 bits, perhaps with alpha, row by row from the top.
+//! Images in `map_server`'s form: colours of 8 bits, perhaps with alpha, row by row from the top.
 
 use std::io::Cursor;
 use thiserror::Error;
@@ -59,7 +59,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Image, ImageError> {
     }
 }
 
-/// Checks a size and gives it with the number of pixels.
+/// Checks a size and returns it with the number of pixels.
 fn checked(width: u64, height: u64) -> Result<(i32, i32, usize), ImageError> {
     let count = width.saturating_mul(height);
     match (i32::try_from(width), i32::try_from(height), usize::try_from(count)) {
@@ -94,7 +94,7 @@ fn decode_png(bytes: &[u8]) -> Result<Image, ImageError> {
     Ok(Image { width, height, pixels })
 }
 
-/// Netpbm's PGM, plain (P2) or raw (P5): netpbm.sourceforge.net/doc/pgm.html. Greys are scaled to 0..255.
+/// Decodes Netpbm's PGM, plain (P2) or raw (P5): netpbm.sourceforge.net/doc/pgm.html. Greys are scaled to 0..255.
 fn decode_pgm(bytes: &[u8]) -> Result<Image, ImageError> {
     let mut at = 2;
     let width = header_number(bytes, &mut at).ok_or(ImageError::Header("width"))?;
@@ -131,7 +131,7 @@ fn scaled(grey: u64, largest: u64, index: usize) -> Result<Pixel, ImageError> {
     Ok(Pixel::grey(u8::try_from((grey * 255 + largest / 2) / largest).unwrap_or(u8::MAX)))
 }
 
-/// The decimal number after blanks and `#` comments at `at`, which moves behind it.
+/// Reads the decimal number after blanks and `#` comments at `at`, which moves behind it.
 fn header_number(bytes: &[u8], at: &mut usize) -> Option<u64> {
     loop {
         match bytes.get(*at)? {

@@ -3,7 +3,7 @@
 //! Semantics after map_server 1.x (ROS wiki "map_server", section 1; `image_loader.cpp`), which nav2 keeps:
 //! darkness p = (255 - grey) / 255, or grey / 255 where `negate`; above `occupied_thresh` occupied, below
 //! `free_thresh` free, else unknown (`trinary`), a value between (`scale`), or the grey itself as the value
-//! (`raw`). Bytes in, values out: whoever calls fetches the image.
+//! (`raw`). Bytes in, values out: the caller fetches the image.
 
 mod image;
 mod write;
@@ -61,7 +61,7 @@ pub struct Options {
 }
 
 impl Default for Options {
-    /// As `map_server` does.
+    /// Returns the options of `map_server`.
     fn default() -> Self {
         Self { average_alpha: true }
     }
@@ -70,7 +70,7 @@ impl Default for Options {
 /// From this value on (of 0 to 100) a cell of a `scale` or `raw` map is taken for occupied: more likely than not.
 const LIKELY: f64 = 50.0;
 
-/// The path of the image that the descriptor names, as written.
+/// Reads the path of the image that the descriptor names, as written.
 ///
 /// # Errors
 /// Every fault of the descriptor.
@@ -78,10 +78,10 @@ pub fn image_path(yaml: &Source) -> Result<String, Vec<Diagnostic>> {
     descriptor(yaml).map(|parsed| parsed.value.image)
 }
 
-/// Reads a map from its descriptor and the bytes of its image (PNG or PGM, told by their first bytes).
+/// Reads a map from its descriptor and the bytes of its image (PNG or PGM, recognised by their first bytes).
 ///
 /// # Errors
-/// Every fault of the descriptor; where there is none, what is wrong with the image.
+/// Every fault of the descriptor; where there is none, the fault of the image.
 pub fn read(
     yaml: &Source,
     image_name: &str,
@@ -129,7 +129,7 @@ fn descriptor(yaml: &Source) -> Result<Parsed<MapDoc>, Vec<Diagnostic>> {
         "origin out of range",
         "x and y in metres and yaw in radians",
     );
-    // map_server itself warns that most readers ignore the yaw; a turned grid cannot be told as one.
+    // map_server itself warns that most readers ignore the yaw; a turned grid cannot be represented as one.
     expect(map.origin[2] == 0.0, "/origin/2", "turned maps cannot be read", "a yaw of 0");
     expect(map.negate <= 1, "/negate", "negate out of range", "0 or 1");
     expect(

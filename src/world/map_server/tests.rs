@@ -8,7 +8,7 @@ use proptest::prelude::*;
 const YAML: &str = "image: a.png\nresolution: 0.1\norigin: [-11.9, -7.1, 0.0]\n\
                     occupied_thresh: 0.65\nfree_thresh: 0.196\nnegate: 0\n";
 
-/// The cells of a one-row image of `pixels`, read under the descriptor `yaml`.
+/// Returns the cells of a one-row image of `pixels`, read under the descriptor `yaml`.
 fn cells(yaml: &str, color: png::ColorType, pixels: &[u8], options: Options) -> Vec<Occupancy> {
     let mut file = Vec::new();
     let count = u32::try_from(pixels.len() / color.samples()).unwrap();

@@ -1,9 +1,9 @@
-//! Maps as `map_saver` writes them, for maps that a robot of ours made.
+//! Maps in `map_saver`'s form, for maps that our robots made.
 
 use crate::grid::{Cell, Occupancy, OccupancyGrid};
 
-/// `grid` as a descriptor and the PGM image `image_name` that it names: what [`super::read`] reads back cell by cell, as
-/// does ROS's `map_server`. The origin is the grid's own.
+/// Writes `grid` as a descriptor and the PGM image `image_name` that it names: [`super::read`] reads it back cell by
+/// cell, as does ROS's `map_server`. The origin is the grid's own.
 pub fn write(grid: &OccupancyGrid, image_name: &str) -> [Vec<u8>; 2] {
     let frame = grid.frame();
     let descriptor = format!(

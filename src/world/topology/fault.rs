@@ -1,8 +1,8 @@
-//! What breaks the convention of tags, in words.
+//! Breaches of the convention of tags, in words.
 
 use crate::geometry::{Cardinal, Point};
 
-/// One way in which a building's tags break the convention.
+/// One breach of the convention by a building's tags.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TagFault {
     /// Two vertex tags so near each other that marks could belong to either.
@@ -28,9 +28,9 @@ pub enum TagFault {
         tag: String,
         /// Its colour.
         color: String,
-        /// Where it stands (m).
+        /// Its position (m).
         at: Point,
-        /// Where a vertex tag was looked for (m).
+        /// The distance within which a vertex tag was sought (m).
         within: f64,
     },
     /// An exit tag that faces none of the four directions.
@@ -38,7 +38,7 @@ pub enum TagFault {
     Askew {
         /// Its id.
         tag: String,
-        /// Where it faces (degrees, counter-clockwise from east).
+        /// Its heading (degrees, counter-clockwise from east).
         degrees: f64,
     },
     /// An exit tag that does not stand on the side to which it leads.
@@ -48,9 +48,9 @@ pub enum TagFault {
     Misplaced {
         /// Its id.
         tag: String,
-        /// The vertex it belongs to.
+        /// The vertex to which it belongs.
         vertex: String,
-        /// Where it faces.
+        /// Its direction.
         direction: Cardinal,
     },
     /// Two exits in one direction.
@@ -68,7 +68,7 @@ pub enum TagFault {
     Nowhere {
         /// Its id.
         tag: String,
-        /// Where it leads.
+        /// Its direction.
         direction: Cardinal,
     },
     /// An exit whose other end does not lead back.
@@ -80,12 +80,12 @@ pub enum TagFault {
         tag: String,
         /// The vertex at the other end.
         vertex: String,
-        /// Where the exit leads.
+        /// The direction of the exit.
         direction: Cardinal,
-        /// Where the missing one should lead.
+        /// The direction of the missing one.
         back: Cardinal,
     },
-    /// The two ends of an edge differ in what it passes.
+    /// The two ends of an edge differ in what it leads through.
     #[error("the exits `{}` and `{}` are of one edge and differ in colour", tags[0], tags[1])]
     Unequal {
         /// Their ids.
@@ -101,13 +101,13 @@ pub enum TagFault {
         /// The exit.
         exit: String,
     },
-    /// A corridor vertex that no corridor leads to.
+    /// A corridor vertex to which no corridor leads.
     #[error("the corridor vertex `{vertex}` has no exit through a corridor")]
     NoCorridor {
         /// The vertex.
         vertex: String,
     },
-    /// A room without a way out.
+    /// A room without an exit.
     #[error("the room `{vertex}` has no exit")]
     NoExit {
         /// The room.

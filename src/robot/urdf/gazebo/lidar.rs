@@ -84,7 +84,7 @@ pub(super) fn read(sensor: &Sensor<'_, '_>, ground: f64, faults: &mut Faults<'_>
     })
 }
 
-/// Number of beams: whole, 2 to 100 000.
+/// Returns the number of beams: whole, 2 to 100 000.
 fn beams(scan: Node<'_, '_>, samples: f64, faults: &mut Faults<'_>) -> Option<u32> {
     // SDF: the number of ranges reported is samples times resolution, interpolated where that is above 1.
     if let Some(node) = xml::child(scan, "resolution")
@@ -108,7 +108,7 @@ fn beams(scan: Node<'_, '_>, samples: f64, faults: &mut Faults<'_>) -> Option<u3
     Some(samples as u32)
 }
 
-/// Standard deviation (m) of the range noise: zero where none is described.
+/// Returns the standard deviation (m) of the range noise: zero where none is described.
 fn noise(ray: Node<'_, '_>, name: &str, faults: &mut Faults<'_>) -> Option<f64> {
     let Some(noise) = xml::child(ray, "noise") else { return Some(0.0) };
     let kind = noise
