@@ -5,7 +5,7 @@ use crate::math;
 /// One labelled position of an axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tick {
-    /// Where (in the axis's unit).
+    /// Its position (in the axis's unit).
     pub value: f64,
     /// The value as text, with as many decimals as the step has.
     pub label: String,
@@ -27,8 +27,8 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// The axis of `title` around all finite `values` whose step is the smallest of 1, 2 or 5 times a power
-    /// of ten that needs at most `most` ticks (at least 3).
+    /// Creates the axis of `title` around all finite `values` whose step is the smallest of 1, 2 or 5 times a power of
+    /// ten that needs at most `most` ticks (at least 3).
     ///
     /// No value at all gives 0 to 1; a single one is given room on both sides.
     pub fn covering(title: &str, values: impl IntoIterator<Item = f64>, most: u32) -> Self {
@@ -56,8 +56,9 @@ impl Axis {
         Self { title: title.to_owned(), low, high, ticks, logarithmic: false }
     }
 
-    /// The logarithmic axis of `title` around all positive `values`, some room beyond them at both ends, with the coarsest
-    /// usual set of ticks of which at least four lie within. Without a positive value it runs from 0.5 to 2.
+    /// Creates the logarithmic axis of `title` around all positive `values`, some room beyond them at both ends, with
+    /// the coarsest usual set of ticks of which at least four lie within. Without a positive value it runs from 0.5 to
+    /// 2.
     pub fn logarithmic(title: &str, values: impl IntoIterator<Item = f64>) -> Self {
         let (mut low, mut high) = values
             .into_iter()
@@ -82,7 +83,7 @@ impl Axis {
         Self { title: title.to_owned(), low, high, ticks, logarithmic: true }
     }
 
-    /// Where `value` lies between the coordinates `from` (low end) and `to` (high end), in their unit.
+    /// Returns the position of `value` between the coordinates `from` (low end) and `to` (high end), in their unit.
     pub fn position(&self, value: f64, from: f64, to: f64) -> f64 {
         let share = if self.logarithmic {
             math::ln(value / self.low) / math::ln(self.high / self.low)
@@ -104,7 +105,7 @@ struct Step {
 }
 
 impl Step {
-    /// `count` steps, rounded once: integers are exact, and so are powers of ten up to 10^22.
+    /// Returns the length of `count` steps, rounded once: integers are exact, and so are powers of ten up to 10^22.
     fn times(self, count: i64) -> f64 {
         let power = (0..self.exponent.unsigned_abs()).fold(1.0, |power, _| power * 10.0);
         #[expect(clippy::cast_precision_loss, reason = "ticks are few and steps small integers")]
@@ -112,7 +113,7 @@ impl Step {
         if self.exponent < 0 { digits / power } else { digits * power }
     }
 
-    /// The whole numbers of steps just outside of `low` and `high`; `None` where they would be too many.
+    /// Returns the whole numbers of steps just outside of `low` and `high`; `None` where they would be too many.
     fn around(self, low: f64, high: f64) -> Option<(i64, i64)> {
         let whole = |value: f64, outwards: fn(f64) -> f64| {
             let steps = value / self.times(1);
@@ -125,7 +126,7 @@ impl Step {
         Some((whole(low, f64::floor)?, whole(high, f64::ceil)?))
     }
 
-    /// The step itself without zeros that say nothing: `0.15`, `2`, `300`.
+    /// Writes the step itself without superfluous zeros: `0.15`, `2`, `300`.
     fn in_short(self) -> String {
         format!("{}", self.times(1))
     }

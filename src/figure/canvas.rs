@@ -1,4 +1,4 @@
-//! The sheet that everything is drawn on: metres to pixels, axes, a scale bar, dimensions, texts.
+//! The sheet under every drawing: metres to pixels, axes, a scale bar, dimensions, texts.
 
 use super::svg::{self, Element};
 use crate::geometry::{Bounds, Outline, Point};
@@ -12,9 +12,9 @@ const BOTTOM: f64 = 78.0;
 
 /// Ink for texts and axes.
 pub(crate) const INK: &str = "#222";
-/// Ink for what accompanies.
+/// Ink for secondary marks.
 pub(crate) const FAINT: &str = "#777";
-/// The one colour: what the robot does or is told (starts, goals, field of view).
+/// The one colour: the robot's actions and commands (starts, goals, field of view).
 pub(crate) const ACCENT: &str = "#0b62a4";
 
 /// A sheet under construction.
@@ -27,7 +27,7 @@ pub(crate) struct Canvas {
 }
 
 impl Canvas {
-    /// A sheet for `bounds` (m) with about `width` by at most `height` px for the drawing.
+    /// Creates a sheet for `bounds` (m) with about `width` by at most `height` px for the drawing.
     pub(crate) fn new(bounds: Bounds, width: f64, height: f64) -> Self {
         let scale = (width / bounds.width()).min(height / bounds.height());
         let mut canvas = Self { bounds, scale, elements: Vec::new(), key: 0 };
@@ -36,19 +36,19 @@ impl Canvas {
         canvas
     }
 
-    /// Width and height of the sheet (px).
+    /// Returns the width and height of the sheet (px).
     fn size(&self) -> (f64, f64) {
         let width = self.bounds.width() * self.scale + LEFT + RIGHT;
         // Room for a title and a legend above small drawings.
         (width.max(420.0), self.bounds.height() * self.scale + TOP + BOTTOM)
     }
 
-    /// Pixels per metre.
+    /// Returns the pixels per metre.
     pub(crate) fn scale(&self) -> f64 {
         self.scale
     }
 
-    /// Where `point` (m) lies on the sheet (px).
+    /// Returns the position of `point` (m) on the sheet (px).
     pub(crate) fn at(&self, point: Point) -> (f64, f64) {
         (
             LEFT + (point.x - self.bounds.min.x) * self.scale,
@@ -60,7 +60,7 @@ impl Canvas {
         self.elements.push(element);
     }
 
-    /// The outline as an element to be styled.
+    /// Returns the outline as an element to be styled.
     pub(crate) fn outline(&self, outline: &Outline) -> Element {
         match outline {
             Outline::Circle { center, radius } => {
@@ -71,13 +71,13 @@ impl Canvas {
         }
     }
 
-    /// The polyline through `points` (m) as an element to be styled.
+    /// Returns the polyline through `points` (m) as an element to be styled.
     pub(crate) fn path(&self, points: &[Point], closed: bool) -> Element {
         Element::new("path")
             .set("d", svg::path_data(points.iter().map(|point| self.at(*point)), closed))
     }
 
-    /// A text of `size` px centred at `point` (m) and moved by `shift` px, with a white rim.
+    /// Draws a text of `size` px centred at `point` (m) and moved by `shift` px, with a white rim.
     pub(crate) fn label(&self, point: Point, shift: (f64, f64), size: f64, text: &str) -> Element {
         let (x, y) = self.at(point);
         Element::new("text")
@@ -93,7 +93,7 @@ impl Canvas {
             .text(text)
     }
 
-    /// A dimension line from `a` to `b` (m), `shift` px off to its left, with its length.
+    /// Draws a dimension line from `a` to `b` (m), `shift` px off to its left, with its length.
     pub(crate) fn dimension(&mut self, a: Point, b: Point, shift: f64, text: &str) {
         let ((ax, ay), (bx, by)) = (self.at(a), self.at(b));
         let length = math::hypot(bx - ax, by - ay).max(1e-9);
@@ -135,7 +135,7 @@ impl Canvas {
         self.push(label.text(text));
     }
 
-    /// An arrow from `tail` to `tip` (m).
+    /// Draws an arrow from `tail` to `tip` (m).
     pub(crate) fn arrow(&mut self, tail: Point, tip: Point, color: &str) {
         let ((ax, ay), (bx, by)) = (self.at(tail), self.at(tip));
         let length = math::hypot(bx - ax, by - ay).max(1e-9);
@@ -155,7 +155,7 @@ impl Canvas {
         self.push(Element::new("path").set("d", svg::path_data(head, true)).set("fill", color));
     }
 
-    /// Light lines at every tick, below everything drawn after.
+    /// Draws light lines at every tick, below everything drawn after.
     pub(crate) fn raster(&mut self) {
         let Bounds { min, max } = self.bounds;
         let lines: Vec<[Point; 2]> = ticks(min.x, max.x)
@@ -168,7 +168,7 @@ impl Canvas {
         }
     }
 
-    /// Axes in metres around the drawing, and a scale bar below.
+    /// Draws axes in metres around the drawing, and a scale bar below.
     pub(crate) fn axes(&mut self) {
         let Bounds { min, max } = self.bounds;
         let corners = [min, Point::new(max.x, min.y), max, Point::new(min.x, max.y)];
@@ -202,7 +202,7 @@ impl Canvas {
         self.scale_bar(left, bottom + 52.0);
     }
 
-    /// A bar of a round length, black and white, from `left` at height `y` (px).
+    /// Draws a bar of a round length, black and white, from `left` at height `y` (px).
     fn scale_bar(&mut self, left: f64, y: f64) {
         let length = round_step(self.bounds.width() / 4.0);
         let half = length / 2.0 * self.scale;
@@ -228,7 +228,7 @@ impl Canvas {
         );
     }
 
-    /// Title and a line below it.
+    /// Writes the title and a line below it.
     pub(crate) fn heading(&mut self, title: &str, subtitle: &str) {
         for (y, size, fill, weight, text) in
             [(24.0, 16.0, INK, "bold", title), (44.0, 12.0, FAINT, "normal", subtitle)]
@@ -245,7 +245,7 @@ impl Canvas {
         }
     }
 
-    /// Swatches with names, below the drawing to the right of the scale bar.
+    /// Draws swatches with names, below the drawing to the right of the scale bar.
     pub(crate) fn legend(&mut self, entries: &[(String, &str, &str)]) {
         let (_, height) = self.size();
         let mut x = LEFT + round_step(self.bounds.width() / 4.0) * self.scale + 80.0;
@@ -273,7 +273,7 @@ impl Canvas {
         }
     }
 
-    /// What numbers in the drawing stand for, in lines below the legend.
+    /// Explains the numbers in the drawing, in lines below the legend.
     pub(crate) fn key(&mut self, entries: &[String]) {
         let (width, height) = self.size();
         let (mut lines, mut wide) = (vec![String::new()], 0.0);
@@ -305,7 +305,7 @@ impl Canvas {
         self.key = lines.len();
     }
 
-    /// Height of the sheet with its key (px).
+    /// Returns the height of the sheet with its key (px).
     fn whole(&self) -> (f64, f64) {
         let (width, height) = self.size();
         #[expect(clippy::cast_precision_loss, reason = "a few lines")]
@@ -313,19 +313,19 @@ impl Canvas {
         (width, height + key)
     }
 
-    /// Where a legend of one's own begins, and the height of its line (px).
+    /// Returns where a legend of one's own begins, and the height of its line (px).
     pub(crate) fn legend_at(&self) -> (f64, f64) {
         let (_, height) = self.size();
         (LEFT + round_step(self.bounds.width() / 4.0) * self.scale + 80.0, height - 23.0)
     }
 
-    /// The finished file.
+    /// Returns the finished file.
     pub(crate) fn finish(self, title: &str) -> String {
         let (width, height) = self.whole();
         svg::document(width, height, title, self.elements)
     }
 
-    /// The finished file with another sheet below this one.
+    /// Returns the finished file with another sheet below this one.
     pub(crate) fn finish_above(self, below: Self, title: &str) -> String {
         let ((width, height), (other_width, other_height)) = (self.whole(), below.whole());
         let moved = format!("translate(0 {})", svg::number(height));
@@ -342,7 +342,7 @@ fn tick(from: (f64, f64), to: (f64, f64)) -> Element {
     Element::new("path").set("d", svg::path_data([from, to], false)).set("stroke", FAINT)
 }
 
-/// The largest of 1, 2, 5 times a power of ten that is not above `length`.
+/// Returns the largest of 1, 2, 5 times a power of ten that is not above `length`.
 fn round_step(length: f64) -> f64 {
     let power = math::pow(10.0, math::log10(length.max(1e-9)).floor());
     [5.0, 2.0, 1.0]
@@ -352,7 +352,7 @@ fn round_step(length: f64) -> f64 {
         .unwrap_or(power)
 }
 
-/// Round numbers from `low` to `high`, about eight of them.
+/// Returns round numbers from `low` to `high`, about eight of them.
 fn ticks(low: f64, high: f64) -> impl Iterator<Item = f64> {
     let step = round_step((high - low) / 5.0);
     let (first, last) = ((low / step).ceil(), (high / step + 1e-9).floor());
@@ -361,7 +361,7 @@ fn ticks(low: f64, high: f64) -> impl Iterator<Item = f64> {
     (0..=count).map(move |i| (first + f64::from(i)) * step)
 }
 
-/// A length in metres, to the millimetre, without trailing zeros.
+/// Writes a length in metres, to the millimetre, without trailing zeros.
 pub(crate) fn metres(length: f64) -> String {
     let rounded = (length * 1000.0).round() / 1000.0;
     format!("{}", if rounded == 0.0 { 0.0 } else { rounded })

@@ -1,4 +1,4 @@
-//! What every chart has: a plot with two axes, and a key that flows under it.
+//! The common parts of charts: a plot with two axes, and a key that flows under it.
 
 use super::axis::Axis;
 use super::palette::{INK, PAPER};
@@ -7,14 +7,14 @@ use super::svg::{self, Element, path_data};
 /// Text size of labels (px).
 pub(super) const TEXT: f64 = 13.0;
 
-/// A count as a number of px or positions.
+/// Converts a count to a number of px or positions.
 pub(super) fn real(n: usize) -> f64 {
     #[expect(clippy::cast_precision_loss, reason = "counts of marks in a drawing are small")]
     let real = n as f64;
     real
 }
 
-/// About how wide `text` runs at `size` px in a sans-serif face: layout must not ask for a font.
+/// Estimates how wide `text` runs at `size` px in a sans-serif face: layout must not ask for a font.
 pub(super) fn text_width(text: &str, size: f64) -> f64 {
     let width = |c: char| match c {
         'i' | 'j' | 'l' | '.' | ',' | ':' | ';' | '\'' | '|' | '!' | 'I' => 0.26,
@@ -26,7 +26,7 @@ pub(super) fn text_width(text: &str, size: f64) -> f64 {
     text.chars().map(width).sum::<f64>() * size
 }
 
-/// Text in ink, its baseline at (`x`, `y`); `anchor` is start, middle or end.
+/// Draws the text in ink, its baseline at (`x`, `y`); `anchor` is start, middle or end.
 pub(super) fn label(x: f64, y: f64, anchor: &str, text: &str) -> Element {
     Element::new("text")
         .at("x", x)
@@ -38,7 +38,7 @@ pub(super) fn label(x: f64, y: f64, anchor: &str, text: &str) -> Element {
         .text(text)
 }
 
-/// A line in ink between two points (px).
+/// Draws a line in ink between two points (px).
 pub(super) fn rule(from: (f64, f64), to: (f64, f64), width: f64, opacity: f64) -> Element {
     let line = Element::new("path")
         .set("d", path_data([from, to], false))
@@ -49,14 +49,14 @@ pub(super) fn rule(from: (f64, f64), to: (f64, f64), width: f64, opacity: f64) -
     if opacity < 1.0 { line.at("stroke-opacity", opacity) } else { line }
 }
 
-/// Space at the high end of a vertical error bar or beside a point: a bar with two caps.
+/// Draws a bar with two caps, each reaching `cap` px to either side, as the data of a path.
 pub(super) fn error_bar(from: (f64, f64), to: (f64, f64), cap: f64) -> String {
     let (dx, dy) = if from.0 == to.0 { (cap, 0.0) } else { (0.0, cap) };
     let across = |(x, y): (f64, f64)| path_data([(x - dx, y - dy), (x + dx, y + dy)], false);
     path_data([from, to], false) + &across(from) + &across(to)
 }
 
-/// The rectangle data are drawn in (px), and its axes.
+/// The rectangle in which data are drawn (px), and its axes.
 pub(super) struct Plot {
     pub(super) left: f64,
     pub(super) right: f64,
@@ -67,22 +67,22 @@ pub(super) struct Plot {
 }
 
 impl Plot {
-    /// Where the value `x` lies (px).
+    /// Returns the horizontal position of the value `x` (px).
     pub(super) fn px(&self, x: f64) -> f64 {
         self.x.position(x, self.left, self.right)
     }
 
-    /// Where the value `y` lies (px, downwards).
+    /// Returns the vertical position of the value `y` (px, downwards).
     pub(super) fn py(&self, y: f64) -> f64 {
         self.y.position(y, self.bottom, self.top)
     }
 
-    /// Room (px) the tick labels and title of the axis `y` need on the left.
+    /// Returns the room (px) that the tick labels and title of the axis `y` need on the left.
     pub(super) fn left_margin(y: &Axis) -> f64 {
         y.ticks.iter().map(|t| text_width(&t.label, TEXT)).fold(0.0, f64::max) + 40.0
     }
 
-    /// The horizontal axis: ticks, labels and title.
+    /// Draws the horizontal axis: ticks, labels and title.
     pub(super) fn x_axis(&self) -> Element {
         let mut group = Element::new("g");
         for tick in &self.x.ticks {
@@ -94,13 +94,13 @@ impl Plot {
         group.child(self.x_title(40.0))
     }
 
-    /// The title of the horizontal axis, `below` px under it.
+    /// Draws the title of the horizontal axis, `below` px under it.
     pub(super) fn x_title(&self, below: f64) -> Element {
         let middle = f64::midpoint(self.left, self.right);
         label(middle, self.bottom + below, "middle", &self.x.title)
     }
 
-    /// The vertical axis: gridlines, labels and title.
+    /// Draws the vertical axis: gridlines, labels and title.
     pub(super) fn y_axis(&self) -> Element {
         let mut group = Element::new("g");
         for tick in &self.y.ticks {
@@ -114,13 +114,13 @@ impl Plot {
     }
 }
 
-/// One entry of a key: a mark drawn around (0, 0), at most 24 px wide, and what it means.
+/// One entry of a key: a mark drawn around (0, 0), at most 24 px wide, and its meaning.
 pub(super) struct KeyItem {
     pub(super) mark: Element,
     pub(super) text: String,
 }
 
-/// The key, wrapped between `left` and `right` px from `top` px on, and its height (px).
+/// Draws the key, wrapped between `left` and `right` px from `top` px on, and returns it with its height (px).
 pub(super) fn key(items: Vec<KeyItem>, left: f64, right: f64, top: f64) -> (Element, f64) {
     let mut group = Element::new("g");
     let (mut x, mut row) = (left, 0.0);
@@ -139,7 +139,7 @@ pub(super) fn key(items: Vec<KeyItem>, left: f64, right: f64, top: f64) -> (Elem
     (group, (row + rows) * 20.0)
 }
 
-/// A whole chart on paper-coloured ground.
+/// Draws a whole chart on paper-coloured ground.
 pub(super) fn sheet(
     width: f64,
     height: f64,
@@ -154,8 +154,8 @@ pub(super) fn sheet(
     svg::document(width, height, title, std::iter::once(ground).chain(body))
 }
 
-/// `wanted` positions moved as little as is simple so that neighbours keep `gap` and all lie in
-/// `low`..=`high` where they can; in the order given.
+/// Spreads `wanted` positions, moved as little as is simple so that neighbours keep `gap` and all lie in `low`..=`high`
+/// where they can; in the order given.
 pub(super) fn spread(wanted: &[f64], gap: f64, low: f64, high: f64) -> Vec<f64> {
     let mut order: Vec<usize> = (0..wanted.len()).collect();
     order.sort_by(|&a, &b| wanted[a].total_cmp(&wanted[b]).then(a.cmp(&b)));

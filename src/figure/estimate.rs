@@ -44,7 +44,7 @@ pub struct Estimate {
     pub interval: Option<(f64, f64)>,
     /// Low and high end of the box: of the middle half of the trials.
     pub middle_half: Option<(f64, f64)>,
-    /// Trials behind it, told beside it where boxes are drawn.
+    /// Trials behind it, printed beside it where boxes are drawn.
     pub n: Option<u64>,
     /// The paper's.
     pub published: Option<f64>,
@@ -53,18 +53,18 @@ pub struct Estimate {
 }
 
 impl EstimateChart {
-    /// Whether nothing of ours is in it: then it would be axes alone.
+    /// Returns whether it holds no result of ours: then it would be axes alone.
     pub fn is_empty(&self) -> bool {
         self.lines.iter().flat_map(PanelLine::rows).all(|row| row.value.is_none())
     }
 
-    /// The chart as the text of an SVG file.
+    /// Draws the chart as the text of an SVG file.
     pub fn to_svg(&self) -> String {
         let dots = !self.boxes.is_empty();
         let counts = dots && self.all_behind().is_none();
         let layout = Layout {
             names: &self.names,
-            // Where the paper has nothing to say, rows are closer.
+            // Where the paper has no number, rows are closer.
             pitch: if self.is_compared() { PITCH } else { PITCH - 6.0 },
             beside: if counts { (BESIDE, "n") } else { (0.0, "") },
             title: &self.quantity,
@@ -93,14 +93,14 @@ impl EstimateChart {
         self.rows().any(|row| row.published.is_some())
     }
 
-    /// The number of trials behind every row that has any, where it is the same.
+    /// Returns the number of trials behind every row that has any, where it is the same.
     fn all_behind(&self) -> Option<u64> {
         let mut numbers = self.rows().filter(|row| row.value.is_some()).map(|row| row.n);
         let first = numbers.next()??;
         numbers.all(|n| n == Some(first)).then_some(first)
     }
 
-    /// What the chart says, for those who cannot see it: its extremes, and how the paper's numbers stand to ours.
+    /// Describes the chart for those who cannot see it: its extremes, and how the paper's numbers compare with ours.
     pub fn in_words(&self) -> String {
         let rows: Vec<(String, &Estimate)> = self
             .lines
@@ -209,7 +209,7 @@ impl EstimateChart {
     }
 }
 
-/// Three digits are enough to be told.
+/// Writes three digits at most, which suffice.
 fn in_short(value: f64) -> String {
     if value.abs() < 10.0 {
         format!("{}", (value * 10.0).round() / 10.0)
@@ -218,7 +218,7 @@ fn in_short(value: f64) -> String {
     }
 }
 
-/// Everything that a row's axis must reach.
+/// Returns everything that a row's axis must reach.
 fn ends(row: &Estimate) -> Vec<f64> {
     let intervals = [row.interval, row.middle_half, row.published_interval];
     let ends = intervals.into_iter().flatten().flat_map(|(low, high)| [low, high]);
@@ -235,7 +235,7 @@ fn draw(area: &Area<'_>, y: f64, row: &Estimate, dots: bool) -> Vec<Element> {
             if let Some((low, high)) = row.middle_half.map(at) {
                 elements.push(spread(low, high, above));
             }
-            // What is hidden by the dot anyway would only fray it.
+            // What the dot hides anyway would only fray it.
             if let Some((low, high)) = row.interval.map(at).filter(|(l, h)| h - l > 10.0) {
                 elements.push(whisker(low, high, above));
             }

@@ -53,12 +53,12 @@ pub struct PublishedPoint {
 }
 
 impl LineChart {
-    /// Whether nothing of ours is in it: then it would be axes alone.
+    /// Returns whether it holds no result of ours: then it would be axes alone.
     pub fn is_empty(&self) -> bool {
         self.series.iter().all(|series| series.points.is_empty())
     }
 
-    /// The chart as the text of an SVG file.
+    /// Draws the chart as the text of an SVG file.
     pub fn to_svg(&self) -> String {
         let plot = self.plot();
         let mut body = vec![plot.y_axis(), plot.x_axis()];
@@ -118,12 +118,13 @@ impl LineChart {
         self.series.iter().map(|s| text_width(&s.name, TEXT)).fold(0.0, f64::max)
     }
 
-    /// Whether every curve can be named at its end.
+    /// Returns whether every curve can be named at its end.
     fn labels_fit(&self) -> bool {
         self.label_width() <= WIDTH * 0.3 && real(self.series.len()) * LABEL_GAP <= PLOT_HEIGHT
     }
 
-    /// What the chart says, for those who cannot see it: where each curve ends, and where it first had nine tenths of that.
+    /// Describes the chart for those who cannot see it: where each curve ends, and where it first had nine tenths of
+    /// that.
     pub fn in_words(&self) -> String {
         let told = self.series.iter().filter_map(|series| {
             let finite = || series.points.iter().filter(|p| p.0.is_finite() && p.1.is_finite());
@@ -201,7 +202,7 @@ fn around(value: f64, error: Option<f64>) -> [f64; 2] {
     [value - error, value + error]
 }
 
-/// A short piece of the series' line, around the origin.
+/// Draws a short piece of the series' line, around the origin.
 fn sample(style: Style) -> Element {
     let line = Element::new("path").set("d", "M-12 0L12 0").set("fill", "none");
     style
@@ -227,7 +228,7 @@ fn band(plot: &Plot, style: Style, series: &Series) -> Option<Element> {
     Some(if style.colour == super::INK { area.set("class", "ink-fill") } else { area })
 }
 
-/// The line, broken where a point is missing, with about six markers that neighbours do not share.
+/// Draws the line, broken where a point is missing, with about six markers that neighbours do not share.
 fn curve(plot: &Plot, style: Style, series: &Series, index: usize) -> Vec<Element> {
     let finite = |p: &(f64, f64)| p.0.is_finite() && p.1.is_finite();
     let data: String = series

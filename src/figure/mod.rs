@@ -1,8 +1,8 @@
 //! Pictures as deterministic SVG: no fonts, no clock, no platform arithmetic.
 //!
-//! Charts are pure functions of their data: [`LineChart`], [`EstimateChart`], [`ShareChart`], [`Scatter`] and [`PolicyChart`] become the text of a
-//! file that can be pasted into a paper. What is ink and what is paper carries a class (`ink-fill`,
-//! `ink-stroke`, `paper-fill`), so that a page in the dark can turn both; everything else is literal.
+//! Charts are pure functions of their data: [`LineChart`], [`EstimateChart`], [`ShareChart`], [`Scatter`] and
+//! [`PolicyChart`] become the text of a file that can be pasted into a paper. Ink and paper carry a class (`ink-fill`,
+//! `ink-stroke`, `paper-fill`), so that a dark page can turn both; everything else is literal.
 
 mod axis;
 pub(crate) mod canvas;

@@ -1,4 +1,4 @@
-//! How the n-th series looks: colour, dashes and marker together, so that any one of them suffices.
+//! The look of the n-th series: colour, dashes and marker together, so that any one of them suffices.
 //!
 //! Colours are those of M. Okabe and K. Ito, "Color Universal Design" (2008), ordered by contrast on white;
 //! their yellow and sky blue are left out because they fade in print.
@@ -9,14 +9,14 @@ use super::svg::{Element, path_data};
 pub const INK: &str = "#1a1a1a";
 /// The colour of the ground.
 pub const PAPER: &str = "#ffffff";
-/// What we found, where the paper's stands beside it and no series must be told apart: filled.
+/// Our result, where the paper's stands beside it and no series must be distinguished: filled.
 pub(super) const OURS: &str = "#5b9bc8";
 /// The same, lighter: for what lies behind it.
 pub(super) const OURS_TINT: &str = "#c3dcee";
-/// What the paper printed: hollow, on paper.
+/// The paper's number: hollow, on paper.
 pub(super) const PUBLISHED: &str = "#b34700";
 
-/// The mark of a printed number at (`x`, `y`), of radius `r`, px.
+/// Draws the mark of a printed number at (`x`, `y`), of radius `r`, px.
 pub(super) fn published_point(x: f64, y: f64, r: f64) -> Element {
     let corners = [(0.0, -1.2), (1.2, 0.0), (0.0, 1.2), (-1.2, 0.0)];
     let corners = corners.map(|(dx, dy)| (x + dx * r, y + dy * r));
@@ -60,7 +60,7 @@ const MARKERS: [Marker; 5] =
     [Marker::Disc, Marker::Square, Marker::Triangle, Marker::Diamond, Marker::Wedge];
 
 impl Style {
-    /// The look of series `index`; colour and marker repeat at different periods, so 30 looks differ.
+    /// Returns the look of series `index`; colour and marker repeat at different periods, so 30 looks differ.
     pub fn of(index: usize) -> Self {
         Self {
             colour: COLOURS[index % COLOURS.len()],
@@ -69,15 +69,14 @@ impl Style {
         }
     }
 
-    /// `element` stroked in this colour.
+    /// Returns `element` stroked in this colour.
     #[must_use]
     pub fn stroke(self, element: Element, width: f64) -> Element {
         let element = element.set("stroke", self.colour).at("stroke-width", width);
         if self.colour == INK { element.set("class", "ink-stroke") } else { element }
     }
 
-    /// The point marker of radius `r` px at (`x`, `y`) px: filled for what we found, hollow for what was
-    /// published.
+    /// Draws the point marker of radius `r` px at (`x`, `y`) px: filled for our results, hollow for published ones.
     pub fn point(self, x: f64, y: f64, r: f64, hollow: bool) -> Element {
         let shape = |corners: &[(f64, f64)]| {
             let corners = corners.iter().map(|(dx, dy)| (x + dx * r, y + dy * r));
@@ -105,7 +104,8 @@ impl Style {
     }
 }
 
-/// Diagonals every `gap` px across the rectangle of `size` at `corner` (px), as the data of a path: rising, falling or both.
+/// Draws diagonals every `gap` px across the rectangle of `size` at `corner` (px), as the data of a path: rising,
+/// falling or both.
 ///
 /// They are drawn line by line: patterns would need identifiers, which clash in a page.
 pub(super) fn hatching(

@@ -1,6 +1,6 @@
 //! Small multiples: lines of panels that share their rows, which are named once at the left, and an axis under each line.
 //!
-//! What stands in the rows is up to the chart: [`super::EstimateChart`] or [`super::ShareChart`].
+//! The contents of the rows are up to the chart: [`super::EstimateChart`] or [`super::ShareChart`].
 
 use super::axis::Axis;
 use super::chart::{TEXT, label, real, rule, text_width};
@@ -27,7 +27,7 @@ pub struct PanelLine<R> {
 }
 
 impl<R> PanelLine<R> {
-    /// The rows of all its panels.
+    /// Returns the rows of all its panels.
     pub fn rows(&self) -> impl Iterator<Item = &R> {
         self.panels.iter().flat_map(|panel| &panel.rows)
     }
@@ -40,7 +40,7 @@ pub struct Panel<R> {
     pub name: String,
     /// One row for each name at the left.
     pub rows: Vec<R>,
-    /// A value that everything here is held against, such as the deadline of these trials.
+    /// A value with which everything here is compared, such as the deadline of these trials.
     pub mark: Option<f64>,
 }
 
@@ -54,18 +54,18 @@ pub(super) struct Area<'a> {
 }
 
 impl Area<'_> {
-    /// Where `value` lies.
+    /// Returns the horizontal position of `value`.
     pub(super) fn x(&self, value: f64) -> f64 {
         self.axis.position(value, self.left, self.right)
     }
 
-    /// The middle of row `index`.
+    /// Returns the vertical position of the middle of row `index`.
     pub(super) fn y(&self, index: usize) -> f64 {
         self.top + self.pitch * (real(index) + 0.5)
     }
 }
 
-/// How the lines are laid out.
+/// The layout of the lines.
 pub(super) struct Layout<'a> {
     /// Names of the rows.
     pub(super) names: &'a [String],
@@ -77,7 +77,7 @@ pub(super) struct Layout<'a> {
     pub(super) title: &'a str,
 }
 
-/// What the lines became.
+/// The drawn lines.
 pub(super) struct Laid {
     pub(super) body: Vec<Element>,
     pub(super) width: f64,
@@ -86,7 +86,8 @@ pub(super) struct Laid {
 }
 
 impl Layout<'_> {
-    /// Draws `lines`, each with the axis that `axis` has for it and the rows that `draw` fills a panel with.
+    /// Draws `lines`, each with the axis that `axis` gives and the rows with which `draw` fills a panel. The widest
+    /// name sets the width of the panels; then each line is drawn from the top down: names, ticks, rows, rule.
     pub(super) fn draw<R>(
         &self,
         lines: &[PanelLine<R>],

@@ -7,7 +7,7 @@ use crate::grid::{Cell, Occupancy, OccupancyGrid};
 
 /// Fill of the walls.
 const WALL: &str = "#2b2b2b";
-/// Fill of what else stands there.
+/// Fill of everything else.
 const FURNITURE: &str = "#9a9a9a";
 /// Fill of the obstacles of a grid map laid over the plan: orange, as in the prior-knowledge study's Figure 5.
 const OVERLAY: &str = "#e69f00";
@@ -19,22 +19,23 @@ const CROSS: &str = "#d62728";
 pub struct Plan<'a> {
     /// Title of the drawing.
     pub title: String,
-    /// What always stands.
+    /// Whatever always stands, such as walls.
     pub walls: Vec<Outline>,
-    /// What else stands.
+    /// Whatever else stands.
     pub furniture: Vec<Outline>,
-    /// What is shown by a cross over its place alone, such as closed doors.
+    /// Whatever is shown by a cross over its place alone, such as closed doors.
     pub crossed: Vec<Outline>,
     /// What the crosses are, for the legend.
     pub crossed_name: String,
-    /// Where the robot begins.
+    /// The robot's first pose.
     pub start: Option<Pose>,
     /// A grid map over the plan, with its name.
     pub overlay: Option<(&'a str, &'a OccupancyGrid)>,
 }
 
 impl Plan<'_> {
-    /// The drawing as an SVG file: walls, furniture, the map's obstacles, the start, outer dimensions, axes.
+    /// Draws the plan as an SVG file: furniture under walls, the map's obstacles, crosses, the start, outer dimensions,
+    /// axes, heading and legend, in this order.
     pub fn to_svg(&self) -> String {
         let shapes = self.walls.iter().chain(&self.furniture);
         let mut inner = shapes.fold(Bounds::EMPTY, |b, outline| b.union(outline.bounds()));
@@ -119,8 +120,8 @@ impl Plan<'_> {
     }
 }
 
-/// The cells for which `wanted` holds as the data of one path: a rectangle for each run along a row, in units of cells from
-/// the upper left corner of the map, y downwards.
+/// Writes the cells for which `wanted` holds as the data of one path: a rectangle for each run along a row, in units of
+/// cells from the upper left corner of the map, y downwards.
 pub fn cell_runs(map: &OccupancyGrid, wanted: impl Fn(Cell, Occupancy) -> bool) -> String {
     let (frame, mut data) = (map.frame(), String::new());
     for y in 0..frame.height {

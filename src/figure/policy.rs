@@ -1,4 +1,4 @@
-//! A policy on a building's graph: what is done in each place that it comes to, and how often it comes there.
+//! A policy on a building's graph: the actions in each place that it visits, and how often it visits them.
 
 use super::chart::{KeyItem, key, label, rule, sheet, text_width};
 use super::palette::{INK, PAPER};
@@ -8,7 +8,7 @@ use crate::math;
 
 /// Width of the building (px).
 const WIDTH: f64 = 760.0;
-/// Room around what a panel shows (m).
+/// Room around the content of a panel (m).
 const AROUND: f64 = 4.0;
 /// Size of the names of places (px), and half the height of the places.
 const NAME: f64 = 10.0;
@@ -25,11 +25,11 @@ pub struct PolicyChart {
     pub walls: Vec<Outline>,
     /// Places.
     pub vertices: Vec<PolicyVertex>,
-    /// Ways between places, by index.
+    /// Connections between places, by index.
     pub edges: Vec<(usize, usize)>,
-    /// The place that the policies begin at.
+    /// The place at which the policies begin.
     pub start: usize,
-    /// The place that they go to.
+    /// The place at which they end.
     pub goal: usize,
     /// The policies, one under another.
     pub panels: Vec<PolicyPanel>,
@@ -38,7 +38,7 @@ pub struct PolicyChart {
 /// A place.
 #[derive(Debug, Clone, Default)]
 pub struct PolicyVertex {
-    /// Where it is.
+    /// Its position.
     pub at: Point,
     /// Its name, of few letters.
     pub label: String,
@@ -51,26 +51,26 @@ pub struct PolicyVertex {
 pub struct PolicyPanel {
     /// What it is a policy for.
     pub name: String,
-    /// How it stands to that.
+    /// How it meets that.
     pub how: String,
-    /// What is expected of it.
+    /// Its expected totals.
     pub told: String,
-    /// What it does.
+    /// Its actions.
     pub moves: Vec<PolicyMove>,
 }
 
-/// What a policy does in one place.
+/// One action of a policy in one place.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PolicyMove {
     /// The place.
     pub from: usize,
-    /// Where it goes.
+    /// The place to which it leads.
     pub to: usize,
     /// Whether fast.
     pub fast: bool,
-    /// With which probability, there.
+    /// Its probability there.
     pub probability: f64,
-    /// How often that is expected to be done in all.
+    /// How often it is expected to be done in all.
     pub passes: f64,
 }
 
@@ -87,7 +87,8 @@ impl View {
         (x, self.top + (self.bounds.max.y - point.y) * self.scale)
     }
 
-    /// Where `point` lies, or the nearest place of the view: ways run along the axes, so that they end at its frame.
+    /// Returns the position of `point`, or of the nearest point of the view: edges run along the axes, so that they end
+    /// at its frame.
     fn within(&self, point: Point) -> (f64, f64) {
         let Bounds { min, max } = self.bounds;
         self.at(Point::new(point.x.clamp(min.x, max.x), point.y.clamp(min.y, max.y)))
@@ -97,7 +98,7 @@ impl View {
 const MARGIN: f64 = 10.0;
 
 impl PolicyChart {
-    /// The chart as the text of an SVG file.
+    /// Draws the chart as the text of an SVG file.
     pub fn to_svg(&self) -> String {
         let places = self.vertices.iter().fold(Bounds::EMPTY, |b, v| b.including(v.at));
         let mut whole = self.walls.iter().fold(places, |b, wall| b.union(wall.bounds()));
@@ -108,7 +109,7 @@ impl PolicyChart {
         let mut body = Vec::new();
         let mut top = 10.0;
         for (i, panel) in self.panels.iter().enumerate() {
-            // The first shows the building, the others where they are about something else.
+            // The first shows the building, the others the part in which they differ.
             let bounds = match self.panels.first() {
                 Some(first) if i > 0 => around(&self.vertices, first, panel, whole),
                 _ => whole.grown(0.3),
@@ -141,7 +142,7 @@ impl PolicyChart {
         sheet(width, top + height + 8.0, &self.title, body.into_iter().chain([key]))
     }
 
-    /// What the chart says, for those who cannot see it: each policy place by place.
+    /// Describes the chart for those who cannot see it: each policy place by place.
     pub fn in_words(&self) -> String {
         let label = |v: usize| self.vertices.get(v).map_or("", |vertex| vertex.label.as_str());
         let told = |panel: &PolicyPanel| {
@@ -222,7 +223,7 @@ impl PolicyChart {
         body
     }
 
-    /// Where the arrow of `step` begins and ends, px: beside the edge where it shares it.
+    /// Returns where the arrow of `step` begins and ends, px: beside the edge where it shares it.
     fn ends(
         &self,
         view: &View,
@@ -251,7 +252,7 @@ impl PolicyChart {
         arrow(a, b, step.fast, step.passes)
     }
 
-    /// Half the width of a place (px).
+    /// Returns half the width of a place (px).
     fn half_width(&self, v: usize) -> f64 {
         text_width(&self.vertices[v].label, NAME) / 2.0 + 4.0
     }
@@ -330,7 +331,8 @@ impl PolicyChart {
     }
 }
 
-/// The part of the building in which `panel` does something else than `first`, or all that it comes to where that is nothing.
+/// Returns the part of the building in which `panel` differs from `first`, or all that it visits where there is no
+/// difference.
 fn around(
     vertices: &[PolicyVertex],
     first: &PolicyPanel,
@@ -353,7 +355,7 @@ fn around(
     .grown(0.3)
 }
 
-/// A thin line around a part of the building.
+/// Draws a thin line around a part of the building.
 fn frame(view: &View) -> Element {
     let (left, top) = view.at(Point::new(view.bounds.min.x, view.bounds.max.y));
     Element::new("rect")
@@ -366,14 +368,14 @@ fn frame(view: &View) -> Element {
         .set("stroke-opacity", "0.4")
 }
 
-/// Where the way from `a` to `b` leaves the rectangle around `a` with these halves (px).
+/// Returns where the line from `a` to `b` leaves the rectangle around `a` with these halves (px).
 fn leaving(a: (f64, f64), b: (f64, f64), half: (f64, f64)) -> (f64, f64) {
     let (dx, dy) = (b.0 - a.0, b.1 - a.1);
     let share = (half.0 / dx.abs().max(1e-9)).min(half.1 / dy.abs().max(1e-9)).min(0.45);
     (a.0 + share * dx, a.1 + share * dy)
 }
 
-/// A line with a head in its middle, two where it is `fast`, `passes` (0 to 1 and more) wide.
+/// Draws a line with a head in its middle, two where it is `fast`, `passes` (0 to 1 and more) wide.
 fn arrow(a: (f64, f64), b: (f64, f64), fast: bool, passes: f64) -> [Element; 2] {
     let colour = if fast { FAST } else { SLOW };
     let width = 1.5 + 3.5 * passes.clamp(0.0, 1.5);
@@ -385,7 +387,7 @@ fn arrow(a: (f64, f64), b: (f64, f64), fast: bool, passes: f64) -> [Element; 2] 
     let length = math::hypot(b.0 - a.0, b.1 - a.1).max(1e-9);
     let (ux, uy) = ((b.0 - a.0) / length, (b.1 - a.1) / length);
     let (mx, my) = (f64::midpoint(a.0, b.0), f64::midpoint(a.1, b.1));
-    // Heads leave something of a short line.
+    // Heads leave part of a short line free.
     let size = (4.0 + width).min(length / 2.6);
     // From the middle on, as far as it stands.
     let triangle = |on: f64| {

@@ -1,4 +1,4 @@
-//! The paper's values against ours, with the line where they agree.
+//! The paper's values against ours, with the line of equality.
 
 use super::axis::Axis;
 use super::chart::{KeyItem, Plot, TEXT, error_bar, key, label, rule, sheet, text_width};
@@ -37,7 +37,7 @@ pub struct Scatter {
 pub struct ScatterPoint {
     /// Index of its group.
     pub group: usize,
-    /// What it is, shown on pointing at it.
+    /// Its name, shown on pointing at it.
     pub name: String,
     /// The paper's value.
     pub published: f64,
@@ -47,7 +47,7 @@ pub struct ScatterPoint {
     pub ours: f64,
     /// Low and high end of our interval.
     pub ours_interval: Option<(f64, f64)>,
-    /// Words that stand beside it, where there is room; empty for most.
+    /// A label beside it, where there is room; empty for most.
     pub label: String,
 }
 
@@ -55,12 +55,13 @@ pub struct ScatterPoint {
 type Taken = (f64, f64, f64, f64);
 
 impl Scatter {
-    /// Whether nothing of ours is in it: then it would be axes alone.
+    /// Returns whether it holds no result of ours: then it would be axes alone.
     pub fn is_empty(&self) -> bool {
         self.points.is_empty()
     }
 
-    /// The chart as the text of an SVG file.
+    /// Draws the chart as the text of an SVG file: grid, axes and the line of equality, error bars, points, notes, then
+    /// labels where there is room.
     pub fn to_svg(&self) -> String {
         let shown = |v: f64| v.is_finite() && (!self.logarithmic || v > 0.0);
         let points: Vec<&ScatterPoint> =
@@ -119,7 +120,7 @@ impl Scatter {
         sheet(width, top + height + 8.0, &self.title, body.into_iter().chain([key]))
     }
 
-    /// What the chart says, for those who cannot see it.
+    /// Describes the chart for those who cannot see it.
     pub fn in_words(&self) -> String {
         let above = self.points.iter().filter(|p| p.ours > p.published).count();
         let mut words = format!(
@@ -141,7 +142,7 @@ impl Scatter {
         words + "."
     }
 
-    /// The notes in the upper left or lower right corner, whichever has fewer points.
+    /// Writes the notes in the upper left or lower right corner, whichever has fewer points.
     fn corner(&self, plot: &Plot, taken: &mut Vec<Taken>) -> Vec<Element> {
         let width = self.notes.iter().map(|note| text_width(note, TEXT)).fold(0.0, f64::max);
         let height = LINE * super::chart::real(self.notes.len());
@@ -187,7 +188,7 @@ fn overlap(a: Taken, b: Taken) -> bool {
     a.0 < b.2 && b.0 < a.2 && a.1 < b.3 && b.1 < a.3
 }
 
-/// The point's words at the first side of it where nothing is yet, if there is one.
+/// Writes the point's label at the first side of it that is free, if there is one.
 fn beside(plot: &Plot, point: &ScatterPoint, taken: &mut Vec<Taken>) -> Option<[Element; 2]> {
     if point.label.is_empty() {
         return None;
@@ -212,7 +213,7 @@ fn beside(plot: &Plot, point: &ScatterPoint, taken: &mut Vec<Taken>) -> Option<[
             && !taken.iter().any(|other| overlap(wanted, *other))
     })?;
     taken.push((from, at.1 - 11.0, from + width, at.1 + 3.0));
-    // Error bars of others pass behind the words.
+    // Error bars of others pass behind the label.
     let ground = Element::new("rect")
         .at("x", from - 2.0)
         .at("y", at.1 - 11.5)

@@ -1,4 +1,4 @@
-//! How shares add up to a whole by condition, the paper's in a thin bar right under ours.
+//! Shares that add up to a whole by condition, the paper's in a thin bar right under ours.
 
 use super::axis::Axis;
 use super::chart::{KeyItem, key, label, sheet};
@@ -7,7 +7,7 @@ use super::panels::{Area, Layout, Panel, PanelLine};
 use super::svg::Element;
 
 const PITCH: f64 = 27.0;
-/// Heights of our bar and of the paper's (px), and where their middles are from that of the row.
+/// Heights of our bar and of the paper's (px), and the offsets of their middles from that of the row.
 const OURS: (f64, f64) = (13.0, -4.0);
 const PUBLISHED: (f64, f64) = (6.0, 7.0);
 
@@ -31,14 +31,14 @@ pub struct ShareChart {
 pub struct Part {
     /// What it is.
     pub name: String,
-    /// How it looks.
+    /// Its look.
     pub look: Look,
 }
 
-/// How a part looks. Those that stand side by side differ in lightness or hatching too.
+/// The look of a part. Neighbours differ in lightness or hatching too.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Look {
-    /// Blue of middle lightness: what was to be.
+    /// Blue of middle lightness: the desired end.
     #[default]
     Good,
     /// Pale yellow: time was short.
@@ -61,7 +61,7 @@ impl Look {
         }
     }
 
-    /// Whether lines rise, whether lines fall, and their colour.
+    /// Returns whether lines rise, whether lines fall, and their colour.
     const fn hatch(self) -> Option<([bool; 2], &'static str)> {
         match self {
             Self::Good | Self::Slow | Self::Other => None,
@@ -70,7 +70,7 @@ impl Look {
         }
     }
 
-    /// A bar from `x` on, around `y`, px.
+    /// Draws a bar from `x` on, around `y`, px.
     fn bar(self, x: f64, width: f64, y: f64, height: f64) -> Element {
         let top = y - height / 2.0;
         let rectangle = |element: Element| {
@@ -100,12 +100,12 @@ pub struct Shares {
 }
 
 impl ShareChart {
-    /// Whether nothing of ours is in it: then it would be axes alone.
+    /// Returns whether it holds no result of ours: then it would be axes alone.
     pub fn is_empty(&self) -> bool {
         self.lines.iter().flat_map(PanelLine::rows).all(|row| row.ours.is_empty())
     }
 
-    /// The chart as the text of an SVG file.
+    /// Draws the chart as the text of an SVG file.
     pub fn to_svg(&self) -> String {
         let layout =
             Layout { names: &self.names, pitch: PITCH, beside: (0.0, ""), title: &self.quantity };
@@ -116,7 +116,7 @@ impl ShareChart {
         sheet(laid.width, bottom, &self.title, laid.body.into_iter().chain([key]))
     }
 
-    /// What the chart says, for those who cannot see it: how far each part goes.
+    /// Describes the chart for those who cannot see it: how far each part goes.
     pub fn in_words(&self) -> String {
         let mut words = Vec::new();
         for (i, part) in self.parts.iter().enumerate() {
@@ -183,7 +183,7 @@ impl ShareChart {
 mod tests {
     use super::*;
 
-    /// Relative luminance by WCAG 2.
+    /// Computes the relative luminance by WCAG 2.
     fn luminance(colour: &str) -> f64 {
         let channel = |i: usize| {
             let value = f64::from(u8::from_str_radix(&colour[i..i + 2], 16).unwrap()) / 255.0;

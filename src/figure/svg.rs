@@ -1,12 +1,12 @@
 //! A small writer of SVG: elements with attributes, text escaped, numbers in one short form.
 
-/// Coordinates are written with two decimals: a hundredth of a pixel, the same text everywhere.
+/// Writes a coordinate with two decimals: a hundredth of a pixel, the same text everywhere.
 pub fn number(x: f64) -> String {
     let hundredths = (x * 100.0).round() / 100.0;
     format!("{}", if hundredths == 0.0 { 0.0 } else { hundredths })
 }
 
-/// `text` with the five characters escaped that XML reserves.
+/// Escapes the five characters of `text` that XML reserves.
 pub fn escape(text: &str) -> String {
     text.replace('&', "&amp;")
         .replace('<', "&lt;")
@@ -24,7 +24,7 @@ pub struct Element {
 }
 
 impl Element {
-    /// An empty element `name`.
+    /// Creates an empty element `name`.
     pub fn new(name: &'static str) -> Self {
         Self { name, attributes: String::new(), content: String::new() }
     }
@@ -64,7 +64,7 @@ impl Element {
         self.content.push_str(&child.into_string());
     }
 
-    /// The XML text.
+    /// Writes the XML text.
     pub fn into_string(self) -> String {
         let Self { name, attributes, content } = self;
         if content.is_empty() {
@@ -75,7 +75,7 @@ impl Element {
     }
 }
 
-/// A whole drawing of `width` by `height` px with an accessible title, as a file.
+/// Writes a whole drawing of `width` by `height` px with an accessible title, as a file.
 pub fn document(
     width: f64,
     height: f64,
@@ -96,7 +96,7 @@ pub fn document(
     root.into_string() + "\n"
 }
 
-/// SVG path data of the polyline through `points` (px), closed where `closed`.
+/// Writes the SVG path data of the polyline through `points` (px), closed where `closed`.
 pub fn path_data(points: impl IntoIterator<Item = (f64, f64)>, closed: bool) -> String {
     let mut data = String::new();
     for (i, (x, y)) in points.into_iter().enumerate() {

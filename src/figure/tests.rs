@@ -1,4 +1,4 @@
-//! What the charts draw, asked of the parsed SVG.
+//! The elements that charts draw, found in the parsed SVG.
 
 use super::chart::{real, text_width};
 use super::*;
@@ -20,7 +20,7 @@ fn texts(svg: &str) -> Vec<String> {
         .collect()
 }
 
-/// Every coordinate of every mark lies on the sheet.
+/// Asserts that every coordinate of every mark lies on the sheet.
 fn assert_on_sheet(svg: &str) {
     let document = roxmltree::Document::parse(svg).unwrap();
     let root = document.root_element();
@@ -108,7 +108,7 @@ fn hostile_and_empty_data_still_draw() {
     }
 }
 
-/// Panels of `rows` rows each, some without a value of ours or the paper's.
+/// Returns panels of `rows` rows each, some without a value of ours or the paper's.
 fn estimates(names: &[&str], panels: &[&str], lines: &[&str], dots: bool) -> EstimateChart {
     let row = |at: usize| {
         let value = real(at * 37 % 91) + 4.0;
@@ -286,7 +286,7 @@ fn a_policy_is_drawn_whole_once_and_then_where_it_differs() {
     assert_on_sheet(&svg);
 }
 
-/// Boxes of all upright texts (left, top, right, bottom) with what they say.
+/// Returns the boxes of all upright texts (left, top, right, bottom) with their texts.
 fn boxes(svg: &str) -> Vec<([f64; 4], String)> {
     let document = roxmltree::Document::parse(svg).unwrap();
     let texts = document.descendants().filter(|n| n.tag_name().name() == "text");

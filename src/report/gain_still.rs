@@ -1,4 +1,4 @@
-//! What a candidate location promises, with and without prior knowledge, as the prior-knowledge study's Figure 2.
+//! The gain of a candidate location, with and without prior knowledge, as the prior-knowledge study's Figure 2.
 
 use crate::figure::svg::{Element, document, number};
 use crate::figure::{INK, PAPER, cell_runs};
@@ -19,12 +19,12 @@ const CANDIDATE: &str = "#d55e00";
 const UNKNOWN: &str = "#c4c7cc";
 const OBSTACLE: &str = "#111111";
 
-/// Which candidate, and how the strategy looks from it.
+/// The candidate to draw, and the strategy's view from it.
 #[derive(Debug, Clone, Copy)]
 pub struct GainView {
-    /// Which choice of the trial, from 1.
+    /// The number of the choice in the trial, from 1.
     pub decision: usize,
-    /// Which of its frontiers, from 1; the chosen one where `None`.
+    /// The number of its frontier, from 1; the chosen one where `None`.
     pub candidate: Option<usize>,
     /// Range of the scanner in cells of the map, above 0.
     pub range_cells: i32,
@@ -32,8 +32,8 @@ pub struct GainView {
     pub known_obstacles_occlude: bool,
 }
 
-/// The map at a choice with the candidate; the cells that count without prior knowledge; and where the trial had a prior, the
-/// prior over the map, and the cells that count with it (the paper's definition of I(p), section 3.2).
+/// Draws the map at a choice with the candidate; the cells that count without prior knowledge; and where the trial had
+/// a prior, the prior over the map, and the cells that count with it (the paper's definition of I(p), section 3.2).
 ///
 /// # Errors
 /// Where the trial has no such choice or candidate, in words.
@@ -88,7 +88,7 @@ pub fn gain_svg(recording: &Recording, view: GainView) -> Result<String, String>
     Ok(document(whole, tall, &title, body))
 }
 
-/// The `number`-th choice of a trial, from 1, and the map it was made on.
+/// Returns the `number`-th choice of a trial, from 1, and the map on which it was made.
 fn at_choice(recording: &Recording, number: usize) -> Result<(&Decision, OccupancyGrid), String> {
     let mut map = OccupancyGrid::filled(recording.map_frame, Occupancy::Unknown);
     let mut seen = 0;
@@ -138,7 +138,7 @@ impl Scene {
         self.prior.as_ref().is_some_and(|prior| prior.at(cell) == Occupancy::Free)
     }
 
-    /// The unknown cells in sight of the candidate past what is `blocking`.
+    /// Returns the unknown cells in sight of the candidate past what is `blocking`.
     fn gain(&self, blocking: impl Fn(Cell) -> bool) -> Vec<Cell> {
         let side = self.map.frame().width;
         let high = Cell::new(side - 1, side - 1);
@@ -153,7 +153,7 @@ impl Scene {
         cells
     }
 
-    /// m².
+    /// Returns the area of `cells` (m²).
     fn area(&self, cells: &[Cell]) -> f64 {
         let side = self.map.frame().resolution;
         crate::stats::length(cells) * side * side

@@ -13,9 +13,9 @@ const GREEN: &str = "#009e73";
 /// Room for the legend and the clock under the drawing (px).
 const FOOT: f64 = 64.0;
 
-/// Where metres come to lie on the paper.
+/// The transform from metres to the sheet.
 pub(super) struct Paper {
-    /// The left lower corner of what is drawn (m).
+    /// The lower left corner of the drawing (m).
     pub(super) low: Point,
     /// Its upper end (m).
     pub(super) top: f64,
@@ -41,7 +41,7 @@ impl Paper {
     }
 }
 
-/// The drawing after `frames`; `robot` is the robot and `scale` the scale bar, both already drawn.
+/// Draws the picture after `frames`; `robot` is the robot and `scale` the scale bar, both already drawn.
 pub(super) fn graph_still(
     recording: &Recording,
     frames: &[&Frame],
@@ -93,7 +93,7 @@ fn wall(outline: &Outline, paper: &Paper) -> Element {
     element.set("fill", WALL).set("stroke", WALL).at("stroke-width", 1.0)
 }
 
-/// Explored edges, and a metre of every edge to the unexplored.
+/// Draws explored edges, and a metre of every edge to the unexplored.
 fn edges(graph: &GraphView, paper: &Paper) -> Vec<Element> {
     let at = |v: usize| graph.vertices.get(v).map_or(Point::ZERO, |vertex| vertex.at);
     let explored = graph.edges.iter().map(|(a, b)| paper.line(&[at(*a), at(*b)], INK, 1.5));
@@ -106,7 +106,7 @@ fn edges(graph: &GraphView, paper: &Paper) -> Vec<Element> {
     explored.chain(open).collect()
 }
 
-/// π*: an arrow per action beside its edge, thick where fast, pale where unlikely.
+/// Draws π*: an arrow per action beside its edge, thick where fast, pale where unlikely.
 fn policy(graph: &GraphView, paper: &Paper) -> Vec<Element> {
     let at = |v: usize| paper.place(graph.vertices.get(v).map_or(Point::ZERO, |vertex| vertex.at));
     let mut arrows = Vec::new();
@@ -142,7 +142,7 @@ fn policy(graph: &GraphView, paper: &Paper) -> Vec<Element> {
     arrows
 }
 
-/// A circle for a corridor, a square for a room; the target filled, the present vertex with a thick edge.
+/// Draws a circle for a corridor, a square for a room; the target filled, the present vertex with a thick edge.
 fn vertex(graph: &GraphView, i: usize, vertex: &VertexView, paper: &Paper) -> Vec<Element> {
     let (x, y) = paper.place(vertex.at);
     let shape = if vertex.room {
@@ -172,7 +172,7 @@ fn vertex(graph: &GraphView, i: usize, vertex: &VertexView, paper: &Paper) -> Ve
     ]
 }
 
-/// The clock against the deadline, what the robot is about, and what the signs mean.
+/// Draws the clock against the deadline, the robot's present task, and the meaning of the signs.
 fn foot(
     recording: &Recording,
     frames: &[&Frame],

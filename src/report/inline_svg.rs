@@ -1,4 +1,4 @@
-//! Drawings taken into a page: only what draws survives.
+//! Drawings embedded in a page: only drawing elements survive.
 //!
 //! A bundle may come from a stranger. Its figures are parsed and written anew from a closed list of elements
 //! and attributes, so that no script, link, style sheet or external picture can ride along.
@@ -49,7 +49,7 @@ const ATTRIBUTES: [&str; 37] = [
     "shape-rendering",
 ];
 
-/// `text` as an element for a page, named `alt`; `None` where it is not SVG.
+/// Rewrites `text` as an element for a page, named `alt`; `None` where it is not SVG.
 ///
 /// Size comes from the view box alone: the page decides how wide a figure is.
 pub(super) fn inline_svg(text: &str, alt: &str) -> Option<String> {

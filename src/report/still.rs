@@ -1,4 +1,10 @@
-//! One instant of a trial as the paper would print it.
+//! One instant of a trial as the paper would print it:
+//! 1. The sheet, and where a place in the world lies on it.
+//! 2. Of the deadline study: the building and the graph (`graph_still`), and nothing of what follows.
+//! 3. The map, free and occupied cells.
+//! 4. The trail and the planned path.
+//! 5. The frontiers with their candidates.
+//! 6. The robot and the scale bar.
 
 use super::graph_still::{Paper, graph_still};
 use super::recorded::bounds;
@@ -10,7 +16,7 @@ use crate::studies::recording::{Frame, Recording};
 /// Longest side of the drawing (px).
 const SIZE: f64 = 800.0;
 
-/// What a still shows besides the map, the way travelled and the robot.
+/// What a still shows besides the map, the trail and the robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shown {
     /// Also the frontiers with their candidates, and the planned path.
@@ -19,10 +25,11 @@ pub enum Shown {
     MapAndTrail,
 }
 
-/// The robot's map (free white, occupied black, unknown grey), the frontiers with the chosen candidate, the
-/// path and the trail, and the robot, at `at` s or at the end; with a scale bar. Of the deadline study the building, the
-/// graph with the plan on it, and the clock.
+/// Draws the robot's map (free white, occupied black, unknown grey), the frontiers with the chosen candidate, the path
+/// and the trail, and the robot, at `at` s or at the end; with a scale bar. Of the deadline study the building, the
+/// graph with the plan on it, and the clock. The steps are those of the module documentation.
 pub fn still_svg(recording: &Recording, at: Option<f64>, shown: Shown) -> String {
+    // 1. The sheet.
     let seen = recording.frames.iter().take_while(|f| at.is_none_or(|at| f.time_s <= at));
     let frames: Vec<&Frame> = seen.collect();
     let bounds = bounds(recording);
@@ -35,6 +42,7 @@ pub fn still_svg(recording: &Recording, at: Option<f64>, shown: Shown) -> String
         path.set("stroke", colour).at("stroke-width", width).set("stroke-linejoin", "round")
     };
 
+    // 2. The deadline study.
     if recording.deadline_s.is_some() {
         let paper = Paper { low: bounds.min, top: bounds.max.y, scale, width, height };
         let robot = frames.last().map(|frame| robot(recording, frame, &place, scale));
@@ -42,6 +50,7 @@ pub fn still_svg(recording: &Recording, at: Option<f64>, shown: Shown) -> String
         return graph_still(recording, &frames, &paper, robot, scale_bar(height, scale));
     }
 
+    // 3. The map.
     let ground = Element::new("rect").at("width", width).at("height", height);
     let mut body = vec![ground.set("fill", "#c4c7cc")];
     let map = map_of(recording, &frames);
@@ -51,19 +60,21 @@ pub fn still_svg(recording: &Recording, at: Option<f64>, shown: Shown) -> String
             // Crisp edges: neighbouring cells must not show seams.
             let path = Element::new("path").set("d", data).set("fill", colour);
             let path = path.set("shape-rendering", "crispEdges");
-            // The map lies in the frame the robot began in.
+            // The map lies in the frame in which the robot began.
             let (x, y) = place(recording.map_pose.position());
             let turn = number(-recording.map_pose.heading.to_degrees());
             let transform = format!("translate({} {}) rotate({turn})", number(x), number(y));
             body.push(path.set("transform", transform));
         }
     }
+    // 4. Trail and path.
     let trail: Vec<_> = frames.iter().map(|f| f.pose.position()).collect();
     body.push(stroke(line(&trail), "#555555", 1.5));
     let is_all = shown == Shown::Everything;
     if let Some(path) = frames.iter().rev().filter(|_| is_all).find_map(|f| f.path.as_deref()) {
         body.push(stroke(line(path), "#0072b2", 2.5).set("stroke-dasharray", "7 4"));
     }
+    // 5. Frontiers.
     let dot = |p: Point, r: f64| {
         let (x, y) = place(p);
         Element::new("circle").at("cx", x).at("cy", y).at("r", r)
@@ -85,6 +96,7 @@ pub fn still_svg(recording: &Recording, at: Option<f64>, shown: Shown) -> String
         let candidate = candidate.set("fill", fill).set("stroke", edge).at("stroke-width", 2.0);
         body.push(candidate.child(title));
     }
+    // 6. Robot and scale bar.
     if let Some(frame) = frames.last() {
         body.push(robot(recording, frame, &place, scale));
         let nose = frame.pose.transform(Point::new(0.35, 0.0));
@@ -97,7 +109,7 @@ pub fn still_svg(recording: &Recording, at: Option<f64>, shown: Shown) -> String
     document(width, height, &title, body)
 }
 
-/// The robot's map after `frames`.
+/// Draws the robot's map after `frames`.
 fn map_of(recording: &Recording, frames: &[&Frame]) -> OccupancyGrid {
     let mut map = OccupancyGrid::filled(recording.map_frame, Occupancy::Unknown);
     for (cell, value) in frames.iter().flat_map(|f| &f.map_changes) {
@@ -106,7 +118,7 @@ fn map_of(recording: &Recording, frames: &[&Frame]) -> OccupancyGrid {
     map
 }
 
-/// The cells that hold `value` as one path in the map's frame, y downwards: a rectangle per run along a row.
+/// Writes the cells that hold `value` as one path in the map's frame, y downwards: a rectangle per run along a row.
 fn cells_path(map: &OccupancyGrid, value: Occupancy, scale: f64) -> String {
     let (frame, mut data) = (map.frame(), String::new());
     let corner = |x: i32, y: i32| {
@@ -149,7 +161,7 @@ fn robot(
     element.set("fill", "#56b4e9").set("stroke", "#111111").at("stroke-width", 1.5)
 }
 
-/// A bar of 1, 2, 5 or ten times that many metres, about a sixth of the drawing long.
+/// Draws a bar of 1, 2, 5 or ten times that many metres, about a sixth of the drawing long.
 fn scale_bar(height: f64, scale: f64) -> [Element; 2] {
     let lengths = [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0];
     let metres = lengths.into_iter().rev().find(|m| m * scale <= SIZE / 6.0).unwrap_or(0.5);
