@@ -21,7 +21,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// The number this is, if it is one.
+    /// Returns the number, if the value is one.
     pub fn as_f64(&self) -> Option<f64> {
         match self {
             #[expect(clippy::cast_precision_loss, reason = "counts stay far below 2^53")]
@@ -104,7 +104,7 @@ pub struct TableError {
 }
 
 impl Table {
-    /// An empty table of these columns.
+    /// Returns an empty table of these columns.
     pub fn new<S: Into<String>>(columns: impl IntoIterator<Item = S>) -> Self {
         Self { columns: columns.into_iter().map(Into::into).collect(), rows: Vec::new() }
     }
@@ -118,17 +118,17 @@ impl Table {
         self.rows.push(row);
     }
 
-    /// Position of the column `name`.
+    /// Returns the position of the column `name`.
     pub fn column(&self, name: &str) -> Option<usize> {
         self.columns.iter().position(|c| c == name)
     }
 
-    /// The value of `row` in the column `name`; missing where there is no such column.
+    /// Returns the value of `row` in the column `name`; missing where there is no such column.
     pub fn value<'a>(&'a self, row: &'a [Value], name: &str) -> &'a Value {
         self.column(name).map_or(&Value::Missing, |i| &row[i])
     }
 
-    /// RFC 4180 with LF line ends and a header line.
+    /// Writes RFC 4180 with LF line ends and a header line.
     pub fn to_csv(&self) -> String {
         let mut text = String::new();
         let mut line = |fields: &mut dyn Iterator<Item = String>| {
@@ -183,7 +183,7 @@ impl Table {
         Ok(table)
     }
 
-    /// A GitHub-flavoured Markdown table, columns padded to equal width.
+    /// Writes a GitHub-flavoured Markdown table, columns padded to equal width.
     pub fn to_markdown(&self) -> String {
         let text = |value: &Value| value.to_string().replace('|', "\\|");
         let mut widths: Vec<usize> =
@@ -228,7 +228,7 @@ fn value_of(field: String) -> Value {
     }
 }
 
-/// Records with the line each begins on.
+/// Splits the text into records, each with the line on which it begins.
 fn parse_csv(text: &str) -> Result<Vec<(usize, Vec<String>)>, TableError> {
     let mut records = Vec::new();
     let (mut fields, mut field, mut line, mut begun) = (Vec::new(), String::new(), 1, 1);
@@ -297,7 +297,7 @@ mod tests {
         fn csv_round_trips(rows in prop::collection::vec(("[ -~\n]{0,8}", any::<i64>(), -1e9_f64..1e9), 0..6)) {
             let mut table = Table::new(["text", "integer", "number"]);
             for (text, integer, number) in rows {
-                // A text that reads as a number comes back as one; that is what CSV can say.
+                // A text that reads as a number comes back as one; that is all CSV can express.
                 table.push(vec![value_of(format!("x{text}")), integer.into(), number.into()]);
             }
             let back = Table::from_csv(&table.to_csv()).unwrap();

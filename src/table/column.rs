@@ -1,8 +1,8 @@
-//! What the columns of a table hold: the words and bounds that a data dictionary is made of.
+//! The description of a table's columns: the words and bounds of which a data dictionary is made.
 
 use super::Table;
 
-/// What values a column has.
+/// The kind of a column's values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// Names.
@@ -20,19 +20,19 @@ pub enum Kind {
 pub struct Column {
     /// Its name in the header line.
     pub name: String,
-    /// What values it has.
+    /// The kind of its values.
     pub kind: Kind,
     /// Their unit as SI and its brochure write it, `%` for percent; empty for names, counts, scores and ratios.
     pub unit: String,
-    /// The least value there can be.
+    /// The least possible value.
     pub least: Option<f64>,
-    /// The greatest one.
+    /// The greatest possible value.
     pub most: Option<f64>,
-    /// The only values there are; empty where that is not known beforehand.
+    /// The only possible values; empty where that is not known beforehand.
     pub among: Vec<String>,
     /// A regular expression that every value fits.
     pub pattern: Option<&'static str>,
-    /// What it says, in a sentence.
+    /// Its meaning, in a sentence.
     pub meaning: String,
     /// When its field is empty; `None` where it never is.
     pub empty: Option<String>,
@@ -53,56 +53,56 @@ impl Column {
         }
     }
 
-    /// A column of names.
+    /// Creates a column of names.
     pub fn text(name: &str, meaning: &str) -> Self {
         Self::new(name, Kind::Text, "", meaning)
     }
 
-    /// A column of numbers in `unit`.
+    /// Creates a column of numbers in `unit`.
     pub fn number(name: &str, unit: &str, meaning: &str) -> Self {
         Self::new(name, Kind::Number, unit, meaning)
     }
 
-    /// A column of counts: whole and not negative.
+    /// Creates a column of counts: whole and not negative.
     pub fn count(name: &str, meaning: &str) -> Self {
         Self { least: Some(0.0), ..Self::new(name, Kind::Integer, "", meaning) }
     }
 
-    /// A column of numbers from 0 to 100 percent.
+    /// Creates a column of numbers from 0 to 100 percent.
     pub fn percent(name: &str, meaning: &str) -> Self {
         Self::number(name, "%", meaning).at_least(0.0).at_most(100.0)
     }
 
-    /// A column of probabilities, 0 to 1.
+    /// Creates a column of probabilities, 0 to 1.
     pub fn probability(name: &str, meaning: &str) -> Self {
         Self::number(name, "", meaning).at_least(0.0).at_most(1.0)
     }
 
-    /// The same with a least value.
+    /// Returns the same with a least value.
     #[must_use]
     pub fn at_least(self, least: f64) -> Self {
         Self { least: Some(least), ..self }
     }
 
-    /// The same with a greatest value.
+    /// Returns the same with a greatest value.
     #[must_use]
     pub fn at_most(self, most: f64) -> Self {
         Self { most: Some(most), ..self }
     }
 
-    /// The same, with values that fit `pattern`.
+    /// Returns the same, with values that fit `pattern`.
     #[must_use]
     pub fn like(self, pattern: &'static str) -> Self {
         Self { pattern: Some(pattern), ..self }
     }
 
-    /// The same, empty where `when` says.
+    /// Returns the same, empty where `when` says.
     #[must_use]
     pub fn empty_where(self, when: &str) -> Self {
         Self { empty: Some(when.to_owned()), ..self }
     }
 
-    /// A column that has these values and no others: its kind is what all of them are.
+    /// Creates a column that has these values and no others: its kind is that of all of them.
     pub fn of_values(name: &str, unit: &str, meaning: &str, values: &[String]) -> Self {
         let all = |fits: fn(&str) -> bool| !values.is_empty() && values.iter().all(|v| fits(v));
         let kind = if all(|v| matches!(v, "true" | "false")) {
@@ -118,12 +118,12 @@ impl Column {
         Self { among, ..Self::new(name, kind, unit, meaning) }
     }
 
-    /// A column of which nothing is known but its name.
+    /// Creates a column of which nothing is known but its name.
     pub fn unknown(name: &str) -> Self {
         Self::text(name, "").empty_where("as its author left it")
     }
 
-    /// Its range in words; empty where nothing bounds it.
+    /// Returns its range in words; empty where nothing bounds it.
     pub fn range(&self) -> String {
         if !self.among.is_empty() {
             return self.among.join(", ");
@@ -142,18 +142,18 @@ impl Column {
 pub struct DescribedTable {
     /// Path of the CSV file, relative to the dictionary that holds the description.
     pub path: String,
-    /// What it is called.
+    /// Its title.
     pub title: String,
     /// What one row is.
     pub row: String,
-    /// The columns that name a row among all others; empty where none do.
+    /// The columns that identify a row among all others; empty where none do.
     pub key: Vec<String>,
     /// Its columns, in their order.
     pub columns: Vec<Column>,
 }
 
 impl DescribedTable {
-    /// The description of `table`, whose columns `describe` knows by their names.
+    /// Creates the description of `table`, whose columns `describe` looks up by their names.
     pub fn of(
         table: &Table,
         path: String,
@@ -171,7 +171,7 @@ impl DescribedTable {
     }
 }
 
-/// The unit that the end of a column's name says: `distance-m`, `deadline-s`; empty where it says none.
+/// Returns the unit that the end of a column's name gives: `distance-m`, `deadline-s`; empty where it gives none.
 pub fn unit_of(name: &str) -> &'static str {
     const UNITS: [(&str, &str); 9] = [
         ("-rad-per-m", "rad/m"),
