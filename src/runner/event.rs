@@ -2,7 +2,7 @@
 
 use crate::studies::TrialRecord;
 
-/// Something that happened during a run. Trials finish in any order; `index` is the place in the plan.
+/// Something that happened during a run. Trials finish in any order; `index` is the position in the plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum RunEvent<'a> {
     /// The run begins.
@@ -18,16 +18,16 @@ pub enum RunEvent<'a> {
     },
     /// A trial has its record; if it was executed and did not panic, the store has it too.
     Finished {
-        /// Place in the plan.
+        /// Position in the plan.
         index: usize,
-        /// What came out.
+        /// Its record.
         record: &'a TrialRecord,
         /// Whether the store had it.
         cached: bool,
     },
 }
 
-/// Whoever shows progress. Called from the threads that run trials.
+/// A receiver of progress. Called from the threads that run trials.
 pub trait Observer: Sync {
     /// Takes note of `event`.
     fn notice(&self, event: &RunEvent<'_>);
@@ -39,7 +39,7 @@ impl<F: Fn(&RunEvent<'_>) + Sync> Observer for F {
     }
 }
 
-/// Nobody is watching.
+/// An observer that ignores everything.
 #[derive(Debug, Clone, Copy)]
 pub struct Silent;
 

@@ -1,4 +1,4 @@
-//! Who executes a trial.
+//! The executor of trials.
 
 use crate::digest::Sha256Digest;
 use crate::studies::{Outcome, TrialRecord, TrialSpec};

@@ -1,6 +1,6 @@
 //! Running a plan: trials on all cores, finished ones kept, records back in plan order.
 //!
-//! The runner knows neither files nor terminals: a [`TrialStore`] keeps records, an [`Observer`] hears of progress.
+//! The runner knows neither files nor terminals: a [`TrialStore`] keeps records, an [`Observer`] receives progress.
 
 mod event;
 mod executor;

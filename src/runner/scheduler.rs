@@ -1,4 +1,10 @@
 //! Trials on all cores. The only file that names the thread pool.
+//!
+//! A run takes four steps:
+//! 1. Take the records that the store has.
+//! 2. Execute a drawn share of them again, and refuse the store where one differs.
+//! 3. Announce the run.
+//! 4. Execute the other trials, each stored as soon as it is finished, and return the records in plan order.
 
 use super::{Executor, Nondeterminism, Observer, RunEvent, StoreError, TrialStore};
 use crate::digest::Sha256Digest;
@@ -16,7 +22,7 @@ pub enum RunError {
     Threads {
         /// How many were asked for.
         jobs: usize,
-        /// What the system said.
+        /// The system's message.
         problem: String,
     },
     /// The store refused.
@@ -34,7 +40,7 @@ pub enum RunError {
         first: Box<Nondeterminism>,
         /// How many there are.
         count: usize,
-        /// Of how many that were drawn.
+        /// The number of records drawn.
         doubted: usize,
     },
     /// Trials executed twice gave two records.
@@ -49,7 +55,7 @@ pub enum RunError {
         first: Box<Nondeterminism>,
         /// How many there are.
         count: usize,
-        /// Of how many.
+        /// The number of trials executed.
         executed: usize,
     },
 }
@@ -58,18 +64,18 @@ pub enum RunError {
 #[derive(Debug)]
 pub struct Scheduler {
     pool: rayon::ThreadPool,
-    /// What draws the records of a store that are doubted.
+    /// The seed that draws the records of a store to be checked.
     doubt: Option<u64>,
 }
 
-/// Of how many records of a store one is executed again, and how many at least.
+/// One in this many records of a store is executed again, and this many at least.
 const DOUBTED: (usize, usize) = (200, 3);
 
 impl Scheduler {
-    /// A scheduler of `jobs` threads, at least one.
+    /// Creates a scheduler of `jobs` threads, at least one.
     ///
     /// # Errors
-    /// Where the system does not give them.
+    /// Where the system does not provide them.
     pub fn new(jobs: usize) -> Result<Self, RunError> {
         let jobs = jobs.max(1);
         let pool = rayon::ThreadPoolBuilder::new()
@@ -80,22 +86,22 @@ impl Scheduler {
         Ok(Self { pool, doubt: None })
     }
 
-    /// The same, but that a small share of what a store hands over is executed again and compared before it is believed: a
-    /// 200th, three records at least, drawn with `seed`, which nobody must know beforehand.
+    /// Returns the same scheduler, except that a small share of the records of a store is executed again and compared
+    /// before it is believed: a 200th, three records at least, drawn with `seed`, which must not be predictable.
     #[must_use]
     pub fn doubting(self, seed: u64) -> Self {
         Self { doubt: Some(seed), ..self }
     }
 
-    /// Threads at work.
+    /// Returns the number of threads at work.
     pub fn jobs(&self) -> usize {
         self.pool.current_num_threads()
     }
 
-    /// The record of every trial of `plan`, in its order, whatever the order they finish in.
+    /// Runs `plan` and returns the record of every trial in its order, whatever the order in which they finish.
     ///
-    /// Records that `store` has are taken from it; every other goes there as soon as it is finished, so a killed run
-    /// loses nothing but the trials it was at. A panic becomes a record ([`TrialRecord::panicked`]) and is not stored.
+    /// Records that `store` has are taken from it; every other is stored as soon as it is finished, so a killed run
+    /// loses nothing but the trials under way. A panic becomes a record ([`TrialRecord::panicked`]) and is not stored.
     ///
     /// # Errors
     /// A refusal of the store, or a record of it that its trial does not give; trials not yet begun are then left out.
@@ -107,11 +113,13 @@ impl Scheduler {
         observer: &dyn Observer,
     ) -> Result<Vec<TrialRecord>, RunError> {
         self.pool.install(|| {
+            // 1. Stored records.
             let cached: Vec<Option<TrialRecord>> = plan
                 .par_iter()
                 .map(|spec| store.map_or(Ok(None), |store| recall(store, spec)))
                 .collect::<Result<_, _>>()?;
             let known = cached.iter().flatten().count();
+            // 2. Some of them again.
             let doubted = self.doubted(&cached);
             let wrong: Vec<(usize, TrialRecord)> = doubted
                 .par_iter()
@@ -127,12 +135,14 @@ impl Scheduler {
             {
                 return Err(poisoned(stored, fresh, wrong.len(), doubted.len()));
             }
+            // 3. The run begins.
             observer.notice(&RunEvent::Started {
                 trials: plan.len(),
                 cached: known,
                 doubted: doubted.len(),
                 jobs: self.jobs(),
             });
+            // 4. The others.
             let finished =
                 cached.into_par_iter().enumerate().with_max_len(1).map(|(index, cached)| {
                     let is_cached = cached.is_some();
@@ -153,7 +163,7 @@ impl Scheduler {
         })
     }
 
-    /// Places of the records of the store that are executed again.
+    /// Draws the indices of the records of the store that are executed again.
     fn doubted(&self, cached: &[Option<TrialRecord>]) -> Vec<usize> {
         let Some(seed) = self.doubt else { return Vec::new() };
         let known: Vec<usize> =
@@ -177,7 +187,7 @@ fn poisoned(stored: &TrialRecord, fresh: &TrialRecord, count: usize, doubted: us
     RunError::Poisoned { first: Box::new(first), count, doubted }
 }
 
-/// The stored record of `spec`.
+/// Returns the stored record of `spec`.
 fn recall(store: &dyn TrialStore, spec: &TrialSpec) -> Result<Option<TrialRecord>, StoreError> {
     let Some(mut record) = store.get(&spec.key)? else { return Ok(None) };
     // A key does not depend on the order in which a manifest writes its factors; the record's bytes do.
@@ -186,7 +196,7 @@ fn recall(store: &dyn TrialStore, spec: &TrialSpec) -> Result<Option<TrialRecord
     Ok(Some(record))
 }
 
-/// The record of `spec`, also where the executor panics.
+/// Executes `spec` and returns its record, also where the executor panics.
 pub(super) fn attempt(executor: &dyn Executor, spec: &TrialSpec) -> TrialRecord {
     catch_unwind(AssertUnwindSafe(|| executor.execute(spec))).unwrap_or_else(|payload| {
         let cause = payload

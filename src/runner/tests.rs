@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 
-/// A plan of `trials` trials of which nothing but the identity matters here.
+/// Returns a plan of `trials` trials of which nothing but the identity matters here.
 fn plan(trials: u32) -> Vec<TrialSpec> {
     let robot = Robot {
         name: "r".into(),
@@ -156,7 +156,8 @@ fn a_full_disk_ends_the_run_and_keeps_what_was_stored() {
     assert_eq!(store.records.lock().unwrap().len(), 3);
 }
 
-/// Trials that give the same bytes at first sight; those of `numbers` are spoilt by `spoil` every second time.
+/// Returns an executor whose trials give the same bytes at first sight; those of `numbers` are spoilt by `spoil` every
+/// second time.
 fn flaky(
     numbers: &'static [u32],
     spoil: fn(&mut TrialRecord),

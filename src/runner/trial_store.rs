@@ -1,4 +1,4 @@
-//! What the runner asks of a store; `crate::store` keeps it on disk.
+//! The runner's requirements on a store; `crate::store` keeps it on disk.
 
 use crate::digest::{Sha256Digest, TrialKey};
 use crate::studies::TrialRecord;
@@ -6,7 +6,7 @@ use thiserror::Error;
 
 /// Finished records by their keys. Several threads and processes may use one at a time.
 pub trait TrialStore: Sync {
-    /// The record of `key`; `None` where there is none, or none that is whole.
+    /// Returns the record of `key`; `None` where there is none, or none that is whole.
     ///
     /// # Errors
     /// Where the store cannot be read.
@@ -34,7 +34,7 @@ pub enum StoreError {
         stored: Sha256Digest,
         /// Digest of the one that should be added.
         fresh: Sha256Digest,
-        /// Where they part, in words.
+        /// Where they diverge, in words.
         divergence: String,
     },
     /// A panic is not a result.
@@ -44,7 +44,7 @@ pub enum StoreError {
     Panicked {
         /// The trial.
         key: TrialKey,
-        /// What it said.
+        /// Its message.
         cause: String,
     },
     /// The file system refuses.
@@ -55,7 +55,7 @@ pub enum StoreError {
 }
 
 impl StoreError {
-    /// The conflict between two records of one key.
+    /// Creates the conflict between two records of one key.
     pub fn conflict(stored: &TrialRecord, fresh: &TrialRecord) -> Self {
         Self::Conflict {
             key: fresh.key,

@@ -1,4 +1,4 @@
-//! Every trial twice: what finds an engine that is not deterministic.
+//! Every trial twice: this finds an engine that is not deterministic.
 
 use super::scheduler::attempt;
 use super::{Executor, RunError};
@@ -19,7 +19,7 @@ pub struct Twice<'a> {
 pub struct Nondeterminism {
     /// The slug of its condition.
     pub condition: String,
-    /// Its number there.
+    /// Its number in the condition.
     pub trial: u32,
     /// Its key.
     pub key: TrialKey,
@@ -27,17 +27,17 @@ pub struct Nondeterminism {
     pub first: Sha256Digest,
     /// Digest of the second.
     pub second: Sha256Digest,
-    /// Where they part, in words.
+    /// Where they diverge, in words.
     pub divergence: String,
 }
 
 impl<'a> Twice<'a> {
-    /// Executes with `executor`, twice.
+    /// Creates an executor that executes with `executor`, twice.
     pub fn new(executor: &'a dyn Executor) -> Self {
         Self { executor, differing: Mutex::new(Vec::new()) }
     }
 
-    /// Whether every trial so far gave the same bytes twice, out of `executed`.
+    /// Returns whether every trial so far gave the same bytes twice, out of `executed`.
     ///
     /// # Errors
     /// [`RunError::Nondeterministic`] with the first trial, by condition and number, that did not.
@@ -55,7 +55,7 @@ impl<'a> Twice<'a> {
 }
 
 impl Executor for Twice<'_> {
-    /// The first of the two records.
+    /// Executes twice and returns the first of the two records.
     fn execute(&self, spec: &TrialSpec) -> TrialRecord {
         // Panics are caught here: one that comes only once is a difference too.
         let (first, second) = (attempt(self.executor, spec), attempt(self.executor, spec));
