@@ -6,10 +6,10 @@ use crate::robot::{Scan, Twist};
 use crate::units::{Seconds, Tick};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Beams within this angle of straight ahead tell whether the way is free (rad): 35 degrees.
+/// Beams within this angle of straight ahead decide whether the robot is blocked (rad): 35 degrees.
 const AHEAD: f64 = 0.61;
 
-/// Drives ahead until its way is blocked, then turns.
+/// Drives ahead until it is blocked, then turns.
 #[derive(Debug)]
 pub(super) struct Mind {
     driving: Driving,
@@ -20,12 +20,12 @@ pub(super) struct Mind {
 }
 
 impl Mind {
-    /// A mind that draws its turns from the stream `turns`.
+    /// Creates a mind that draws its turns from the stream `turns`.
     pub(super) fn new(driving: Driving, turns: Stream) -> Self {
         Self { driving, turns, turning: None, blocked: 0 }
     }
 
-    /// Returns what to do after `scan`.
+    /// Returns the command after `scan`.
     pub(super) fn steer(&mut self, scan: &Scan) -> Twist {
         if let Some((twist, until)) = self.turning
             && scan.stamp < until

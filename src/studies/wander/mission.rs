@@ -1,4 +1,10 @@
-//! One trial: the simulator on one end, the mind on the other, and what is measured in between.
+//! One trial: the simulator at one end, the mind at the other, and the measures in between.
+//!
+//! 1. The scene: the world cut at the scanner's height, the robot, no errors.
+//! 2. The recording takes what never changes.
+//! 3. Until the time is up: advance to the next scan, let the mind steer, count the floor, and extend the chain of
+//!    states and the recording.
+//! 4. The measures become the record.
 
 use super::Setup;
 use super::mind::Mind;
@@ -10,12 +16,13 @@ use crate::studies::state_chain::StateChain;
 use crate::studies::{Outcome, TrialRecord, TrialSpec};
 use crate::units::{Seconds, Tick};
 
-/// Runs the trial, writing everything down in `recording` where there is one.
+/// Runs the trial in the steps of the module documentation, writing everything to `recording` where there is one.
 pub(super) fn run(
     spec: &TrialSpec,
     setup: &Setup,
     mut recording: Option<&mut Recording>,
 ) -> TrialRecord {
+    // 1. The scene.
     let Some(lidar) = setup.robot.lidar.clone() else {
         return TrialRecord::panicked(spec, "the robot has no range scanner".to_owned());
     };
@@ -32,6 +39,7 @@ pub(super) fn run(
         drive_noise: DriveNoise::NONE,
         odometry_noise: OdometryNoise { distance: 0.0, heading: 0.0 },
     };
+    // 2. What never changes.
     if let Some(recording) = &mut recording {
         recording.world.clone_from(&visible);
         recording.footprint = setup.robot.footprint.clone();
@@ -45,6 +53,7 @@ pub(super) fn run(
     let mut swept = Swept::new(setup, mission.cell_m);
     let mut chain = StateChain::default();
     let limit = Tick::at_or_after(Seconds(mission.time_limit_s));
+    // 3. Scan, steer, measure.
     while sim.now() < limit {
         sim.advance_to(sim.next_scan().min(limit));
         sim.read_scan(&mut scan);
@@ -68,6 +77,7 @@ pub(super) fn run(
             });
         }
     }
+    // 4. The record.
     let measures = [
         ("distance-m", sim.travelled()),
         ("coverage-m2", swept.area_m2()),
@@ -135,7 +145,7 @@ mod tests {
     use crate::world::document;
     use std::sync::Arc;
 
-    /// Trial `number` of two seconds from (3, 2) m in our small apartment, at `linear_m_s`.
+    /// Returns trial `number` of two seconds from (3, 2) m in our small apartment, at `linear_m_s`.
     fn spec(number: u32, linear_m_s: f64) -> TrialSpec {
         let file = |name: &str, text: &str| Source::new(name, text);
         let robot = file("kobuki.urdf", include_str!("../../../robots/kobuki.urdf"));

@@ -1,6 +1,6 @@
-//! A third study, small enough to read in one go: a robot that drives straight ahead, turns by a random angle where its way is
-//! blocked, and stops when its time is up. It re-enacts no paper. `docs/architecture.md` walks through it as the pattern of
-//! what a study is; `manifests/wander.yaml` runs it.
+//! A third study, small enough to read in one sitting: a robot that drives straight ahead, turns by a random angle
+//! where it is blocked, and stops when its time is up. It re-enacts no paper. `docs/architecture.md` walks through it
+//! as the pattern of a study; `manifests/wander.yaml` runs it.
 
 mod mind;
 mod mission;

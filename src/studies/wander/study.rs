@@ -1,4 +1,4 @@
-//! The wandering robot as the rest of the program knows it.
+//! The wandering robot behind the interface of a study.
 
 use super::{Parameters, Setup, mission};
 use crate::geometry::Pose;
