@@ -1,5 +1,5 @@
-//! Buildings as graphs, for tests: where the exits of a vertex lead, without walls or physics. The mind under test sees
-//! intersections only.
+//! Buildings as graphs, for tests: the exits of vertices and where they lead, without walls or physics. The mind under
+//! test sees intersections only.
 
 use super::exploration::{Explorer, Next};
 use super::intersection::{Exit, Intersection, Opening};
@@ -36,14 +36,15 @@ impl Building {
         self.spots[to].exits[direction.opposite().index()] = Some((opening, from));
     }
 
-    /// A new vertex next to `from`.
+    /// Adds a vertex next to `from`.
     pub(super) fn grow(&mut self, from: usize, direction: Cardinal, place: Place) -> usize {
         let to = self.add(place);
         self.join(from, direction, to);
         to
     }
 
-    /// Corridors on a lattice, some in loops, then rooms beside them with one door, or with `two_doors` some with more.
+    /// Grows corridors on a lattice, some in loops, then rooms beside them with one door, or with `two_doors` some with
+    /// more.
     pub(super) fn random(seed: u64, corridors: usize, rooms: usize, two_doors: bool) -> Self {
         let mut stream = Seeds::new(seed, Vec::new()).stream("building");
         let mut building = Self::default();
@@ -58,7 +59,7 @@ impl Building {
         building
     }
 
-    /// An office floor of 47 vertices: a long corridor, two branches on each side, rooms beside them all.
+    /// Creates an office floor of 47 vertices: a long corridor, two branches on each side, rooms beside them all.
     pub(super) fn office() -> Self {
         use Cardinal::{East, North, South, West};
         let mut office = Self::default();
@@ -98,7 +99,8 @@ impl Building {
         v
     }
 
-    /// A vertex on a random free site next to a corridor, joined to it, and with `chance` to each other corridor there.
+    /// Adds a vertex on a random free site next to a corridor, joined to it, and with `chance` to each other corridor
+    /// there.
     fn extend(&mut self, stream: &mut Stream, place: Place, chance: f64) {
         let corridors = self.sites.iter().filter(|(_, v)| self.spots[**v].place == Place::Corridor);
         let free: Vec<(usize, Cardinal, (i32, i32))> = corridors
@@ -122,7 +124,7 @@ impl Building {
         }
     }
 
-    /// Vertex `v` as the IDS would tell of it, with ids of tags by `name`.
+    /// Returns vertex `v` as the IDS would report it, with ids of tags by `name`.
     pub(super) fn intersection(
         &self,
         v: usize,
@@ -149,7 +151,8 @@ impl Building {
         self.intersection(v, plain)
     }
 
-    /// Lets `explorer` explore from `start`, `seconds` a move, and tells the vertices it arrives at and how it ends.
+    /// Lets `explorer` explore from `start`, `seconds` a move, and returns the vertices at which it arrives and how it
+    /// ends.
     pub(super) fn explore(
         &self,
         explorer: &mut Explorer,
@@ -175,7 +178,7 @@ impl Building {
     }
 }
 
-/// Ids of tags that say what they are; nothing may depend on it.
+/// Returns ids of tags that describe what they are; nothing may depend on it.
 pub(super) fn plain(v: usize, exit: Option<Cardinal>) -> String {
     match exit {
         None => format!("vertex-{v}"),
@@ -196,7 +199,7 @@ fn step((x, y): (i32, i32), direction: Cardinal) -> (i32, i32) {
     }
 }
 
-/// Six pairs of the size the study's calibration finds.
+/// Returns six pairs of the size that the study's calibration finds.
 pub(super) fn maneuvers() -> Maneuvers {
     let pair = |slow: (f64, f64), fast: (f64, f64)| {
         [slow, fast].map(|(time_s, failure)| Expectation { time_s, failure })

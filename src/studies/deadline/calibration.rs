@@ -14,7 +14,7 @@ use serde_json::{Value as Json, json};
 pub const MOTIONS: [Motion; 3] = [Motion::Corridor, Motion::DoorLeft, Motion::DoorRight];
 /// The speeds, in the order of the table.
 pub const SPEEDS: [Speed; 2] = [Speed::Slow, Speed::Fast];
-/// Passages that each maneuver needs at least before its pair is worth planning with.
+/// The least number of passages with which a maneuver's pair is worth planning.
 pub const LEAST_PASSAGES: u64 = 10;
 
 const CONFIDENCE: f64 = 0.95;
@@ -32,7 +32,7 @@ const COLUMNS: [&str; 11] = [
     "failure-high",
 ];
 
-/// What the passages of one maneuver showed.
+/// The measured times and failures of one maneuver.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pair {
     /// The motion.
@@ -64,9 +64,9 @@ pub struct Driven {
     pub motion: Motion,
     /// The speed.
     pub speed: Speed,
-    /// How it ended.
+    /// Its outcome.
     pub outcome: Outcome,
-    /// How long it took (s), where it arrived.
+    /// Its duration (s), where it arrived.
     pub time_s: Option<f64>,
 }
 
@@ -82,7 +82,7 @@ impl CalibrationError {
 }
 
 impl Calibration {
-    /// What `passages` showed.
+    /// Computes the pairs from `passages`.
     ///
     /// # Errors
     /// Where a maneuver has too few passages or none that arrived.
@@ -98,7 +98,7 @@ impl Calibration {
         Ok(Self { pairs })
     }
 
-    /// What a check takes in place of measured pairs: it enters no result.
+    /// Returns pairs that a check uses in place of measured ones: they enter no result.
     pub fn stand_in() -> Self {
         let pair = [
             Expectation { time_s: 10.0, failure: 0.01 },
@@ -107,7 +107,7 @@ impl Calibration {
         Self::assumed(&Maneuvers { corridor: pair, door_left: pair, door_right: pair })
     }
 
-    /// Pairs that nobody measured, for models and checks that need some.
+    /// Returns pairs that were not measured, for models and checks that need some.
     pub fn assumed(maneuvers: &Maneuvers) -> Self {
         let pair = |motion, speed| {
             let Expectation { time_s, failure } = maneuvers.expect(motion, speed);
@@ -125,12 +125,12 @@ impl Calibration {
         Self { pairs }
     }
 
-    /// The pairs, motion by motion, slow before fast.
+    /// Returns the pairs, motion by motion, slow before fast.
     pub fn pairs(&self) -> &[Pair] {
         &self.pairs
     }
 
-    /// What the planner expects of each maneuver.
+    /// Returns the planner's expectation of each maneuver.
     pub fn maneuvers(&self) -> Maneuvers {
         let expect = |motion: Motion| {
             SPEEDS.map(|speed| {
@@ -148,7 +148,7 @@ impl Calibration {
         }
     }
 
-    /// The pairs as a trial's key and the resolved study hold them: what the planner sees, nothing else.
+    /// Returns the pairs as a trial's key and the resolved study hold them: what the planner sees, nothing else.
     pub fn to_json(&self) -> Json {
         let entry = |pair: &Pair| {
             json!({
@@ -161,7 +161,7 @@ impl Calibration {
         self.pairs.iter().map(entry).collect()
     }
 
-    /// The table that is sealed as an input: one row a maneuver, numbers of six significant digits.
+    /// Writes the table that is sealed as an input: one row per maneuver, numbers of six significant digits.
     pub fn to_csv(&self) -> String {
         let mut table = Table::new(COLUMNS);
         let whole = |n: u64| Value::from(i64::try_from(n).unwrap_or(i64::MAX));
@@ -215,7 +215,7 @@ fn pair<'a>(
     })
 }
 
-/// The name of a maneuver in measures: `door-left-slow`.
+/// Returns the name of a maneuver in measures: `door-left-slow`.
 pub fn maneuver_name(motion: Motion, speed: Speed) -> String {
     format!("{}-{}", motion.name(), speed.name())
 }

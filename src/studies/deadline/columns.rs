@@ -1,5 +1,5 @@
-//! What the measures of a trial say, and the columns of this study's tables: one place for the data dictionary and for what
-//! claims and tables may speak of.
+//! The meaning of a trial's measures, and the columns of this study's tables: one place for the data dictionary and for
+//! the names that claims and tables may use.
 
 use super::calibration::{MOTIONS, SPEEDS, maneuver_name};
 use crate::table::{Column, unit_of};
@@ -23,17 +23,17 @@ const WHOLE: [&str; 15] = [
     "fast-maneuver-share",
 ];
 
-/// What is counted of each maneuver.
+/// The counts of each maneuver.
 const OF_A_MANEUVER: [&str; 4] = ["passages", "arrived", "collisions", "total-s"];
 
-/// Every measure that a trial of this study can have.
+/// Returns every measure that a trial of this study can have.
 pub fn measures() -> Vec<String> {
     let mut names: Vec<String> = WHOLE.map(str::to_owned).to_vec();
     names.extend(of_maneuvers().into_iter().map(|(name, ..)| name));
     names
 }
 
-/// Names of the measures of maneuvers, each with the maneuver's and with what is counted.
+/// Returns the names of the measures of maneuvers, each with the maneuver's and with the count's.
 fn of_maneuvers() -> Vec<(String, String, &'static str)> {
     let mut names = Vec::new();
     for motion in MOTIONS {
@@ -49,7 +49,7 @@ fn of_maneuvers() -> Vec<(String, String, &'static str)> {
 /// When a measure of the end of a trial is empty.
 const PANICKED: &str = "the program failed in the trial (outcome panicked)";
 
-/// What the measure `name` says; `None` where trials of this study have none of that name.
+/// Describes the measure `name`; `None` where trials of this study have none of that name.
 pub fn measure(name: &str) -> Option<Column> {
     let count = |meaning: &str| Column::count(name, meaning).empty_where(PANICKED);
     let number = |meaning: &str| {
@@ -89,7 +89,7 @@ pub fn measure(name: &str) -> Option<Column> {
     })
 }
 
-/// A column of a table of maneuvers.
+/// Describes a column of a table of maneuvers.
 pub fn of_maneuver_table(name: &str) -> Option<Column> {
     let time = |meaning| Column::number(name, "s", meaning).at_least(0.0);
     let failure = |meaning| Column::percent(name, meaning).empty_where("none was finished");
@@ -117,7 +117,7 @@ pub fn of_maneuver_table(name: &str) -> Option<Column> {
     })
 }
 
-/// A column of the calibration that is sealed as an input.
+/// Describes a column of the calibration that is sealed as an input.
 pub fn of_calibration(name: &str) -> Option<Column> {
     let time =
         |meaning| Column::number(name, "s", meaning).at_least(0.0).empty_where("none arrived");
@@ -137,7 +137,7 @@ pub fn of_calibration(name: &str) -> Option<Column> {
     })
 }
 
-/// A column of the passages that the calibration rests on.
+/// Describes a column of the passages on which the calibration rests.
 pub fn of_passages(name: &str) -> Option<Column> {
     Some(match name {
         "motion" => Column::text(name, "Motion of the maneuver"),

@@ -1,4 +1,4 @@
-//! The six maneuvers as the calibration measured them, beside what became of them in the study's own trials.
+//! The six maneuvers as the calibration measured them, beside their results in the study's own trials.
 
 use super::Setup;
 use super::calibration::{Calibration, MOTIONS, Pair, SPEEDS, maneuver_name};
@@ -8,7 +8,7 @@ use crate::studies::TrialRecord;
 use crate::studies::findings::{Findings, rounded};
 use crate::table::{Table, Value};
 
-/// One maneuver, expected and met.
+/// One maneuver, expected and observed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ManeuverRow {
     /// Its name: `door-left-slow`.
@@ -33,7 +33,7 @@ pub struct ManeuverRow {
 }
 
 impl Findings<'_> {
-    /// The six maneuvers, motion by motion, slow before fast.
+    /// Returns the six maneuvers, motion by motion, slow before fast.
     pub fn maneuver_rows(&self, request: &ManeuverTable) -> Vec<ManeuverRow> {
         let only: Vec<(String, String)> =
             request.only.iter().map(|(f, v)| (f.clone(), v.0.clone())).collect();
@@ -52,7 +52,7 @@ impl Findings<'_> {
             .collect()
     }
 
-    /// The six maneuvers as a table.
+    /// Returns the six maneuvers as a table.
     pub fn maneuver_table(&self, request: &ManeuverTable) -> Table {
         let mut table = Table::new([
             "maneuver",

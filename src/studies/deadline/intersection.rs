@@ -1,4 +1,4 @@
-//! What the Intersection Detection System hands to the explorer: a vertex and the edges that leave it.
+//! The output of the Intersection Detection System: a vertex and the edges that leave it.
 
 use crate::geometry::Cardinal;
 use crate::studies::deadline::build_cmdp::Place;
@@ -17,17 +17,17 @@ pub enum Opening {
 /// An outgoing edge as perceived.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Exit {
-    /// Where it leads, by compass.
+    /// Its compass direction.
     pub direction: Cardinal,
-    /// What it leads through.
+    /// Whether it leads through a corridor or a door.
     pub opening: Opening,
 }
 
 /// A vertex at which the robot has arrived.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Intersection {
-    /// Opaque ids of the tags that belong to it, at least one. Two intersections are the same vertex if and only if they
-    /// share one; nothing else is read from an id, and the order says nothing.
+    /// Opaque ids of the tags that belong to it, at least one. Two intersections are the same vertex if and only if
+    /// they share one; nothing else is read from an id, and the order has no meaning.
     pub tags: Vec<String>,
     /// Whether it is a room or part of a corridor.
     pub place: Place,

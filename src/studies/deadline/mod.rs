@@ -41,14 +41,14 @@ use crate::world::World;
 use mission::Prepared;
 use std::sync::{Arc, OnceLock};
 
-/// Everything a trial of this study needs.
+/// Everything that a trial of this study needs.
 #[derive(Debug)]
 pub struct Setup {
     /// The true world.
     pub world: Arc<World>,
     /// The robot.
     pub robot: Arc<Robot>,
-    /// Where the robot begins, in the world's frame (m, rad).
+    /// The robot's first pose, in the world's frame (m, rad).
     pub start: Pose,
     /// The planner's expectations; `None` for isolated passages, which measure them.
     pub calibration: Option<Arc<Calibration>>,
@@ -58,7 +58,7 @@ pub struct Setup {
 }
 
 impl Setup {
-    /// A setup; nothing is computed yet.
+    /// Creates a setup; nothing is computed yet.
     pub fn new(
         world: Arc<World>,
         robot: Arc<Robot>,
@@ -69,7 +69,7 @@ impl Setup {
         Self { world, robot, start, calibration, parameters, prepared: OnceLock::new() }
     }
 
-    /// What all trials of this setup share, computed by the first that asks.
+    /// Returns the data that all trials of this setup share, computed at the first request.
     ///
     /// # Errors
     /// Where the setup cannot run at all, which resolution refuses with a better message.

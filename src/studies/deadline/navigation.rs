@@ -17,7 +17,7 @@ pub struct NavigateToVertex {
     plan: Option<Plan>,
 }
 
-/// What a turn of the loop yields.
+/// The result of a turn of the loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Flag {
     /// Line 7: v_c = G.
@@ -29,7 +29,7 @@ pub enum Flag {
 }
 
 impl NavigateToVertex {
-    /// Lines 2 and 3: `BuildCMDP`, `Solve`.
+    /// Does lines 2 and 3: `BuildCMDP`, `Solve`.
     ///
     /// # Errors
     /// There is no plan.
@@ -49,7 +49,7 @@ impl NavigateToVertex {
         Ok(Self { target, plan })
     }
 
-    /// Lines 5 to 11, at `current`. The global deadline of lines 4 and 12 is its caller's.
+    /// Does lines 5 to 11, at `current`. The global deadline of lines 4 and 12 is left to the caller.
     ///
     /// # Errors
     /// The robot is where the plan never leads.
@@ -70,12 +70,12 @@ impl NavigateToVertex {
         }
     }
 
-    /// v.
+    /// Returns v.
     pub fn target(&self) -> VertexId {
         self.target
     }
 
-    /// π*, unless the robot was at v already.
+    /// Returns π*, unless the robot was at v already.
     pub fn plan(&self) -> Option<&Plan> {
         self.plan.as_ref()
     }

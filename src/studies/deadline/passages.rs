@@ -1,5 +1,5 @@
-//! The isolated passages that a calibration rests on, one row a trial: sealed beside the pairs that follow from them, so that
-//! whoever doubts a pair can count again, and drive any passage again.
+//! The isolated passages on which a calibration rests, one row per trial: sealed beside the pairs that follow from
+//! them, so that anyone who doubts a pair can count again, and drive any passage again.
 
 use super::calibration::{Calibration, CalibrationError, Driven};
 use super::parameters::Task;
@@ -25,7 +25,7 @@ pub struct Passages {
 struct Row {
     trial: u32,
     passage: Driven,
-    /// Of the trial's record line.
+    /// Digest of the trial's record line.
     record: Sha256Digest,
 }
 
@@ -37,7 +37,7 @@ pub struct PlannedPassages {
 }
 
 impl PlannedPassages {
-    /// The passages of an experiment of these conditions with `trials` each.
+    /// Creates the passages of an experiment of these conditions with `trials` each.
     ///
     /// # Errors
     /// Where a condition is something other than isolated passages.
@@ -58,7 +58,7 @@ impl PlannedPassages {
         Ok(Self { maneuvers, trials })
     }
 
-    /// How many there are.
+    /// Returns how many there are.
     pub fn count(&self) -> u64 {
         self.maneuvers.len() as u64 * u64::from(self.trials)
     }
@@ -71,7 +71,7 @@ impl PlannedPassages {
         self.maneuvers.iter().flat_map(of)
     }
 
-    /// What they showed: the records of all of them, in plan order.
+    /// Builds the passages from their records: all of them, in plan order.
     ///
     /// # Errors
     /// Where there are more or fewer records.
@@ -89,14 +89,14 @@ impl PlannedPassages {
         Ok(Passages { rows: rows.collect() })
     }
 
-    /// Reads what [`Passages::to_csv`] wrote of exactly these.
+    /// Reads a text that [`Passages::to_csv`] wrote of exactly these.
     ///
     /// # Errors
     /// Where it is something else, naming the line.
     pub fn read(&self, text: &str) -> Result<Passages, CalibrationError> {
         let fault = |what: String| CalibrationError::of(what);
         let lines = text.lines().count() as u64;
-        // Counted before they are read: a manifest of a few words can ask for millions.
+        // Counted before they are read: a manifest of a few words can request millions.
         if lines != self.count() + 1 {
             let expected = self.count();
             return Err(fault(format!(
@@ -133,17 +133,17 @@ impl PlannedPassages {
 }
 
 impl Passages {
-    /// How many there are.
+    /// Returns how many there are.
     pub fn len(&self) -> usize {
         self.rows.len()
     }
 
-    /// Whether there are none.
+    /// Returns whether there are none.
     pub fn is_empty(&self) -> bool {
         self.rows.is_empty()
     }
 
-    /// What they show of each maneuver.
+    /// Computes the pairs of the maneuvers from the passages.
     ///
     /// # Errors
     /// Where a maneuver has too few passages or none that arrived.
@@ -151,7 +151,7 @@ impl Passages {
         Calibration::measure(self.rows.iter().map(|row| row.passage))
     }
 
-    /// The table that is sealed as an input: one row a passage.
+    /// Writes the table that is sealed as an input: one row per passage.
     pub fn to_csv(&self) -> String {
         let mut table = Table::new(COLUMNS);
         for row in &self.rows {
@@ -160,12 +160,12 @@ impl Passages {
         table.to_csv()
     }
 
-    /// The row of the passage `index` as people read it, but for its first three fields, which the plan says.
+    /// Returns the row of the passage `index` for display, without its first three fields, which the plan gives.
     pub fn told(&self, index: usize) -> Option<String> {
         self.rows.get(index).map(|row| joined(&fields(row)[3..]))
     }
 
-    /// The same of `record`, which passage it may be of.
+    /// Returns the same of `record`, whichever passage it belongs to.
     pub fn told_of(record: &TrialRecord) -> String {
         let time: Value = record.measures.get("time-s").copied().flatten().into();
         joined(&[

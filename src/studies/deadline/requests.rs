@@ -1,4 +1,4 @@
-//! What a manifest of this study alone may ask to see.
+//! Tables and figures that only a manifest of this study can ask for.
 
 use crate::studies::FactorValue;
 use schemars::JsonSchema;

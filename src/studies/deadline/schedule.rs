@@ -35,7 +35,7 @@ pub enum TimeAvailable {
     Scarce,
 }
 
-/// t_d and what it follows from.
+/// t_d and the numbers from which it follows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LocalDeadline {
     /// The number of edges between v_c and v.
@@ -47,10 +47,11 @@ pub struct LocalDeadline {
 }
 
 impl Schedule {
-    /// t_d for a vertex `edges` away, `now_s` after the beginning of a task with the global deadline `deadline_s`.
+    /// Computes t_d for a vertex `edges` away, `now_s` after the beginning of a task with the global deadline
+    /// `deadline_s`.
     ///
-    /// "The time available to complete the task" is read as what is left of T. The paper leaves the two boundaries open;
-    /// they are put with the tighter step.
+    /// "The time available to complete the task" is read as what is left of T. The paper leaves the two boundaries
+    /// open; they are counted to the tighter step.
     pub fn local_deadline(&self, edges: usize, now_s: f64, deadline_s: f64) -> LocalDeadline {
         let left = deadline_s - now_s;
         #[expect(clippy::cast_precision_loss, reason = "a path has few edges")]

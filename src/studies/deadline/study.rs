@@ -1,4 +1,4 @@
-//! The deadline study as the rest of the program knows it.
+//! The deadline study behind the interface of a study.
 
 use super::mission::{self, lints};
 use super::{Parameters, Setup, Task, columns};

@@ -55,7 +55,7 @@ fn a_deadline_that_cannot_be_met_yields_the_fastest_plan_and_says_so() {
         let solution = plan(&navigation);
         assert!(relative(solution.secondary[TIME], 5.0 * FAST.time_s) < 1e-12);
         assert_eq!(solution.policy.randomised(), 0);
-        // What the interior-point method said is told, and never taken for an answer.
+        // The result of the interior-point method is reported, and never taken for an answer.
         let said = solution.effort.interior;
         assert!(matches!(said, Some(Err(_))), "{deadline}: {said:?}");
         let [relaxation] = solution.relaxed[..] else { panic!("{:?}", solution.relaxed) };

@@ -18,7 +18,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// What a vertex is: its semantic label's kind.
+/// The kind of a vertex, as its semantic label gives it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Place {
     /// A room.
@@ -27,7 +27,7 @@ pub enum Place {
     Corridor,
 }
 
-/// S(e): on which side of the vertex it comes from an edge is.
+/// S(e): the side of the vertex on which an edge arrives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Side {
     /// To the left of it.
@@ -47,7 +47,7 @@ pub struct OrientedEdge {
     pub side: Side,
 }
 
-/// As much of a toposemantic map as a plan needs.
+/// The part of a toposemantic map that a plan needs.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Topology {
     /// V, by index.
@@ -71,7 +71,7 @@ pub enum Motion {
 }
 
 impl Motion {
-    /// The name in files: `door-left`.
+    /// Returns the name in files: `door-left`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Corridor => "corridor",
@@ -94,7 +94,7 @@ pub enum Speed {
 }
 
 impl Speed {
-    /// The name in files.
+    /// Returns the name in files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Slow => "slow",
@@ -103,7 +103,7 @@ impl Speed {
     }
 }
 
-/// What a motion at a speed is expected to take.
+/// The expected time and failure of a motion at a speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Expectation {
     /// Expected duration (s), at least 0.
@@ -124,7 +124,7 @@ pub struct Maneuvers {
 }
 
 impl Maneuvers {
-    /// What `motion` at `speed` is expected to take.
+    /// Returns the expected time and failure of `motion` at `speed`.
     pub fn expect(&self, motion: Motion, speed: Speed) -> Expectation {
         let both = match motion {
             Motion::Corridor => &self.corridor,
@@ -138,30 +138,30 @@ impl Maneuvers {
     }
 }
 
-/// What the study's costs are taken to mean.
+/// The meaning of the study's costs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Reading {
     /// Literally (reading L): every step costs 1 until the target; failure probabilities are a cost that
     /// adds up, by the union bound no less than the probability of failing.
     #[default]
     Additive,
-    /// As in the papers it builds on (reading R; Chow, Pavone, Sadler and Carpin 2015): failing is an
-    /// absorbing state, and the probability of ending there is minimised. Time counts while alive.
+    /// As in the papers it builds on (reading R; Chow, Pavone, Sadler and Carpin 2015): failing is an absorbing state,
+    /// and the probability of ending there is minimised. Time counts until then.
     Reach,
 }
 
-/// What a navigation task is.
+/// A navigation task.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Task {
-    /// `v_c`, where the robot is.
+    /// `v_c`, the vertex at which the robot is.
     pub from: usize,
-    /// v, where it should go.
+    /// v, the vertex to which it should go.
     pub to: usize,
     /// `t_d`, the local temporal deadline (s).
     pub deadline_s: f64,
     /// `P_f`, the bound on failure.
     pub failure: f64,
-    /// What the costs mean.
+    /// The meaning of the costs.
     pub reading: Reading,
 }
 
@@ -170,7 +170,7 @@ pub struct Task {
 pub struct Maneuver {
     /// Index of the edge in the topology.
     pub edge: usize,
-    /// The motion that the edge asks for.
+    /// The motion that the edge requires.
     pub motion: Motion,
     /// The speed.
     pub speed: Speed,
@@ -182,7 +182,7 @@ pub struct Maneuver {
 pub struct Navigation {
     /// The model.
     pub cmdp: Cmdp,
-    /// What its actions are, by index.
+    /// Its actions, by index.
     pub maneuvers: Vec<Maneuver>,
 }
 
@@ -197,7 +197,7 @@ pub enum BuildError {
     /// An edge or the task names a vertex that is not in the map.
     #[error("{what}: vertex {index} does not exist; expected an index below {count}")]
     Vertex {
-        /// Who names it.
+        /// The source that names it.
         what: String,
         /// The index.
         index: usize,
@@ -216,7 +216,7 @@ pub enum BuildError {
     },
 }
 
-/// Which motion following `edge` is.
+/// Returns the motion that follows `edge`.
 pub fn motion(topology: &Topology, edge: &OrientedEdge) -> Motion {
     let door = [edge.from, edge.to].iter().any(|v| topology.vertices[*v] == Place::Room);
     match (door, edge.side) {
@@ -226,7 +226,8 @@ pub fn motion(topology: &Topology, edge: &OrientedEdge) -> Motion {
     }
 }
 
-/// The model of `task` on `topology`.
+/// Builds the model of `task` on `topology`: actions are the edges at both speeds; the target absorbs, and by
+/// [`Reading::Reach`] failure too; then transitions, bounds and costs.
 ///
 /// # Errors
 /// A vertex that does not exist, or a number out of range.
@@ -280,9 +281,9 @@ pub fn build_cmdp(
 }
 
 impl Navigation {
-    /// `Solve(CMDP)` of Algorithm 2, always with a policy if the target can be reached at all. A failure bound
-    /// that cannot be met is dropped; then a deadline that cannot be met becomes the least expected time,
-    /// which is what "as the deadline nears the robot should speed up" asks. Both are flagged in
+    /// Does `Solve(CMDP)` of Algorithm 2, always with a policy if the target can be reached at all. A failure bound
+    /// that cannot be met is dropped; then a deadline that cannot be met becomes the least expected time, as "as the
+    /// deadline nears the robot should speed up" requires. Both are flagged in
     /// [`Solution::relaxed`](crate::cmdp::Solution::relaxed).
     ///
     /// # Errors

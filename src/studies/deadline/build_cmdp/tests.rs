@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// A corridor of three vertices with a room off the middle one (on its left), and a far room off the last.
+/// Returns a corridor of three vertices with a room off the middle one (on its left), and a far room off the last.
 fn map() -> Topology {
     let mut topology = Topology {
         vertices: vec![Place::Corridor, Place::Corridor, Place::Corridor, Place::Room, Place::Room],
@@ -53,7 +53,7 @@ fn doors_and_corridors_have_their_own_expectations() {
     assert!(relative(solution.secondary[FAILURE], 0.03) < 1e-14);
     let chosen = navigation.maneuvers[solution.policy.at(1)[0].0];
     assert_eq!(chosen, Maneuver { edge: 4, motion: Motion::DoorLeft, speed: Speed::Slow });
-    // Off the way: the far room's fallback leaves it, by the door on the left of the way back.
+    // Off the path: the far room's fallback leaves it, by the door on the left of the return path.
     assert!(!solution.policy.visits(4));
     let chosen = navigation.maneuvers[solution.policy.at(4)[0].0];
     assert_eq!(chosen, Maneuver { edge: 7, motion: Motion::DoorLeft, speed: Speed::Slow });
@@ -124,7 +124,7 @@ fn an_unreachable_target_and_bad_numbers_are_named() {
     );
 }
 
-/// |a - b| relative to the larger.
+/// Returns |a - b| relative to the larger.
 pub(super) fn relative(a: f64, b: f64) -> f64 {
     (a - b).abs() / a.abs().max(b.abs()).max(1e-300)
 }

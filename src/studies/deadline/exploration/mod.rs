@@ -1,7 +1,7 @@
 //! `ExplorationTask(T, G)`: section 4, Algorithm 3, and the random moves that precede its strategy.
 //!
-//! The listing's loop waits for the robot; here the robot's arrivals drive it ([`Explorer::arrive`]), and each answer is the
-//! next exit to take or how the task ended.
+//! The listing's loop waits for the robot; here the robot's arrivals drive it ([`Explorer::arrive`]), and each answer
+//! is the next exit to take or the end of the task.
 
 use super::intersection::{Intersection, Opening};
 use super::navigation::{Flag, NavigateToVertex};
@@ -15,7 +15,7 @@ use crate::rng::{Seeds, Stream};
 use crate::studies::deadline::build_cmdp::{Maneuvers, Motion, Side, Speed};
 use thiserror::Error;
 
-/// What the robot does next.
+/// The robot's next action.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Next {
     /// Leave the vertex.
@@ -31,7 +31,7 @@ pub enum Next {
 pub struct Leave {
     /// The exit.
     pub exit: Cardinal,
-    /// What it leads through.
+    /// Whether it leads through a corridor or a door.
     pub opening: Opening,
     /// The motion.
     pub motion: Motion,
@@ -48,7 +48,7 @@ pub enum GiveUp {
     /// Every edge is explored.
     #[error("nothing is left to explore")]
     NothingLeft,
-    /// What was perceived does not fit the map.
+    /// An observation that does not fit the map.
     #[error("the map became inconsistent: {0}")]
     Inconsistent(#[from] MapError),
     /// There is no plan to go on.
@@ -56,7 +56,7 @@ pub enum GiveUp {
     NoPlan(#[from] PlanError),
 }
 
-/// Why the robot makes a move.
+/// The purpose of a move.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Purpose {
     /// Moving randomly until there are K vertices.
@@ -70,17 +70,17 @@ pub enum Purpose {
 /// One move, from one vertex to the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Move {
-    /// When it began (s since the task began).
+    /// Its beginning (s since the task began).
     pub at_s: f64,
-    /// Where.
+    /// The vertex that it leaves.
     pub from: VertexId,
-    /// What it is.
+    /// The exit, motion and speed.
     pub leave: Leave,
-    /// Why.
+    /// Its purpose.
     pub purpose: Purpose,
 }
 
-/// A vertex with edges (v, v∅), as it was when one was chosen.
+/// A vertex with edges (v, v∅), as it was when the choice was made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Candidate {
     /// v'.
@@ -94,11 +94,11 @@ pub struct Candidate {
 /// One answer of `ExplorationNext` with its plan.
 #[derive(Debug, Clone)]
 pub struct Decision {
-    /// When it was made (s since the task began).
+    /// Its time (s since the task began).
     pub at_s: f64,
     /// v_c.
     pub from: VertexId,
-    /// 𝒱, the vertices there were to choose from, in order of discovery.
+    /// 𝒱, the vertices among which to choose, in order of discovery.
     pub candidates: Vec<Candidate>,
     /// t_d.
     pub deadline: LocalDeadline,
@@ -107,12 +107,12 @@ pub struct Decision {
 }
 
 impl Decision {
-    /// v.
+    /// Returns v.
     pub fn target(&self) -> VertexId {
         self.navigation.target()
     }
 
-    /// π*, unless v = v_c.
+    /// Returns π*, unless v = v_c.
     pub fn plan(&self) -> Option<&Plan> {
         self.navigation.plan()
     }
@@ -137,9 +137,9 @@ pub struct Explorer {
     expectations: Maneuvers,
     deadline_s: f64,
     chooser: Chooser,
-    /// What chance chooses: vertices and edges.
+    /// Random choices of vertices and edges.
     choosing: Stream,
-    /// What chance executes: randomised policies. A stream of its own, so that planners are compared on equal choices.
+    /// Random execution: randomised policies. A stream of its own, so that planners are compared on equal choices.
     executing: Stream,
     map: ToposemanticMap,
     current: Option<VertexId>,
@@ -150,8 +150,8 @@ pub struct Explorer {
 }
 
 impl Explorer {
-    /// A mind that has seen nothing, with the global deadline T = `deadline_s`, expecting of maneuvers what `expectations`
-    /// say. It draws from two streams of `seeds`, `exploration` and `policy`.
+    /// Creates a mind without observations, with the global deadline T = `deadline_s` and the `expectations` of
+    /// maneuvers. It draws from two streams of `seeds`, `exploration` and `policy`.
     pub fn new(rules: &Rules, expectations: Maneuvers, deadline_s: f64, seeds: &Seeds) -> Self {
         Self {
             rules: rules.clone(),
@@ -169,8 +169,9 @@ impl Explorer {
         }
     }
 
-    /// The robot stands at a vertex, `now_s` after the task began: where it starts, or where its last move has led.
-    /// The goal counts on arrival, whatever the robot came for. After the task's end the answer stays the same.
+    /// Takes in that the robot stands at a vertex, `now_s` after the task began: its start, or the end of its last
+    /// move. The goal counts on arrival, whatever the purpose of the move. After the task's end the answer stays the
+    /// same.
     pub fn arrive(&mut self, now_s: f64, here: &Intersection) -> Next {
         if let Phase::Ended(next) = &self.phase {
             return next.clone();
@@ -182,32 +183,32 @@ impl Explorer {
         next
     }
 
-    /// M.
+    /// Returns M.
     pub fn map(&self) -> &ToposemanticMap {
         &self.map
     }
 
-    /// v_c: the vertex last arrived at.
+    /// Returns v_c: the vertex at which the robot arrived last.
     pub fn current(&self) -> Option<VertexId> {
         self.current
     }
 
-    /// Every decision so far.
+    /// Returns every decision so far.
     pub fn decisions(&self) -> &[Decision] {
         &self.decisions
     }
 
-    /// Every move so far, the one under way last.
+    /// Returns every move so far, the one under way last.
     pub fn moves(&self) -> &[Move] {
         &self.moves
     }
 
-    /// Every vertex arrived at so far, and how; `None` for the start.
+    /// Returns every vertex at which the robot arrived so far, and how; `None` for the start.
     pub fn arrivals(&self) -> &[(VertexId, Option<Arrival>)] {
         &self.arrivals
     }
 
-    /// One turn of Algorithm 3 up to the next move.
+    /// Runs one turn of Algorithm 3 up to the next move. Comments name the lines of the listings.
     fn turn(&mut self, now_s: f64, here: &Intersection) -> Result<Next, GiveUp> {
         let current = self.perceive(here)?;
         // Line 3, and line 4 of Algorithm 2: even the goal comes too late.
@@ -249,7 +250,7 @@ impl Explorer {
         }
     }
 
-    /// Line 9, `CreateNewNode`, and what the listing leaves to the IDS: that a vertex is known.
+    /// Does line 9, `CreateNewNode`, and recognises known vertices, which the listing leaves to the IDS.
     fn perceive(&mut self, here: &Intersection) -> Result<VertexId, MapError> {
         let (current, arrival) = match (self.current, self.moves.last()) {
             (Some(from), Some(last)) => {
@@ -264,8 +265,9 @@ impl Explorer {
         Ok(current)
     }
 
-    /// `InitializeGraph`: "it initially randomly moves around until it has K vertices in the graph". Any of the current
-    /// vertex's unexplored edges, or where it has none any of its edges. A building of fewer than K vertices ends it too.
+    /// Does `InitializeGraph`: "it initially randomly moves around until it has K vertices in the graph". It takes any
+    /// of the current vertex's unexplored edges, or where it has none any of its edges. A building of fewer than K
+    /// vertices ends it too.
     fn move_randomly(&mut self, now_s: f64, current: VertexId) -> Result<Leave, GiveUp> {
         if self.map.ids().all(|v| self.map.unexplored_degree(v) == 0) {
             return Err(GiveUp::NothingLeft);
@@ -279,7 +281,7 @@ impl Explorer {
         Ok(self.go(now_s, current, leave, Purpose::Initial))
     }
 
-    /// Line 4: v, t_d ← `ExplorationNext(M, time)`; and the beginning of line 5.
+    /// Does line 4, v, t_d ← `ExplorationNext(M, time)`, and the beginning of line 5.
     fn exploration_next(&mut self, now_s: f64, current: VertexId) -> Result<(), GiveUp> {
         let target =
             self.chooser.next(&self.map, current, &mut self.choosing).ok_or(GiveUp::NothingLeft)?;
@@ -310,7 +312,7 @@ impl Explorer {
         Ok(())
     }
 
-    /// How to follow `edge` without a plan.
+    /// Returns how to follow `edge` without a plan.
     fn unplanned(&self, now_s: f64, edge: Edge) -> Leave {
         let motion = match (edge.opening, edge.side()) {
             (Opening::Corridor, _) => Motion::Corridor,

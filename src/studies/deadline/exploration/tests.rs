@@ -34,7 +34,7 @@ fn without_goal(mut building: Building) -> Building {
     building
 }
 
-/// Ids of tags that say nothing: a permutation of the numbers from 0.
+/// Returns ids of tags that carry no meaning: a permutation of the numbers from 0.
 fn permuted(seed: u64) -> impl Fn(usize, Option<Cardinal>) -> String {
     move |v, exit| {
         let number = v as u64 * 5 + exit.map_or(0, |direction| 1 + direction.index() as u64);
@@ -67,7 +67,7 @@ proptest! {
         prop_assert_eq!(visited.iter().position(|v| *v == goal), Some(visited.len() - 1));
     }
 
-    /// Nothing depends on what tags are called.
+    /// Nothing depends on the names of tags.
     #[test]
     fn permuting_ids_changes_nothing(seed in 0_u64..1_000_000, which in 0_usize..5) {
         let building = Building::random(seed, 10, 8, true);
@@ -120,7 +120,7 @@ proptest! {
     }
 }
 
-/// With a second door a room is worth coming back to, and S1 differs from the random strategy.
+/// With a second door a room is worth returning to, and S1 differs from the random strategy.
 #[test]
 fn uniform_corridors_first_is_not_random_where_rooms_have_two_doors() {
     let mut uniform = rules(Strategy::CorridorsFirst);

@@ -1,4 +1,4 @@
-//! What tags have been seen, and which of them belong to one intersection.
+//! The tags seen so far, and which of them belong to one intersection.
 
 use super::Perception;
 use crate::geometry::{Cardinal, Point};
@@ -6,7 +6,7 @@ use crate::studies::deadline::build_cmdp::Place;
 use crate::studies::deadline::intersection::{Exit, Intersection, Opening};
 use std::collections::BTreeMap;
 
-/// What a tag's colour says.
+/// The meaning of a tag's colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Role {
     /// A vertex.
@@ -18,7 +18,7 @@ pub(super) enum Role {
 }
 
 impl Role {
-    /// `None` for tags that are not the IDS's.
+    /// Returns the role of a colour; `None` for tags that are not the IDS's.
     pub(super) fn of(color: &str, perception: &Perception) -> Option<Self> {
         let roles = [
             (&perception.corridor_color, Self::Vertex(Place::Corridor)),
@@ -40,7 +40,7 @@ struct Tag {
     role: Role,
     /// How often an exit was seen to face each cardinal direction.
     votes: [u32; 4],
-    /// Where the vertex tag stands, in this tag's frame (m): both are fixed in the building.
+    /// Position of the vertex tag in this tag's frame (m): both are fixed in the building.
     vertex_at: Option<Point>,
     group: Option<usize>,
 }
@@ -55,7 +55,7 @@ pub(super) struct Memory {
 }
 
 impl Memory {
-    /// The number of the tag `id`, remembered from now on.
+    /// Returns the number of the tag `id`, remembered from now on.
     pub(super) fn number(&mut self, id: &str, role: Role) -> TagNumber {
         if let Some(number) = self.numbers.get(id) {
             return *number;
@@ -79,7 +79,7 @@ impl Memory {
         self.tags[tag].votes[direction.index()] += 1;
     }
 
-    /// The direction that an exit was seen to face most often; of two the first counter-clockwise from east.
+    /// Returns the direction that an exit was seen to face most often; of two the first counter-clockwise from east.
     pub(super) fn direction(&self, tag: TagNumber) -> Option<Cardinal> {
         let votes = &self.tags[tag].votes;
         let most = *votes.iter().max()?;
@@ -91,7 +91,7 @@ impl Memory {
         self.tags[tag].vertex_at = Some(at);
     }
 
-    /// Where the vertex tag stands in the frame of `tag`: at its origin, or where it once was seen.
+    /// Returns the position of the vertex tag in the frame of `tag`: its origin, or where it once was seen.
     pub(super) fn vertex_at(&self, tag: TagNumber) -> Option<Point> {
         match self.tags[tag].role {
             Role::Vertex(_) => Some(Point::ZERO),
@@ -99,12 +99,12 @@ impl Memory {
         }
     }
 
-    /// Whether two tags belong to one intersection.
+    /// Returns whether two tags belong to one intersection.
     pub(super) fn together(&self, a: TagNumber, b: TagNumber) -> bool {
         a == b || (self.tags[a].group.is_some() && self.tags[a].group == self.tags[b].group)
     }
 
-    /// Remembers that two tags belong to one intersection. Two vertex tags never do: then nothing is changed.
+    /// Records that two tags belong to one intersection. Two vertex tags never do: then nothing is changed.
     pub(super) fn join(&mut self, a: TagNumber, b: TagNumber) {
         match (self.tags[a].group, self.tags[b].group) {
             (None, None) => {
@@ -136,7 +136,7 @@ impl Memory {
         self.tags[tag].group = Some(group);
     }
 
-    /// The intersection that `tag` belongs to, as it is known by now.
+    /// Returns the intersection to which `tag` belongs, as it is known by now.
     ///
     /// Where its vertex tag has not been seen (the robot stands on it), its kind follows from its exits: every corridor vertex
     /// has an exit through a corridor, and rooms have doors only.
@@ -153,7 +153,7 @@ impl Memory {
             let corridor = roles().any(|role| role == Role::Exit(Opening::Corridor));
             if corridor { Place::Corridor } else { Place::Room }
         };
-        // One exit a direction: that of which it was seen most often, of two the one that was seen first.
+        // One exit per direction: the one seen most often, of two the one seen first.
         let exit = |direction: Cardinal| {
             let mut best: Option<(u32, Opening)> = None;
             for tag in members {

@@ -1,13 +1,13 @@
 //! The Intersection Detection System (sections 3 and 6): from tags and compass to vertices, their kinds and their outgoing
 //! edges. Nothing else of the world reaches the mind.
 //!
-//! The logical camera tells ids, colours and poses relative to the robot. A vertex tag says where a vertex is and what kind; an
-//! exit tag near it faces along an outgoing edge, and its colour says what the edge leads through; a goal tag marks the goal.
-//! The compass tells which cardinal direction an exit faces; its error is outvoted over many sights.
+//! The logical camera gives ids, colours and poses relative to the robot. A vertex tag gives a vertex's position and
+//! kind; an exit tag near it faces along an outgoing edge, and its colour gives what the edge leads through; a goal tag
+//! marks the goal. The compass gives the cardinal direction that an exit faces; its error is outvoted over many sights.
 //!
-//! There is no odometry. On its way along an edge the robot sees the edge's far end, and where that is now; for a moment
-//! without sight the commanded speeds say how it moved. A camera that sees through walls sees many vertices at once: the far
-//! end is the nearest one with an exit of the edge's kind that faces the robot, which stands before it.
+//! There is no odometry. On an edge the robot sees the edge's far end, and its position; for a moment without sight the
+//! commanded speeds predict it. A camera that sees through walls sees many vertices at once: the far end is the nearest
+//! one with an exit of the edge's kind that faces the robot, which stands before it.
 
 mod memory;
 #[cfg(test)]
@@ -53,12 +53,12 @@ const PASSED_FRAMES: u32 = 3;
 /// Without sight for longer than this (s) a position is not predicted but given up.
 const PREDICTION_S: f64 = 1.5;
 
-/// What the system is about.
+/// The object of the system's attention.
 #[derive(Debug, Clone, PartialEq)]
 enum Attention {
     /// Nothing: it only remembers.
     Idle,
-    /// What is around the robot, which turns on the spot.
+    /// The surroundings of the robot, which turns on the spot.
     Around,
     /// The far end of an edge.
     Leg { direction: Cardinal, opening: Opening, target: Option<Target> },
@@ -69,9 +69,9 @@ enum Attention {
 struct Target {
     /// Any tag of it.
     tag: TagNumber,
-    /// Where it is, in the base frame (m).
+    /// Its position in the base frame (m).
     at: Point,
-    /// How far it was when it was last seen (m).
+    /// Its distance when it was last seen (m).
     seen_at: f64,
     /// For how many frames, and how long (s), it has not been seen.
     unseen: (u32, f64),
@@ -90,15 +90,15 @@ pub struct IntersectionDetectionSystem {
     perception: Perception,
     memory: Memory,
     attention: Attention,
-    /// Any tag of the vertex that the robot is at or has left.
+    /// Any tag of the vertex at which the robot is or which it has left.
     here: Option<TagNumber>,
-    /// Heading of the base (rad), and when.
+    /// Heading of the base (rad), and its time.
     heading: Option<(f64, Tick)>,
     view: Vec<Sight>,
 }
 
 impl IntersectionDetectionSystem {
-    /// A system that has seen nothing.
+    /// Creates a system that has seen nothing.
     pub fn new(perception: &Perception) -> Self {
         Self {
             perception: perception.clone(),
@@ -110,12 +110,12 @@ impl IntersectionDetectionSystem {
         }
     }
 
-    /// The robot stands on a vertex and begins to turn once around on the spot.
+    /// Records that the robot stands on a vertex and begins to turn once around on the spot.
     pub fn begin_look_around(&mut self) {
         self.attention = Attention::Around;
     }
 
-    /// The turn is done: where the robot stands. `None` if no tag of a vertex was seen around it.
+    /// Ends the turn and returns the vertex at which the robot stands. `None` if no tag of a vertex was seen around it.
     ///
     /// The vertex tag may never have been in view, because the robot stands on it; exit tags around it are enough.
     pub fn end_look_around(&mut self) -> Option<Intersection> {
@@ -123,13 +123,13 @@ impl IntersectionDetectionSystem {
         self.here.map(|tag| self.memory.intersection(tag))
     }
 
-    /// The robot leaves the vertex by its exit to the `direction`, which leads through `opening`.
+    /// Records that the robot leaves the vertex by its exit to the `direction`, which leads through `opening`.
     pub fn depart(&mut self, direction: Cardinal, opening: Opening) {
         self.attention = Attention::Leg { direction, opening, target: None };
     }
 
-    /// Takes in what camera and compass say now, after the robot was told to move as `commanded` since they last did.
-    /// Yields the intersection at which the robot has arrived, once.
+    /// Takes in the present outputs of camera and compass, after the robot was commanded to move as `commanded` since
+    /// the last ones. Returns the intersection at which the robot has arrived, once.
     pub fn observe(
         &mut self,
         detections: &[Detection],
@@ -161,7 +161,8 @@ impl IntersectionDetectionSystem {
         }
     }
 
-    /// Where the far end of the edge is, in the base frame (m), while the robot is on an edge and knows.
+    /// Returns the position of the far end of the edge in the base frame (m), while the robot is on an edge and it is
+    /// known.
     pub fn target(&self) -> Option<Point> {
         match &self.attention {
             Attention::Leg { target, .. } => target.map(|target| target.at),
@@ -169,7 +170,7 @@ impl IntersectionDetectionSystem {
         }
     }
 
-    /// Fills the view, votes on the directions of exits and groups what is seen with the vertex tags that are seen.
+    /// Fills the view, votes on the directions of exits and groups the tags seen with the vertex tags seen.
     fn remember(&mut self, detections: &[Detection], heading: f64) {
         self.view.clear();
         for detection in detections {
@@ -203,7 +204,8 @@ impl IntersectionDetectionSystem {
         }
     }
 
-    /// An exit faces a cardinal direction: where one is in view the heading is known without the compass's error.
+    /// Estimates the heading: an exit faces a cardinal direction, so that with one in view the heading is free of the
+    /// compass's error.
     fn estimate_heading(&mut self, compass: CompassReading, turned: f64) {
         let by_exit = self.view.iter().find_map(|sight| {
             let direction = self.memory.direction(sight.tag)?;
@@ -215,7 +217,7 @@ impl IntersectionDetectionSystem {
         self.heading = Some((heading, compass.stamp));
     }
 
-    /// All tags around the robot are tags of the vertex on which it stands.
+    /// Gathers all tags around the robot: they belong to the vertex on which it stands.
     fn gather_here(&mut self) {
         for sight in &self.view {
             if sight.pose.position().norm() <= self.perception.grouping_m {
@@ -227,7 +229,7 @@ impl IntersectionDetectionSystem {
         }
     }
 
-    /// The far end of the edge as of this frame.
+    /// Returns the far end of the edge as of this frame.
     fn follow(
         &self,
         direction: Cardinal,
@@ -239,7 +241,7 @@ impl IntersectionDetectionSystem {
         let kept = target.and_then(|target| self.keep(target, commanded, elapsed));
         let nearest = self.nearest_candidate(direction, opening);
         match (kept, nearest) {
-            // What was taken for the far end was seen past the true one, which was out of view.
+            // The vertex that was taken for the far end was seen past the true one, which was out of view.
             (Some(kept), Some(nearest))
                 if !self.memory.together(kept.tag, nearest.tag)
                     && nearest.seen_at < kept.at.norm() - self.perception.grouping_m =>
@@ -251,7 +253,7 @@ impl IntersectionDetectionSystem {
         }
     }
 
-    /// The same target, where it is seen now or must be by now.
+    /// Returns the same target at its present position, seen or predicted.
     fn keep(&self, target: Target, commanded: Twist, elapsed: f64) -> Option<Target> {
         if let Some(at) = self.locate(target.tag) {
             return Some(Target { at, seen_at: at.norm(), unseen: (0, 0.0), ..target });
@@ -265,7 +267,7 @@ impl IntersectionDetectionSystem {
         within.then_some(Target { at, unseen: (frames, seconds), ..target })
     }
 
-    /// Where the vertex that `tag` belongs to is, by its vertex tag or else by any of its tags in view.
+    /// Returns the position of the vertex to which `tag` belongs, by its vertex tag or else by any of its tags in view.
     fn locate(&self, tag: TagNumber) -> Option<Point> {
         let mut by_others = None;
         for sight in self.view.iter().filter(|sight| self.memory.together(sight.tag, tag)) {
@@ -279,7 +281,7 @@ impl IntersectionDetectionSystem {
         by_others
     }
 
-    /// The nearest vertex whose exit of this kind faces the robot, which stands before it.
+    /// Returns the nearest vertex whose exit of this kind faces the robot, which stands before it.
     fn nearest_candidate(&self, direction: Cardinal, opening: Opening) -> Option<Target> {
         let mut nearest: Option<Target> = None;
         for sight in &self.view {
@@ -303,7 +305,7 @@ impl IntersectionDetectionSystem {
         nearest
     }
 
-    /// Near ahead, or abreast, or passed out of view.
+    /// Returns whether the target is near ahead, or abreast, or passed out of view.
     fn has_arrived(&self, direction: Cardinal, target: &Target) -> bool {
         let Perception { arrival_m, passed_m, grouping_m, .. } = self.perception;
         let distance = target.at.norm();

@@ -22,7 +22,7 @@ struct Placed {
     pose: Pose,
 }
 
-/// A vertex of the world with its tags.
+/// Returns a vertex of the world with its tags.
 fn vertex(x: f64, y: f64, room: bool, exits: &[(Cardinal, bool)]) -> Vec<Placed> {
     let tag = |color, pose| Placed { id: String::new(), color, pose };
     let mut tags = vec![tag(if room { "blue" } else { "green" }, Pose::new(x, y, 0.0))];
@@ -34,8 +34,8 @@ fn vertex(x: f64, y: f64, room: bool, exits: &[(Cardinal, bool)]) -> Vec<Placed>
     tags
 }
 
-/// A corridor a - b - c going east, 4.5 m apart; rooms north of a and north and south of b; behind the wall at c's end a
-/// room d, whose tags are on the corridor's line and whose door is to the east. Its north has the goal.
+/// Returns a corridor a - b - c going east, 4.5 m apart; rooms north of a and north and south of b; behind the wall at
+/// c's end a room d, whose tags are on the corridor's line and whose door is to the east. Its north has the goal.
 ///
 /// ```text
 ///   R      N
@@ -60,7 +60,7 @@ fn building() -> Vec<Placed> {
     tags
 }
 
-/// The ids permuted: t00 becomes another's, and so on.
+/// Permutes the ids: t00 becomes another's, and so on.
 fn permuted(mut tags: Vec<Placed>, seed: u64) -> Vec<Placed> {
     let mut stream = Seeds::new(seed, Vec::new()).stream("ids");
     for last in (1..tags.len()).rev() {
@@ -72,7 +72,7 @@ fn permuted(mut tags: Vec<Placed>, seed: u64) -> Vec<Placed> {
     tags
 }
 
-/// A robot that goes exactly where it is put, with a camera of 120 degrees that sees 6 m far through walls.
+/// A robot that moves exactly as it is placed, with a camera of 120 degrees that sees 6 m far through walls.
 struct Rig {
     tags: Vec<Placed>,
     ids: IntersectionDetectionSystem,
@@ -119,7 +119,7 @@ impl Rig {
         seen.into_iter().map(|(_, _, detection)| detection).collect()
     }
 
-    /// One frame after moving for 0.1 s at these true speeds.
+    /// Runs one frame after moving for 0.1 s at these true speeds.
     fn frame(&mut self, linear: f64, angular: f64) -> Option<Intersection> {
         let turned = Pose::new(linear * FRAME_S, 0.0, angular * FRAME_S);
         self.pose = self.pose.compose(turned);
@@ -143,7 +143,8 @@ impl Rig {
         self.ids.end_look_around()
     }
 
-    /// Turns towards `direction` and drives until it arrives, swaying by `sway` (m) about the line; how far off it is then.
+    /// Turns towards `direction` and drives until it arrives, swaying by `sway` (m) about the line; returns how far off
+    /// it is then.
     fn go(&mut self, direction: Cardinal, opening: Opening, sway: f64) -> (Intersection, Point) {
         self.ids.depart(direction, opening);
         loop {
@@ -172,7 +173,7 @@ fn exit(direction: Cardinal, opening: Opening) -> Exit {
     Exit { direction, opening }
 }
 
-/// Number of the vertex tag nearest to `here`'s tags, by id: which vertex it is.
+/// Returns the number of the vertex tag nearest to `here`'s tags, by id: the vertex's identity.
 fn which(tags: &[Placed], here: &Intersection) -> (i64, i64) {
     let mine = tags.iter().find(|tag| here.tags.contains(&tag.id)).unwrap();
     let vertices = tags.iter().filter(|tag| ["green", "blue"].contains(&tag.color));
@@ -274,7 +275,7 @@ fn a_moment_without_sight_is_bridged() {
     assert!(rig.ids.target().is_some());
 }
 
-/// The far end is taken for the next but one while it is out of view, and put right when it is seen.
+/// The next vertex but one is taken for the far end while that is out of view, and corrected when it is seen.
 #[test]
 fn a_nearer_vertex_takes_over() {
     let mut rig = Rig::new(building(), Pose::new(3.2, 0.0, 0.0));
@@ -288,7 +289,7 @@ fn a_nearer_vertex_takes_over() {
     assert!(rig.ids.target().unwrap().distance(Point::new(1.3, 0.0)) < 1e-9, "b");
 }
 
-/// A vertex that is driven past a little aside counts too: abreast, or out of view.
+/// A vertex that is passed a little aside counts too: abreast, or out of view.
 #[test]
 fn a_vertex_driven_past_is_arrived_at() {
     let mut rig = Rig::new(building(), Pose::new(0.0, 0.6, 0.0));
@@ -311,7 +312,7 @@ fn tags_of_other_colours_are_none_of_its_business() {
     assert_eq!(here.exits, [exit(North, Opening::Door), exit(South, Opening::Door)]);
 }
 
-/// A tour of the building, as places, exits and goals: no ids.
+/// Drives a tour of the building and returns its places, exits and goals: no ids.
 fn tour(rig: &mut Rig, sway: f64) -> Vec<((i64, i64), Intersection)> {
     let mut seen = Vec::new();
     let start = rig.look_around().unwrap();
@@ -352,7 +353,8 @@ const TOUR: [(i64, i64); 11] = [
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
 
-    /// Whatever the noise, the missing frames and the slip, the tour visits what is there; and permuted ids change nothing.
+    /// Whatever the noise, the missing frames and the slip, the tour visits what is there; and permuted ids change
+    /// nothing.
     #[test]
     fn a_tour_is_told_right(
         seed in 0_u64..1_000_000, blind in 0.0..0.4, slip in 0.75..1.25, sway in 0.0..0.25,

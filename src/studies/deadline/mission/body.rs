@@ -1,5 +1,5 @@
-//! The robot below its decisions: the simulator with its sensors, the pilot, and the Intersection Detection System between
-//! them.
+//! The robot below its decisions: the simulator with its sensors, the pilot, and between them the Intersection
+//! Detection System.
 
 use super::{Prepared, graph};
 use crate::geometry::{Cardinal, Point, Pose};
@@ -17,10 +17,10 @@ use crate::studies::recording::{Frame, GraphView, Recording, Sensed};
 use crate::studies::state_chain::StateChain;
 use crate::units::{Radians, Seconds, Tick};
 
-/// What happened within a control period.
+/// The event of a control period.
 #[derive(Debug)]
 pub(super) enum Happening {
-    /// Nothing that anyone must decide on.
+    /// Nothing that requires a decision.
     OnTheWay,
     /// The body touches something.
     Contact,
@@ -38,7 +38,7 @@ pub(super) struct Body<'a> {
     pilot: Pilot,
     limits: [SpeedLimits; 2],
     ids: IntersectionDetectionSystem,
-    /// Whether it turns once around, to see the vertex it stands at.
+    /// Whether it turns once around, to see the vertex at which it stands.
     looking: bool,
     command: Twist,
     chain: StateChain,
@@ -48,7 +48,8 @@ pub(super) struct Body<'a> {
 }
 
 impl<'a> Body<'a> {
-    /// The robot of `setup` at `start`, about to look around.
+    /// Creates the robot of `setup` at `start`, about to look around: the scene with its errors, the recording's
+    /// unchanging part, then pilot and detection.
     pub(super) fn new(
         setup: &Setup,
         prepared: &Prepared,
@@ -113,27 +114,27 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// The clock.
+    /// Returns the clock's time.
     pub(super) fn now(&self) -> Tick {
         self.sim.now()
     }
 
-    /// True distance travelled (m), for measuring.
+    /// Returns the true distance travelled (m), for measuring.
     pub(super) fn travelled(&self) -> f64 {
         self.sim.travelled()
     }
 
-    /// Sum of the absolute turns (rad), for measuring.
+    /// Returns the sum of the absolute turns (rad), for measuring.
     pub(super) fn turned(&self) -> f64 {
         self.sim.turned()
     }
 
-    /// The chain of state hashes so far.
+    /// Returns the chain of state hashes so far.
     pub(super) fn chain(&self) -> &StateChain {
         &self.chain
     }
 
-    /// Begins to look around, to see the vertex the robot stands at.
+    /// Begins to look around, to see the vertex at which the robot stands.
     pub(super) fn look_around(&mut self) {
         self.looking = true;
         self.ids.begin_look_around();
@@ -156,22 +157,22 @@ impl<'a> Body<'a> {
         });
     }
 
-    /// Hands over the recording, where the trial is written down.
+    /// Returns the recording, where the trial is recorded.
     pub(super) fn recording(&mut self) -> Option<&mut Recording> {
         self.recording.as_deref_mut()
     }
 
-    /// Whether the trial is written down.
+    /// Returns whether the trial is recorded.
     pub(super) fn is_recorded(&self) -> bool {
         self.recording.is_some()
     }
 
-    /// The true position, for drawing.
+    /// Returns the true position, for drawing.
     pub(super) fn position(&self) -> Point {
         self.sim.true_pose().position()
     }
 
-    /// Writes what the mind knows and is about to do into the recording, and the same in words.
+    /// Writes the mind's knowledge and intention into the recording, and the same in words.
     pub(super) fn note(&mut self, graph: GraphView, event: String) {
         let frame = self.frame();
         if let Some(recording) = &mut self.recording {

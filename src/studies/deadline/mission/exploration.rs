@@ -1,4 +1,10 @@
 //! Algorithm 3 in a building: the mind decides at vertices, the body drives between them.
+//!
+//! 1. Look around, to see the first vertex.
+//! 2. Drive for one control period at a time, until something happens: contact or no vertex in sight ends the trial.
+//! 3. At a vertex, let the mind decide, measured by the stopwatch, and count what it found.
+//! 4. End at the goal, or, before the deadline, where it gives up; else leave by the exit that it chose.
+//! 5. At the deadline, the time since the last new vertex separates a late trial from a stalled one.
 
 use super::body::{Body, Happening};
 use super::tally::{self, Tally};
@@ -44,7 +50,7 @@ struct Exploration<'a> {
     patience: Tick,
     /// When a vertex was last new.
     discovered: Tick,
-    /// Where the robot was when it came to each vertex first, for drawing.
+    /// The robot's position when it first came to each vertex, for drawing.
     places: Vec<Point>,
 }
 
@@ -74,7 +80,9 @@ impl<'a> Exploration<'a> {
     }
 
     fn run(&mut self, watch: &mut dyn Stopwatch) -> Ending {
+        // 1. Look around.
         self.body.look_around();
+        // 2. Drive.
         loop {
             match self.body.step() {
                 Happening::OnTheWay => {}
@@ -87,6 +95,7 @@ impl<'a> Exploration<'a> {
                     return Ending { outcome: Outcome::STALLED, cause, at: self.body.now() };
                 }
                 Happening::Arrived(here) => {
+                    // 3. Decide.
                     let now = self.body.now();
                     self.tally.arrive(now);
                     let known = self.mind.map().len();
@@ -100,6 +109,7 @@ impl<'a> Exploration<'a> {
                         self.discovered = now;
                         self.places.push(self.body.position());
                     }
+                    // 4. Act.
                     match next {
                         Next::GlobalSuccess => return Ending::plain(Outcome::REACHED, now),
                         Next::GiveUp(why) if now < self.deadline => {
@@ -120,6 +130,7 @@ impl<'a> Exploration<'a> {
                     }
                 }
             }
+            // 5. The deadline.
             if self.body.now() >= self.deadline {
                 let idle = self.deadline.0 - self.discovered.0.min(self.deadline.0);
                 let stalled = idle >= self.patience.0;
@@ -131,12 +142,12 @@ impl<'a> Exploration<'a> {
 }
 
 impl Exploration<'_> {
-    /// Where the trial is written down, the constrained MDPs that were solved are too.
+    /// Writes down the constrained MDPs that were solved, where the trial is recorded.
     fn write_plans_down(&mut self) {
         let Some(recording) = self.body.recording() else { return };
         recording.deadline_s = Some(self.deadline.seconds().get());
         for decision in self.mind.decisions() {
-            // A plan without a programme (an ablation's, or one that is already there) has no model to show.
+            // A plan without a programme (an ablation's, or one that needed no move) has no model to show.
             if let Some(Ok(Some(document))) = decision.plan().map(Plan::document) {
                 recording.plans.push(SolvedPlan { time_s: decision.at_s, document });
             }

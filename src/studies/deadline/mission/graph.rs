@@ -1,4 +1,4 @@
-//! What the mind knows and is about to do, for those who look on.
+//! The mind's knowledge and intentions, for display.
 
 use crate::geometry::Point;
 use crate::studies::deadline::build_cmdp::{Motion, Place, Speed};
@@ -9,7 +9,7 @@ use crate::studies::deadline::strategy::{Preference, Strategy, Ties};
 use crate::studies::deadline::toposemantic_map::{End, ToposemanticMap, VertexId};
 use crate::studies::recording::{ActionView, CandidateView, GraphView, VertexView};
 
-/// The map of `mind`, its vertices drawn at `places`, and its plan.
+/// Returns the map of `mind`, its vertices drawn at `places`, and its plan.
 pub(super) fn view(mind: &Explorer, places: &[Point]) -> GraphView {
     let map = mind.map();
     let vertices = map.ids().zip(places).map(|(v, at)| VertexView {
@@ -43,13 +43,13 @@ pub(super) fn view(mind: &Explorer, places: &[Point]) -> GraphView {
     }
 }
 
-/// The decision that the robot is following, if it is.
+/// Returns the decision that the robot is following, if it is.
 fn leg(mind: &Explorer) -> Option<&Decision> {
     let under_way = mind.moves().last()?;
     (under_way.purpose == Purpose::Navigate).then(|| mind.decisions().last()).flatten()
 }
 
-/// What `decision` chose among.
+/// Returns the candidates among which `decision` chose.
 fn candidates(decision: &Decision) -> Vec<CandidateView> {
     let view = |candidate: &Candidate| CandidateView {
         vertex: candidate.vertex.index(),
@@ -59,7 +59,7 @@ fn candidates(decision: &Decision) -> Vec<CandidateView> {
     decision.candidates.iter().map(view).collect()
 }
 
-/// How `rules` choose the next vertex, in a sentence (section 5).
+/// Describes how `rules` choose the next vertex, in a sentence (section 5).
 pub(super) fn rule(rules: &Rules) -> String {
     let preference = |preference| match preference {
         Preference::Nearest => "the nearest",
@@ -96,7 +96,7 @@ pub(super) fn rule(rules: &Rules) -> String {
     }
 }
 
-/// π* as arrows between known vertices.
+/// Returns π* as arrows between known vertices.
 fn policy(map: &ToposemanticMap, plan: &Plan) -> Vec<ActionView> {
     let mut actions = Vec::new();
     for v in map.ids() {
@@ -110,7 +110,7 @@ fn policy(map: &ToposemanticMap, plan: &Plan) -> Vec<ActionView> {
     actions
 }
 
-/// The move under way, in words.
+/// Describes the move under way, in words.
 fn doing(mind: &Explorer) -> String {
     let Some(last) = mind.moves().last() else { return String::new() };
     let motion = match last.leave.motion {
@@ -125,7 +125,7 @@ fn doing(mind: &Explorer) -> String {
     format!("{motion}, {speed}")
 }
 
-/// What the mind is about to do and why, in words.
+/// Describes the mind's next action and its reason, in words.
 pub(super) fn told(mind: &Explorer) -> String {
     let Some(last) = mind.moves().last() else { return String::new() };
     let map = mind.map();

@@ -1,10 +1,10 @@
-//! What a condition of this study needs of its robot and world, and may lack.
+//! Requirements of a condition of this study on its robot and world that these may not meet.
 
 use super::{Setup, tag_scheme};
 use crate::studies::Remark;
 use crate::world::topology::Topology;
 
-/// Returns what is wrong.
+/// Returns the faults found.
 pub(in crate::studies::deadline) fn remarks(setup: &Setup) -> Vec<Remark> {
     let robot = &setup.robot;
     let mut remarks = Vec::new();

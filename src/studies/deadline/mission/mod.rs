@@ -1,4 +1,4 @@
-//! One trial: the simulator on one end, the mind on the other, and what is measured in between.
+//! One trial: the simulator at one end, the mind at the other, and the measures in between.
 
 mod body;
 mod exploration;
@@ -22,13 +22,13 @@ use crate::units::{Seconds, Tick};
 use crate::world::topology::{TagScheme, Topology};
 use std::collections::BTreeMap;
 
-/// What all trials of a setup share: computed once, from the setup alone.
+/// The data that all trials of a setup share: computed once, from the setup alone.
 #[derive(Debug)]
 pub struct Prepared {
     visible: Vec<Outline>,
     solid: Vec<Outline>,
     lidar: Lidar,
-    /// The true graph, which passages are drawn from; no mind sees it.
+    /// The true graph, from which passages are drawn; no mind sees it.
     topology: Topology,
 }
 
@@ -58,7 +58,7 @@ impl Prepared {
     }
 }
 
-/// The convention of the tags, as the mind's perception takes it.
+/// Returns the convention of the tags, as the mind's perception uses it.
 pub fn tag_scheme(setup: &Setup) -> TagScheme {
     let perception = &setup.parameters.perception;
     TagScheme {
@@ -72,8 +72,8 @@ pub fn tag_scheme(setup: &Setup) -> TagScheme {
     }
 }
 
-/// Runs the trial under the eyes of `watch`, writing everything down in `recording` where there is one. The record is the
-/// same either way.
+/// Runs the trial, timed by `watch`, writing everything to `recording` where there is one. The record is the same
+/// either way.
 pub fn run(
     spec: &TrialSpec,
     setup: &Setup,
@@ -90,11 +90,11 @@ pub fn run(
     }
 }
 
-/// How a trial ended.
+/// The end of a trial.
 #[derive(Debug)]
 struct Ending {
     outcome: Outcome,
-    /// In words, where the outcome alone does not say.
+    /// Its cause in words, where the outcome alone is not enough.
     cause: String,
     at: Tick,
 }
@@ -105,7 +105,7 @@ impl Ending {
     }
 }
 
-/// The record of a trial whose clock `began` at that tick.
+/// Returns the record of a trial whose clock `began` at that tick.
 fn record(
     spec: &TrialSpec,
     ending: Ending,

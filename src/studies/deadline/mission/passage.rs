@@ -1,5 +1,5 @@
-//! One isolated maneuver, from a random vertex of the building where it is possible to the next: what the planner's
-//! expectations are measured by.
+//! One isolated maneuver, from a random vertex of the building where it is possible to the next: this measures the
+//! planner's expectations.
 
 use super::body::{Body, Happening};
 use super::{Ending, Prepared, record};
@@ -44,7 +44,7 @@ pub(super) fn run(
     let way = ways[pick(&mut stream, ways.len())];
     let start = start(topology, way, setup, &mut stream);
     let mut body = Body::new(setup, prepared, start, &spec.seeds, recording);
-    // The pilot keeps its heading from leg to leg: standing still it finds it, as it would have on the leg before.
+    // The pilot keeps its heading from leg to leg: standing still it settles it, as it would have on the leg before.
     for _ in 0..SETTLING {
         body.step();
     }
@@ -74,7 +74,7 @@ pub(super) fn run(
     record(spec, ending, began, measures, body.chain())
 }
 
-/// The directed edges that ask for `motion`: the side of a door is S(e), as the planner names it.
+/// Returns the directed edges that require `motion`: the side of a door is S(e), as the planner names it.
 fn ways(topology: &Topology, motion: Motion) -> Vec<Way> {
     let mut ways = Vec::new();
     for (from, vertex) in topology.vertices.iter().enumerate() {
@@ -94,7 +94,8 @@ fn ways(topology: &Topology, motion: Motion) -> Vec<Way> {
     ways
 }
 
-/// Where a passage begins: near its vertex, as if the robot had just come by one of its exits, any of them alike.
+/// Draws the start of a passage: near its vertex, as if the robot had just come by one of its exits, all equally
+/// likely.
 fn start(topology: &Topology, way: Way, setup: &Setup, stream: &mut Stream) -> Pose {
     let passage = &setup.parameters.passage;
     let vertex = &topology.vertices[way.from];
@@ -107,7 +108,7 @@ fn start(topology: &Topology, way: Way, setup: &Setup, stream: &mut Stream) -> P
     Pose::new(vertex.at.x, vertex.at.y, heading).compose(offset)
 }
 
-/// One of `count` places, any of them alike.
+/// Draws one of `count` indices, all equally likely.
 fn pick(stream: &mut Stream, count: usize) -> usize {
     #[expect(clippy::cast_possible_truncation, reason = "below a usize")]
     let place = stream.below(count as u64) as usize;

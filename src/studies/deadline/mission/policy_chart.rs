@@ -1,7 +1,11 @@
-//! The truth of a building as the planner would know it, and what the planner would do in it.
+//! The true graph of a building as the planner would know it, and the planner's policies on it.
 //!
-//! A mind knows the part of the graph that it has explored. Here it is given all of it at once, grown by the study's own
-//! Algorithm 1, and plans one leg from the start to the goal as it plans any leg.
+//! A mind knows the part of the graph that it has explored. Here it is given all of it at once, grown by the study's
+//! own Algorithm 1, and plans one leg from the start to the goal as it plans any leg:
+//! 1. Grow the map from the start.
+//! 2. Choose the deadlines of the legs: those given, or one for each step of the schedule.
+//! 3. Plan each leg; legs with equal policies share a panel.
+//! 4. Draw vertices and edges from the true positions.
 
 use super::Prepared;
 use crate::figure::{PolicyChart, PolicyMove, PolicyPanel, PolicyVertex};
@@ -14,15 +18,16 @@ use crate::world::RegionKind;
 use crate::world::topology::{self, Topology};
 use std::collections::VecDeque;
 
-/// How near (m) a start must be to its place of the graph.
+/// Largest distance (m) of a start from its place of the graph.
 const NEAR: f64 = 3.0;
 
-/// The policies for legs from the start of `setup` to the goal within each of `within_s` (s), or where it is empty within what
-/// the schedule sets at its three steps.
+/// Plans the policies for legs from the start of `setup` to the goal within each of `within_s` (s), or where it is
+/// empty within the deadlines that the schedule sets at its three steps.
 ///
 /// # Errors
 /// Where the setup has no calibration, no such places or no such plans, in words.
 pub fn policy_chart(title: &str, setup: &Setup, within_s: &[f64]) -> Result<PolicyChart, String> {
+    // 1. The map.
     let prepared: &Prepared = setup.prepared()?;
     let calibration = setup.calibration.as_ref().ok_or("the planner has no calibration")?;
     let truth = &prepared.topology;
@@ -33,6 +38,7 @@ pub fn policy_chart(title: &str, setup: &Setup, within_s: &[f64]) -> Result<Poli
     let goal = map.ids().find(|v| map.is_goal(*v)).ok_or("the goal cannot be reached")?;
     let from = VertexId::first();
     let edges = map.distances(from)[goal.index()].ok_or("the goal cannot be reached")?;
+    // 2. The deadlines.
     let rules = &setup.parameters.rules;
     let mut legs: Vec<(f64, Vec<&str>)> = Vec::new();
     if within_s.is_empty() {
@@ -49,6 +55,7 @@ pub fn policy_chart(title: &str, setup: &Setup, within_s: &[f64]) -> Result<Poli
     } else {
         legs.extend(within_s.iter().map(|seconds| (*seconds, Vec::new())));
     }
+    // 3. The plans.
     let mut panels: Vec<PolicyPanel> = Vec::new();
     for (seconds, steps) in legs {
         let maneuvers = calibration.maneuvers();
@@ -66,7 +73,7 @@ pub fn policy_chart(title: &str, setup: &Setup, within_s: &[f64]) -> Result<Poli
         };
         let moves = moves(&map, &plan, from);
         match panels.last_mut().filter(|last| last.moves == moves && last.how == how) {
-            // The same is done for both.
+            // Both legs have one policy.
             Some(last) => last.name = format!("{}, and {name}", last.name),
             None => panels.push(PolicyPanel {
                 name,
@@ -76,6 +83,7 @@ pub fn policy_chart(title: &str, setup: &Setup, within_s: &[f64]) -> Result<Poli
             }),
         }
     }
+    // 4. The graph.
     let vertex = |v: VertexId| {
         let place = &truth.vertices[place_of[v.index()]];
         PolicyVertex {
@@ -103,7 +111,7 @@ pub fn policy_chart(title: &str, setup: &Setup, within_s: &[f64]) -> Result<Poli
     })
 }
 
-/// The map of all that can be reached from place `start`, breadth first, and which place each vertex is.
+/// Grows the map of all that can be reached from place `start`, breadth first, and returns which place each vertex is.
 fn known(truth: &Topology, start: usize) -> Result<(ToposemanticMap, Vec<usize>), String> {
     let mut map = ToposemanticMap::new();
     let first = map.begin(&seen(truth, start)).map_err(|e| e.to_string())?;
@@ -122,7 +130,7 @@ fn known(truth: &Topology, start: usize) -> Result<(ToposemanticMap, Vec<usize>)
     Ok((map, place_of))
 }
 
-/// Place `v` as a perfect Intersection Detection System would tell of it.
+/// Returns place `v` as a perfect Intersection Detection System would report it.
 fn seen(truth: &Topology, v: usize) -> Intersection {
     let vertex = &truth.vertices[v];
     let exits = vertex.exits.iter().map(|exit| Exit {
@@ -143,8 +151,9 @@ fn seen(truth: &Topology, v: usize) -> Intersection {
     }
 }
 
-/// What `plan` does wherever it comes to from `from`, with how often it is expected to: mass is pushed along the policy,
-/// which is done after as many steps as a policy without detours has, and nearly done after many more with them.
+/// Returns the moves of `plan` wherever it arrives from `from`, with how often each is expected: mass is pushed along
+/// the policy, which is complete after as many steps as a policy without detours has, and nearly complete after many
+/// more with them.
 fn moves(map: &ToposemanticMap, plan: &Plan, from: VertexId) -> Vec<PolicyMove> {
     let mut moves: Vec<PolicyMove> = Vec::new();
     let mut mass = vec![0.0; map.len()];
@@ -178,7 +187,7 @@ fn moves(map: &ToposemanticMap, plan: &Plan, from: VertexId) -> Vec<PolicyMove> 
     moves
 }
 
-/// A number of seconds without digits that say nothing.
+/// Writes a number of seconds without superfluous digits.
 fn short(seconds: f64) -> String {
     format!("{}", (seconds * 10.0).round() / 10.0)
 }

@@ -1,4 +1,4 @@
-//! What is counted over a trial: maneuvers by motion and speed, and how plans stood to their deadlines.
+//! Counts over a trial: maneuvers by motion and speed, and plans by how they meet their deadlines.
 
 use crate::studies::deadline::build_cmdp::{Motion, Speed};
 use crate::studies::deadline::calibration::{MOTIONS, SPEEDS, maneuver_name};
@@ -7,7 +7,7 @@ use crate::studies::deadline::planner::{Plan, Status};
 use crate::units::{Seconds, Tick};
 use std::collections::BTreeMap;
 
-/// How one maneuver went over a trial.
+/// The counts of one maneuver over a trial.
 #[derive(Debug, Clone, Copy, Default)]
 struct Count {
     begun: u32,
@@ -25,13 +25,13 @@ pub(super) struct Tally {
 }
 
 impl Tally {
-    /// A maneuver begins.
+    /// Records that a maneuver begins.
     pub(super) fn begin(&mut self, motion: Motion, speed: Speed, now: Tick) {
         self.count(motion, speed).begun += 1;
         self.under_way = Some((motion, speed, now));
     }
 
-    /// The maneuver under way, if there is one, has arrived.
+    /// Records that the maneuver under way, if there is one, has arrived.
     pub(super) fn arrive(&mut self, now: Tick) {
         if let Some((motion, speed, since)) = self.under_way.take() {
             let count = self.count(motion, speed);
@@ -42,7 +42,7 @@ impl Tally {
         }
     }
 
-    /// The maneuver under way, if there is one, has ended in contact.
+    /// Records that the maneuver under way, if there is one, has ended in contact.
     pub(super) fn collide(&mut self) {
         if let Some((motion, speed, _)) = self.under_way.take() {
             self.count(motion, speed).collided += 1;
@@ -55,7 +55,7 @@ impl Tally {
         &mut self.counts[row][column]
     }
 
-    /// Measures of the maneuvers.
+    /// Adds the measures of the maneuvers to `measures`.
     pub(super) fn measures(&self, measures: &mut BTreeMap<String, Option<f64>>) {
         let mut put = |name: String, value: f64| measures.insert(name, Some(value));
         let mut totals = [(0, 0); 2];
@@ -83,7 +83,7 @@ impl Tally {
     }
 }
 
-/// Measures of what a mind decided and found.
+/// Adds the measures of the mind's decisions and discoveries to `measures`.
 pub(super) fn decided(mind: &Explorer, measures: &mut BTreeMap<String, Option<f64>>) {
     #[expect(clippy::cast_precision_loss, reason = "counts of one trial")]
     let mut put = |name: &str, count: usize| measures.insert(name.to_owned(), Some(count as f64));

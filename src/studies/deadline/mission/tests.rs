@@ -35,7 +35,7 @@ fn calibration() -> Arc<Calibration> {
     Arc::new(Calibration::assumed(&Maneuvers { corridor, door_left: door, door_right: door }))
 }
 
-/// A trial number `trial` from the start `start` of `world`.
+/// Returns trial number `trial` from the start `start` of `world`.
 fn trial(world: World, start: &str, parameters: Parameters, trial: u32) -> TrialSpec {
     let pose = world.starts[start];
     let setup = Setup::new(Arc::new(world), pioneer(), pose, Some(calibration()), parameters);
@@ -114,7 +114,7 @@ fn a_trial_without_a_new_vertex_for_long_has_stalled() {
     assert_eq!(record.outcome, Outcome::STALLED);
 }
 
-/// An id says nothing but whether a tag was seen before.
+/// An id carries no meaning but whether a tag was seen before.
 #[test]
 fn permuting_the_ids_of_tags_changes_no_trial() {
     let mut renamed = building();

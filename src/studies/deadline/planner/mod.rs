@@ -1,6 +1,6 @@
-//! Planning the way to a vertex: lines 2 and 3 of Algorithm 2, and the ablations that plan without a CMDP.
+//! Planning the path to a vertex: lines 2 and 3 of Algorithm 2, and the ablations that plan without a CMDP.
 //!
-//! A plan says how it stands to its deadline: [`Status::Slack`], [`Status::Active`] or [`Status::Relaxed`]. It can be
+//! A plan states how it meets its deadline: [`Status::Slack`], [`Status::Active`] or [`Status::Relaxed`]. It can be
 //! written as a constrained MDP that `reenact solve-cmdp` reads, and whose solution is the policy that was executed.
 
 mod path;
@@ -74,13 +74,13 @@ impl From<CostReading> for Reading {
     }
 }
 
-/// How a plan stands to its deadline t_d.
+/// The relation of a plan to its deadline t_d.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Status {
-    /// What would be done without a deadline meets it.
+    /// The plan without a deadline meets it.
     Slack,
-    /// It is met, and binds: something is done faster than would be done without it.
+    /// It is met, and binds: the plan is faster somewhere than without it.
     Active,
     /// It cannot be met in expectation, and the least expected time is taken instead.
     Relaxed,
@@ -98,19 +98,19 @@ pub enum PlanError {
     /// No path of explored edges leads there.
     #[error("no explored edges lead from {from} to {to}")]
     Unreachable {
-        /// Where the robot is.
+        /// The vertex at which the robot is.
         from: String,
-        /// Where it should go.
+        /// The vertex to which it should go.
         to: String,
     },
     /// The robot is where the plan never leads.
     #[error("the plan from {from} to {to} never leads to {at}")]
     OffTheWay {
-        /// Where the plan begins.
+        /// The vertex at which the plan begins.
         from: String,
-        /// Where it ends.
+        /// The vertex at which it ends.
         to: String,
-        /// Where the robot is.
+        /// The vertex at which the robot is.
         at: String,
     },
 }
@@ -120,13 +120,13 @@ pub enum PlanError {
 pub struct Action {
     /// The exit.
     pub exit: Cardinal,
-    /// The motion that its edge asks for.
+    /// The motion that its edge requires.
     pub motion: Motion,
     /// The speed.
     pub speed: Speed,
 }
 
-/// π* of Algorithm 2, with what it was computed from.
+/// π* of Algorithm 2, with the problem from which it was computed.
 #[derive(Debug, Clone)]
 pub struct Plan {
     problem: Problem,
@@ -138,7 +138,7 @@ pub struct Plan {
     failure_bound_dropped: bool,
 }
 
-/// What is planned. Indices are those of the map's vertices.
+/// The planning problem. Indices are those of the map's vertices.
 #[derive(Debug, Clone)]
 struct Problem {
     topology: Topology,
@@ -150,20 +150,21 @@ struct Problem {
     exits: Vec<(VertexId, Cardinal)>,
 }
 
-/// As much of the policy as is known.
+/// The part of the policy that is known.
 #[derive(Debug, Clone)]
 enum Known {
-    /// Deterministic, on one way.
+    /// Deterministic, on one path.
     Way(Way),
     /// Everywhere.
     Everywhere { maneuvers: Vec<Maneuver>, policy: Policy },
 }
 
 impl Plan {
-    /// Lines 2 and 3 of Algorithm 2: plans the way on `map` from `from` to another vertex `to` within `deadline_s`.
+    /// Does lines 2 and 3 of Algorithm 2: plans the path on `map` from `from` to another vertex `to` within
+    /// `deadline_s`.
     ///
     /// # Errors
-    /// Numbers out of range, no way, or a model that cannot be solved.
+    /// Numbers out of range, no path, or a model that cannot be solved.
     pub fn new(
         map: &ToposemanticMap,
         from: VertexId,
@@ -213,7 +214,7 @@ impl Plan {
         Ok(Self { problem, method, policy, status, time_s, failure, failure_bound_dropped })
     }
 
-    /// a ← π*(v_c), line 10 of Algorithm 2. Where the policy is randomised, and only there, a number is drawn.
+    /// Does a ← π*(v_c), line 10 of Algorithm 2. Where the policy is randomised, and only there, a number is drawn.
     ///
     /// # Errors
     /// A vertex at which the plan never arrives.
@@ -240,7 +241,8 @@ impl Plan {
         })
     }
 
-    /// π*(v, ·): the actions at `v` with their probabilities; empty at the target and where the plan never arrives.
+    /// Returns π*(v, ·): the actions at `v` with their probabilities; empty at the target and where the plan never
+    /// arrives.
     pub fn choices(&self, v: VertexId) -> Vec<(Action, f64)> {
         let action = |edge: usize, speed: Speed| {
             let topology = &self.problem.topology;
@@ -266,41 +268,42 @@ impl Plan {
         }
     }
 
-    /// How the plan stands to its deadline.
+    /// Returns the plan's relation to its deadline.
     pub fn status(&self) -> Status {
         self.status
     }
 
-    /// What made it.
+    /// Returns the method that made it.
     pub fn method(&self) -> Method {
         self.method
     }
 
-    /// t_d (s).
+    /// Returns t_d (s).
     pub fn deadline_s(&self) -> f64 {
         self.problem.task.deadline_s
     }
 
-    /// Expected duration (s).
+    /// Returns the expected duration (s).
     pub fn time_s(&self) -> f64 {
         self.time_s
     }
 
-    /// Expected failures: by [`CostReading::Additive`] the sum of probabilities, by [`CostReading::Reach`] the probability.
+    /// Returns the expected failures: by [`CostReading::Additive`] the sum of probabilities, by [`CostReading::Reach`]
+    /// the probability.
     pub fn failure(&self) -> f64 {
         self.failure
     }
 
-    /// Whether P_f could not be met and was dropped.
+    /// Returns whether P_f could not be met and was dropped.
     pub fn failure_bound_dropped(&self) -> bool {
         self.failure_bound_dropped
     }
 
-    /// The constrained MDP as JSON, of which the solution is the executed policy: bounds that could not be met are written as
-    /// they were relaxed. `None` for the ablations, which solve none.
+    /// Writes the constrained MDP as JSON, of which the solution is the executed policy: bounds that could not be met
+    /// are written as they were relaxed. `None` for the ablations, which solve none.
     ///
     /// # Errors
-    /// None where the plan was made by this very model; the types say so nevertheless.
+    /// None where the plan was made by this very model; the types allow one nevertheless.
     pub fn document(&self) -> Result<Option<String>, PlanError> {
         if self.method != Method::Cmdp {
             return Ok(None);
@@ -340,10 +343,10 @@ struct Solved {
 const AT_THE_BOUND: f64 = 1e-9;
 
 impl Problem {
-    /// The model with bounds that cannot be met as they were relaxed, and its solution.
+    /// Solves the model, with bounds that cannot be met as they were relaxed.
     ///
-    /// A relaxed model is solved once more as it then stands: where several policies are equally good, the one that is
-    /// executed is the one that the exported model has.
+    /// A relaxed model is solved once more in its relaxed form: where several policies are equally good, the executed
+    /// one is then that of the exported model.
     fn solve(&self) -> Result<Solved, PlanError> {
         let Navigation { mut cmdp, maneuvers } =
             build_cmdp(&self.topology, &self.task, &self.expectations)?;

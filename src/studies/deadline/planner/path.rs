@@ -5,12 +5,12 @@ use crate::studies::deadline::build_cmdp::{
     Expectation, Maneuvers, Reading, Speed, Task, Topology, motion,
 };
 
-/// One way to the target.
+/// One path to the target.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Way {
-    /// In order.
+    /// Its steps, in order.
     pub(super) steps: Vec<Step>,
-    /// How it stands to the deadline.
+    /// Its relation to the deadline.
     pub(super) status: Status,
     /// Expected duration (s).
     pub(super) time_s: f64,
@@ -21,29 +21,29 @@ pub(super) struct Way {
 /// Follow an edge at a speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Step {
-    /// Where.
+    /// The vertex.
     pub(super) vertex: usize,
-    /// Which edge, by index in the topology.
+    /// The edge, by index in the topology.
     pub(super) edge: usize,
-    /// How fast.
+    /// The speed.
     pub(super) speed: Speed,
 }
 
-/// Margin by which totals must differ for a choice not to be the solver's: far above its tolerances.
+/// Margin by which totals must differ for a choice not to be left to the solver: far above its tolerances.
 const CLEAR: f64 = 1e-6;
 const BOTH: [Speed; 2] = [Speed::Slow, Speed::Fast];
 
-/// The optimal policy where it follows without a linear programme, the same as the programme's; `None` where it does not.
-/// Tests hold the two against each other.
+/// Returns the optimal policy where it follows without a linear programme, the same as the programme's; `None` where it
+/// does not. Tests compare the two.
 ///
 /// Every step costs time, so that without bounds the best is a path, by dynamic programming.
 ///
-/// - The best by steps, then failure, then time, if it is within both bounds, is what the programme finds too.
-/// - The quickest, if it is within the failure bound and not within the deadline, is the least time that the deadline is
-///   relaxed to.
+/// - The best by steps, then failure, then time, if it is within both bounds, is also the programme's solution.
+/// - The quickest, if it is within the failure bound and not within the deadline, has the least time, to which the
+///   deadline is relaxed.
 ///
-/// Both only if no other choice on the way is as good or nearly: then it is the solver's which one to take. So it is in
-/// between, where some edges are sped up and several gain alike.
+/// Both only if no other choice on the path is equally good or nearly so: then the choice is left to the solver. So is
+/// everything in between, where some edges are sped up and several gain equally.
 pub(super) fn unbound(topology: &Topology, task: &Task, expectations: &Maneuvers) -> Option<Way> {
     if task.reading != Reading::Additive || task.from == task.to {
         return None;
@@ -63,11 +63,12 @@ pub(super) fn unbound(topology: &Topology, task: &Task, expectations: &Maneuvers
     (within_failure(&quick) && quick.time_s > task.deadline_s * (1.0 + CLEAR)).then_some(quick)
 }
 
-/// The plan of an ablation: a path with the fewest edges, of several the one that fails less at the ablation's speed, then
-/// the one that takes less time, then the one whose edges the map lists first. `None` where there is no path.
+/// Returns the plan of an ablation: a path with the fewest edges, of several the one that fails less at the ablation's
+/// speed, then the one that takes less time, then the one whose edges the map lists first. `None` where there is no
+/// path.
 ///
-/// The status says how the same deadline stands to this path, whatever the ablation makes of it: slack if all slow meets it,
-/// relaxed if not even all fast does.
+/// The status gives the relation of the same deadline to this path, whatever the ablation makes of it: slack if all
+/// slow meets it, relaxed if not even all fast does.
 pub(super) fn ablation(
     topology: &Topology,
     task: &Task,
@@ -94,7 +95,7 @@ pub(super) fn ablation(
     Some(Way { status, ..way })
 }
 
-/// What it costs to go on to the target from each vertex, by three criteria in order, and the first choice to make.
+/// The costs of going on to the target from each vertex, by three criteria in order, and the first choice to make.
 struct Going<'a, C> {
     topology: &'a Topology,
     task: &'a Task,
@@ -147,15 +148,15 @@ impl<'a, C: Fn(Expectation) -> [f64; 3]> Going<'a, C> {
         self.expectations.expect(motion, choice.speed)
     }
 
-    /// What it costs to begin with `choice`; `None` where that leads nowhere.
+    /// Returns the costs of beginning with `choice`; `None` where that leads nowhere.
     fn costs(&self, choice: Choice) -> Option<[f64; 3]> {
         let (rest, _) = self.best[self.topology.edges[choice.edge].to]?;
         let own = (self.criteria)(self.expected(choice));
         Some(std::array::from_fn(|k| own[k] + rest[k]))
     }
 
-    /// The way from the task's start; `None` where there is none, or where on the way another choice than the best is not
-    /// worse by more than `margin`.
+    /// Returns the path from the task's start; `None` where there is none, or where on the path another choice than the
+    /// best is not worse by more than `margin`.
     fn way(&self, status: Status, margin: f64) -> Option<Way> {
         let mut way = Way { steps: Vec::new(), status, time_s: 0.0, failure: 0.0 };
         let mut vertex = self.task.from;
@@ -184,7 +185,7 @@ fn less(a: &[f64; 3], b: &[f64; 3]) -> bool {
     a.iter().zip(b).find(|(a, b)| a != b).is_some_and(|(a, b)| a < b)
 }
 
-/// Whether the first criterion in which the two differ at all speaks for `a`, by more than `margin`.
+/// Returns whether the first criterion in which the two differ at all favours `a`, by more than `margin`.
 fn clearly_less(a: &[f64; 3], b: &[f64; 3], margin: f64) -> bool {
     a.iter().zip(b).find(|(a, b)| a != b).is_some_and(|(a, b)| *a < b - margin)
 }

@@ -17,7 +17,7 @@ fn stream() -> Stream {
     Seeds::new(1, Vec::new()).stream("policy")
 }
 
-/// The whole building as a map, from its first vertex on.
+/// Returns the whole building as a map, from its first vertex on.
 fn mapped(building: &Building) -> ToposemanticMap {
     let mut map = ToposemanticMap::new();
     let mut spots = vec![0];
@@ -34,7 +34,7 @@ fn mapped(building: &Building) -> ToposemanticMap {
     }
 }
 
-/// A corridor of `n` edges going east, with its two ends.
+/// Returns a corridor of `n` edges going east, with its two ends.
 fn corridor(n: usize) -> (ToposemanticMap, VertexId, VertexId) {
     let mut building = Building::default();
     let mut last = building.add(Place::Corridor);
@@ -46,7 +46,7 @@ fn corridor(n: usize) -> (ToposemanticMap, VertexId, VertexId) {
     (map, first, last)
 }
 
-/// Expectations out of the study's range too: speeds that are alike, fast ones that are safer, failures of zero.
+/// Draws expectations, out of the study's range too: speeds that are alike, fast ones that are safer, failures of zero.
 fn some_maneuvers(stream: &mut Stream) -> Maneuvers {
     let mut some = maneuvers();
     let mut vary = |both: &mut [Expectation; 2]| {
@@ -66,7 +66,7 @@ fn some_maneuvers(stream: &mut Stream) -> Maneuvers {
     some
 }
 
-/// A task on a random building, its deadline anywhere between impossible and easy.
+/// Draws a task on a random building, its deadline anywhere between impossible and easy.
 fn some_task(seed: u64) -> (ToposemanticMap, VertexId, VertexId, f64, Maneuvers) {
     let mut stream = Seeds::new(seed, Vec::new()).stream("task");
     let map = mapped(&Building::random(seed, 2 + below(&mut stream, 14), 6, true));
@@ -81,7 +81,7 @@ fn some_task(seed: u64) -> (ToposemanticMap, VertexId, VertexId, f64, Maneuvers)
     (map, from, to, edges * stream.between(4.0, 16.0), expectations)
 }
 
-/// The plan of the linear programme, even where none is needed.
+/// Returns the plan of the linear programme, even where none is needed.
 fn programme(plan: &Plan) -> Plan {
     Plan::solved(plan.problem.clone()).unwrap()
 }
@@ -114,7 +114,7 @@ proptest! {
         prop_assert_eq!(disagreement(&plan, &map), None);
     }
 
-    /// Every plan arrives, whatever chance says, and takes as many steps as a shortest path at least.
+    /// Every plan arrives, whatever the draws, and takes at least as many steps as a shortest path.
     #[test]
     fn a_plan_arrives(seed in 0_u64..1_000_000) {
         let (map, from, to, deadline_s, expectations) = some_task(seed);

@@ -36,11 +36,11 @@ pub enum Completion {
     Extended,
 }
 
-/// The strategy with the corridor that it is at.
+/// The strategy with the corridor at which it works.
 #[derive(Debug, Clone)]
 pub(super) struct CorridorInHand {
     rule: CompleteCorridor,
-    /// Any vertex of it, and along which axis it runs: as the map grows, so does the corridor.
+    /// Any vertex of it, and the axis along which it runs: as the map grows, so does the corridor.
     corridor: Option<(VertexId, Axis)>,
 }
 
@@ -49,14 +49,14 @@ impl CorridorInHand {
         Self { rule, corridor: None }
     }
 
-    /// A vertex of the corridor in hand and the axis along which it runs.
+    /// Returns a vertex of the corridor in hand and the axis along which it runs.
     #[cfg(test)]
     pub(super) fn in_hand(&self) -> Option<(VertexId, Axis)> {
         self.corridor
     }
 
-    /// A vertex of the corridor in hand, or where that is finished one of another. The robot's way there and the random
-    /// edge that follows may leave the corridor; it is remembered, so that the next choice comes back to it.
+    /// Chooses a vertex of the corridor in hand, or where that is finished one of another. The robot's path there and
+    /// the random edge that follows may leave the corridor; it is remembered, so that the next choice returns to it.
     pub(super) fn choose(
         &mut self,
         candidates: &Candidates<'_>,
@@ -72,7 +72,8 @@ impl CorridorInHand {
                 return candidates.prefer(unfinished, self.rule.inside, stream);
             }
         }
-        // Finished: "the robot enters a new corridor". Rooms with a further door come last, as nothing is said of them.
+        // Finished: "the robot enters a new corridor". Rooms with a further door come last, as the paper says nothing
+        // of them.
         let open = candidates.open();
         let place = |v: &VertexId| candidates.map.place(*v);
         let corridors: Vec<VertexId> =
@@ -85,7 +86,7 @@ impl CorridorInHand {
         Some(next)
     }
 
-    /// The vertices of a corridor that keep it from being finished, in order of discovery.
+    /// Returns the vertices of a corridor that keep it from being finished, in order of discovery.
     fn unfinished(
         &self,
         candidates: &Candidates<'_>,
@@ -100,8 +101,8 @@ impl CorridorInHand {
         candidates.open().iter().copied().filter(|v| corridor.contains(v) && keeps(v)).collect()
     }
 
-    /// Along which axis to take a vertex where two corridors cross: the one with more vertices left to explore, then the one
-    /// that goes on there, then the longer one, then E-W.
+    /// Returns the axis along which to take a vertex where two corridors cross: the one with more vertices left to
+    /// explore, then the one that continues there, then the longer one, then E-W.
     fn axis_at(&self, candidates: &Candidates<'_>, v: VertexId) -> Axis {
         let worth = |axis: Axis| {
             (
@@ -115,7 +116,7 @@ impl CorridorInHand {
     }
 }
 
-/// Whether an unexplored edge along `axis` leaves `v` through a corridor.
+/// Returns whether an unexplored edge along `axis` leaves `v` through a corridor.
 fn extends(candidates: &Candidates<'_>, v: VertexId, axis: Axis) -> bool {
     candidates
         .map

@@ -1,7 +1,7 @@
 //! `ExplorationNext(M, time)`: five strategies that choose the next vertex (section 5).
 //!
-//! Each chooses among the vertices with one or more edges (v, v∅). Rules the paper states are taken literally; where it
-//! states none, a parameter names the alternatives.
+//! Each chooses among the vertices with one or more edges (v, v∅). Rules that the paper states are taken literally;
+//! where it states none, a parameter names the alternatives.
 
 mod complete_corridor;
 mod corridors_first;
@@ -55,7 +55,7 @@ pub enum Preference {
     Uniform,
 }
 
-/// 𝒱 of section 5, the vertices with edges (v, v∅), as seen from the current vertex.
+/// 𝒱 of section 5, the vertices with edges (v, v∅), relative to the current vertex.
 #[derive(Debug, Clone)]
 pub struct Candidates<'a> {
     map: &'a ToposemanticMap,
@@ -66,7 +66,7 @@ pub struct Candidates<'a> {
 }
 
 impl<'a> Candidates<'a> {
-    /// The candidates on `map` for a robot at `current`.
+    /// Creates the candidates on `map` for a robot at `current`.
     pub fn new(map: &'a ToposemanticMap, current: VertexId) -> Self {
         let distances = map.distances(current);
         let open = map
@@ -76,12 +76,12 @@ impl<'a> Candidates<'a> {
         Self { map, distances, open }
     }
 
-    /// The candidates, in order of discovery.
+    /// Returns the candidates, in order of discovery.
     pub fn open(&self) -> &[VertexId] {
         &self.open
     }
 
-    /// Number of edges from the current vertex to a candidate.
+    /// Returns the number of edges from the current vertex to a candidate.
     pub fn distance(&self, v: VertexId) -> usize {
         self.distances[v.index()].expect("candidates can be reached")
     }
@@ -90,7 +90,7 @@ impl<'a> Candidates<'a> {
         self.map.unexplored_degree(v)
     }
 
-    /// The one of `among` that `preference` puts first; `None` where there is none.
+    /// Returns the one of `among` that `preference` puts first; `None` where there is none.
     fn prefer(
         &self,
         among: Vec<VertexId>,
@@ -109,7 +109,7 @@ impl<'a> Candidates<'a> {
     }
 }
 
-/// Those of `among` whose `key` is least.
+/// Returns those of `among` whose `key` is least.
 fn least<K: Ord>(mut among: Vec<VertexId>, key: impl Fn(VertexId) -> K) -> Vec<VertexId> {
     if let Some(best) = among.iter().map(|v| key(*v)).min() {
         among.retain(|v| key(*v) == best);
@@ -117,7 +117,7 @@ fn least<K: Ord>(mut among: Vec<VertexId>, key: impl Fn(VertexId) -> K) -> Vec<V
     among
 }
 
-/// One of `among`, each with the same probability; `None` where there is none.
+/// Draws one of `among`, each with the same probability; `None` where there is none.
 pub(super) fn uniform<T: Copy>(among: &[T], stream: &mut Stream) -> Option<T> {
     if among.is_empty() {
         return None;
@@ -126,7 +126,7 @@ pub(super) fn uniform<T: Copy>(among: &[T], stream: &mut Stream) -> Option<T> {
     Some(among[index])
 }
 
-/// A strategy with what it remembers between choices.
+/// A strategy with its memory between choices.
 #[derive(Debug, Clone)]
 pub struct Chooser {
     strategy: Strategy,
@@ -137,7 +137,7 @@ pub struct Chooser {
 }
 
 impl Chooser {
-    /// The strategy that `rules` name.
+    /// Creates the strategy that `rules` name.
     pub fn new(rules: &Rules) -> Self {
         Self {
             strategy: rules.strategy,
@@ -148,7 +148,7 @@ impl Chooser {
         }
     }
 
-    /// The vertex to go to next from `current`; `None` where nothing is left to explore.
+    /// Chooses the vertex to which to go next from `current`; `None` where nothing is left to explore.
     pub fn next(
         &mut self,
         map: &ToposemanticMap,

@@ -22,7 +22,7 @@ parameters!(
 );
 
 impl NormalizedFrontier {
-    /// Of several vertices with the highest value the closer one, as the paper says; of several closest any.
+    /// Chooses, of several vertices with the highest value, the closer one, as the paper says; of several closest any.
     pub(super) fn choose(
         &self,
         candidates: &Candidates<'_>,
@@ -35,7 +35,8 @@ impl NormalizedFrontier {
         candidates.prefer(best, Preference::Nearest, stream)
     }
 
-    /// S(v) of every candidate, in order of discovery. Where all distances are zero, so is the term of distance.
+    /// Computes S(v) of every candidate, in order of discovery. Where all distances are zero, so is the term of
+    /// distance.
     pub(super) fn values(&self, candidates: &Candidates<'_>) -> Vec<(VertexId, f64)> {
         let degree = |v: VertexId| candidates.degree(v);
         let distance = |v: VertexId| candidates.distance(v);

@@ -1,4 +1,4 @@
-//! What the paper says of each strategy, on maps small enough to see.
+//! The paper's statements on each strategy, on maps small enough to see.
 
 use super::Strategy;
 use super::*;
@@ -33,7 +33,7 @@ fn room(tag: &str, doors: &[Cardinal]) -> Intersection {
     Intersection { place: Place::Room, ..corridor(tag, &[], doors) }
 }
 
-/// a (3 unexplored) - b (1) - c (3), and beside b a room with another door (1): a, b, c, the room.
+/// Returns the map a (3 unexplored) - b (1) - c (3), and beside b a room with another door (1): a, b, c, the room.
 fn map() -> (ToposemanticMap, [VertexId; 4]) {
     let mut map = ToposemanticMap::new();
     let a = map.begin(&corridor("a", &[East, North], &[West, South])).unwrap();
@@ -43,7 +43,7 @@ fn map() -> (ToposemanticMap, [VertexId; 4]) {
     (map, [a, b, c, r])
 }
 
-/// How often each of the four vertices is chosen from `current` in 3000 trials.
+/// Counts how often each of the four vertices is chosen from `current` in 3000 trials.
 fn counts(rules: &Rules, current: usize) -> [i32; 4] {
     let (map, vertices) = map();
     let mut counts = [0; 4];
@@ -55,7 +55,7 @@ fn counts(rules: &Rules, current: usize) -> [i32; 4] {
     counts
 }
 
-/// Whether `counts` are those of a uniform choice among the vertices of `among`, within five standard errors.
+/// Returns whether `counts` are those of a uniform choice among the vertices of `among`, within five standard errors.
 fn is_uniform(counts: [i32; 4], among: &[usize]) -> bool {
     let share = 1.0 / f64::from(u32::try_from(among.len()).unwrap());
     let error = 5.0 * (3000.0 * share * (1.0 - share)).sqrt();
@@ -213,8 +213,8 @@ fn a_corridor_that_cannot_be_extended_is_finished_by_the_other_reading() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
 
-    /// Any strategy, driven through any building, only ever chooses a vertex with unexplored edges, keeps to what it says,
-    /// and leaves nothing unexplored.
+    /// Any strategy, driven through any building, only ever chooses a vertex with unexplored edges, keeps its rule, and
+    /// leaves nothing unexplored.
     #[test]
     fn every_choice_keeps_the_rule(seed in 0_u64..1_000_000, which in 0_usize..5) {
         let strategy = [

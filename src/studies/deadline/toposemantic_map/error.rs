@@ -1,12 +1,12 @@
-//! Why an observation does not fit the map, and what a map that breaks Definition 1 breaks.
+//! Observations that do not fit the map, and breaches of Definition 1 by a map.
 
 use super::VertexId;
 use super::label::SemanticLabel;
 use crate::geometry::Cardinal;
 use thiserror::Error;
 
-/// An observation that cannot be true of the same building as the map: a misread intersection, or a building whose tags do
-/// not keep Definition 1. The map is left as it was.
+/// An observation that cannot be true of the same building as the map: a misread intersection, or a building whose tags
+/// do not keep Definition 1. The map is left as it was.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum MapError {
     /// The map already has a vertex to begin with.
@@ -23,10 +23,10 @@ pub enum MapError {
         "the intersection has two exits to the {direction}; expected at most one in each direction"
     )]
     DoubleExit {
-        /// Where both lead.
+        /// The direction of both.
         direction: Cardinal,
     },
-    /// The robot says it left by an exit that the vertex does not have.
+    /// The robot reports leaving by an exit that the vertex does not have.
     #[error("{label} has no exit to the {direction}")]
     NoSuchExit {
         /// The vertex.
@@ -39,11 +39,11 @@ pub enum MapError {
         "{from}'s exit to the {direction} led to {to}, which has no exit back to the {}", .direction.opposite()
     )]
     NoWayBack {
-        /// Where the robot came from.
+        /// The vertex from which the robot came.
         from: SemanticLabel,
-        /// The exit it took.
+        /// The exit that it took.
         direction: Cardinal,
-        /// Where it arrived: a label, or `a new vertex`.
+        /// Its arrival: a label, or `a new vertex`.
         to: String,
     },
     /// One end is a door, the other a corridor.
@@ -51,13 +51,13 @@ pub enum MapError {
         "{from}'s exit to the {direction} leads through a {here}, but {to}'s exit back through a {there}"
     )]
     OtherOpening {
-        /// Where the robot came from.
+        /// The vertex from which the robot came.
         from: SemanticLabel,
-        /// The exit it took.
+        /// The exit that it took.
         direction: Cardinal,
-        /// Where it arrived: a label, or `a new vertex`.
+        /// Its arrival: a label, or `a new vertex`.
         to: String,
-        /// What the exit it took leads through.
+        /// What the exit that it took leads through.
         here: &'static str,
         /// What the exit back leads through.
         there: &'static str,
@@ -65,25 +65,25 @@ pub enum MapError {
     /// The exit was explored before and led elsewhere.
     #[error("{from}'s exit to the {direction} led to {before} before, and now to {now}")]
     LedElsewhere {
-        /// Where the robot came from.
+        /// The vertex from which the robot came.
         from: SemanticLabel,
-        /// The exit it took.
+        /// The exit that it took.
         direction: Cardinal,
-        /// Where it led.
+        /// The vertex to which it led.
         before: SemanticLabel,
-        /// Where it leads now: a label, or `a new vertex`.
+        /// The vertex to which it leads now: a label, or `a new vertex`.
         now: String,
     },
     /// The exit back was explored before and led elsewhere.
     #[error("{from}'s exit to the {direction} led to {to}, whose exit back leads to {other}")]
     BackElsewhere {
-        /// Where the robot came from.
+        /// The vertex from which the robot came.
         from: SemanticLabel,
-        /// The exit it took.
+        /// The exit that it took.
         direction: Cardinal,
-        /// Where it arrived.
+        /// The vertex at which it arrived.
         to: SemanticLabel,
-        /// Where the exit back leads.
+        /// The vertex to which the exit back leads.
         other: SemanticLabel,
     },
     /// An exit led back to the vertex itself.
@@ -97,13 +97,13 @@ pub enum MapError {
     /// E is a set: two vertices have at most one edge from one to the other.
     #[error("{from}'s exits to the {first} and to the {second} both lead to {to}")]
     Parallel {
-        /// Where the robot came from.
+        /// The vertex from which the robot came.
         from: SemanticLabel,
         /// The exit that led there before.
         first: Cardinal,
         /// The exit that leads there now.
         second: Cardinal,
-        /// Where both lead.
+        /// The vertex to which both lead.
         to: SemanticLabel,
     },
     /// The tags belong to two vertices of the map.
@@ -119,7 +119,7 @@ pub enum MapError {
     OtherPlace {
         /// The vertex.
         label: SemanticLabel,
-        /// What it is now.
+        /// Its kind now.
         now: &'static str,
     },
     /// A new node that is not new.
@@ -130,7 +130,8 @@ pub enum MapError {
     },
 }
 
-/// How a map breaks Definition 1. No operation of [`super::ToposemanticMap`] leads there; tests and debug builds make sure.
+/// A breach of Definition 1 by a map. No operation of [`super::ToposemanticMap`] leads there; tests and debug builds
+/// make sure.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum Inconsistency {
     /// e = (vi, vj) is in E, e' = (vj, vi) is not.

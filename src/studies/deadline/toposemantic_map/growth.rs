@@ -1,4 +1,4 @@
-//! How the map grows: Algorithm 1, and what its listing leaves to the IDS, that a vertex is known.
+//! The growth of the map: Algorithm 1, and the recognition of known vertices, which its listing leaves to the IDS.
 
 use super::{Arrival, Edge, End, MapError, SemanticLabel, ToposemanticMap, Vertex, VertexId};
 use crate::geometry::{Axis, Cardinal};
@@ -18,12 +18,12 @@ impl ToposemanticMap {
         Ok(self.add(here, None))
     }
 
-    /// The robot left `from` by its exit to the `direction` and the IDS says where it has arrived: a new vertex
-    /// ([`Self::create_new_node`]) or a known one, by a known or a new edge. A known vertex learns exits that were not
-    /// seen before.
+    /// Takes in that the robot left `from` by its exit to the `direction` and arrived where the IDS reports: at a new
+    /// vertex ([`Self::create_new_node`]) or a known one, by a known or a new edge. A known vertex learns exits that
+    /// were not seen before.
     ///
     /// # Errors
-    /// What the IDS says does not fit the map, which stays as it was.
+    /// The IDS's report does not fit the map, which stays as it was.
     pub fn arrive(
         &mut self,
         from: VertexId,
@@ -61,7 +61,8 @@ impl ToposemanticMap {
         Ok((vertex, if closes { Arrival::LoopClosed } else { Arrival::Revisit }))
     }
 
-    /// `createNewNode(v', edges)`, Algorithm 1; `from` is v, the vertex the robot came from (line 2).
+    /// Does `createNewNode(v', edges)`, Algorithm 1; `from` is v, the vertex from which the robot came (line 2).
+    /// Comments name the lines of the listing.
     ///
     /// Lines 6 and 7 of the listing set D(v', v) and S(v', v) twice; (v, v') and (v', v) are meant.
     ///
@@ -115,7 +116,7 @@ impl ToposemanticMap {
         VertexId(self.vertices.len() - 1)
     }
 
-    /// Takes over what was not seen of `v` before.
+    /// Adds to `v` what was not seen of it before.
     fn learn(&mut self, v: VertexId, here: &Intersection) {
         let vertex = &mut self.vertices[v.0];
         for tag in &here.tags {
@@ -129,8 +130,8 @@ impl ToposemanticMap {
         }
     }
 
-    /// Whether the unexplored exit of `from` to the `direction` can lead to the known vertex `to`, seen as `here`, and the
-    /// exit of `to` back here.
+    /// Returns whether the unexplored exit of `from` to the `direction` can lead to the known vertex `to`, seen as
+    /// `here`, and the exit of `to` back here.
     fn may_close(
         &self,
         from: VertexId,
@@ -187,7 +188,7 @@ impl ToposemanticMap {
         }
     }
 
-    /// The only place where edges between vertices are made: always both, in opposite directions.
+    /// Joins two vertices by edges: the only place where these are made, always both, in opposite directions.
     fn join(&mut self, from: VertexId, direction: Cardinal, to: VertexId) {
         for (vertex, direction, end) in [(from, direction, to), (to, direction.opposite(), from)] {
             if let Some((_, unexplored)) = &mut self.vertices[vertex.0].exits[direction.index()] {

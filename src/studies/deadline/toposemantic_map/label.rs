@@ -1,4 +1,4 @@
-//! Semantic labels, λ of Definition 1: what kind of place a vertex is, and a name of its own.
+//! Semantic labels, λ of Definition 1: the kind of place that a vertex is, and a name of its own.
 
 use crate::geometry::{Axis, Cardinal};
 use crate::studies::deadline::build_cmdp::{Place, Side};
@@ -22,7 +22,7 @@ pub enum SemanticLabel {
 }
 
 impl SemanticLabel {
-    /// The kind of place that it says.
+    /// Returns the kind of place that it names.
     pub const fn place(self) -> Place {
         match self {
             Self::Room { .. } => Place::Room,
@@ -40,7 +40,7 @@ impl fmt::Display for SemanticLabel {
     }
 }
 
-/// a, b, .., z, aa, ab, ..
+/// Writes a number as letters: a, b, .., z, aa, ab, ..
 fn letters(mut index: u32) -> String {
     let mut reversed = Vec::new();
     loop {
@@ -54,7 +54,7 @@ fn letters(mut index: u32) -> String {
     reversed.iter().rev().collect()
 }
 
-/// S(e) of an edge that leaves in `direction`: seen facing north for E-W edges, facing west for N-S edges.
+/// Returns S(e) of an edge that leaves in `direction`: seen facing north for E-W edges, facing west for N-S edges.
 pub const fn side(direction: Cardinal) -> Side {
     match direction {
         Cardinal::West | Cardinal::South => Side::Left,
@@ -62,12 +62,12 @@ pub const fn side(direction: Cardinal) -> Side {
     }
 }
 
-/// Hands labels out in order of discovery.
+/// Hands out labels in order of discovery.
 ///
-/// A corridor vertex that is found by going on along the corridor of the vertex before it gets that corridor's number and
-/// the next letter; any other opens a corridor of its own. A corridor runs along one axis, which its second vertex fixes.
-/// What was found as two corridors and turns out to be one keeps its two numbers: labels are names, and a strategy that
-/// asks for the corridor of a vertex asks the graph.
+/// A corridor vertex that is found by going on along the corridor of the vertex before it gets that corridor's number
+/// and the next letter; any other opens a corridor of its own. A corridor runs along one axis, which its second vertex
+/// fixes. What was found as two corridors and turns out to be one keeps its two numbers: labels are names, and a
+/// strategy that needs the corridor of a vertex reads it from the graph.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(super) struct Labels {
     rooms: u32,
@@ -81,8 +81,8 @@ struct Corridor {
 }
 
 impl Labels {
-    /// A label for a new vertex of kind `place`; `along` is the label of the corridor vertex it was reached from through a
-    /// corridor, and the axis of the edge between them.
+    /// Returns a label for a new vertex of kind `place`; `along` is the label of the corridor vertex from which it was
+    /// reached through a corridor, and the axis of the edge between them.
     pub(super) fn next(
         &mut self,
         place: Place,

@@ -1,9 +1,10 @@
-//! The semantic topological oriented map M = (V, E, L, D, S): section 3, Definition 1, and how it grows: section 4,
+//! The semantic topological oriented map M = (V, E, L, D, S): section 3, Definition 1, and its growth: section 4,
 //! Algorithm 1.
 //!
-//! A vertex keeps its outgoing edges by compass direction. What Definition 1 asks of edges then mostly cannot be broken:
-//! D(e) and S(e) are read off the direction, and the only function that makes an edge also makes the edge back, in the
-//! opposite direction, so that D agrees and S differs ([`ToposemanticMap::check`] looks nevertheless).
+//! A vertex keeps its outgoing edges by compass direction. The requirements of Definition 1 on edges then mostly cannot
+//! be broken: D(e) and S(e) are read off the direction, and the only function that makes an edge also makes the edge
+//! back, in the opposite direction, so that D agrees and S differs ([`ToposemanticMap::check`] verifies it
+//! nevertheless).
 
 mod error;
 mod growth;
@@ -26,12 +27,12 @@ use std::fmt;
 pub struct VertexId(usize);
 
 impl VertexId {
-    /// The vertex at which the robot began.
+    /// Returns the vertex at which the robot began.
     pub const fn first() -> Self {
         Self(0)
     }
 
-    /// The number, from 0.
+    /// Returns the number, from 0.
     pub const fn index(self) -> usize {
         self.0
     }
@@ -43,7 +44,7 @@ impl fmt::Display for VertexId {
     }
 }
 
-/// What an edge leads to.
+/// The end of an edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum End {
     /// v∅: unexplored space.
@@ -52,32 +53,32 @@ pub enum End {
     Vertex(VertexId),
 }
 
-/// One edge, as Definition 1 speaks of it.
+/// One edge in the sense of Definition 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Edge {
-    /// The vertex it leaves.
+    /// The vertex that it leaves.
     pub from: VertexId,
-    /// In which direction.
+    /// Its direction.
     pub direction: Cardinal,
-    /// What through.
+    /// Whether it leads through a corridor or a door.
     pub opening: Opening,
-    /// Where to.
+    /// Its end.
     pub to: End,
 }
 
 impl Edge {
-    /// D(e).
+    /// Returns D(e).
     pub const fn axis(&self) -> Axis {
         self.direction.axis()
     }
 
-    /// S(e).
+    /// Returns S(e).
     pub const fn side(&self) -> Side {
         side(self.direction)
     }
 }
 
-/// How a robot came to a vertex.
+/// The kind of a robot's arrival at a vertex.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Arrival {
     /// It is new (Algorithm 1).
@@ -104,12 +105,12 @@ pub struct ToposemanticMap {
 }
 
 impl ToposemanticMap {
-    /// The empty map.
+    /// Returns the empty map.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// The vertex that shares a tag with `here`, if there is one.
+    /// Returns the vertex that shares a tag with `here`, if there is one.
     ///
     /// # Errors
     /// There are two.
@@ -126,68 +127,69 @@ impl ToposemanticMap {
         }
     }
 
-    /// |V|.
+    /// Returns |V|.
     pub fn len(&self) -> usize {
         self.vertices.len()
     }
 
-    /// Whether V is empty.
+    /// Returns whether V is empty.
     pub fn is_empty(&self) -> bool {
         self.vertices.is_empty()
     }
 
-    /// V, in order of discovery.
+    /// Returns V, in order of discovery.
     pub fn ids(&self) -> impl Iterator<Item = VertexId> + use<> {
         (0..self.vertices.len()).map(VertexId)
     }
 
-    /// L(v).
+    /// Returns L(v).
     pub fn label(&self, v: VertexId) -> SemanticLabel {
         self.vertices[v.0].label
     }
 
-    /// Whether v is a room or part of a corridor.
+    /// Returns whether v is a room or part of a corridor.
     pub fn place(&self, v: VertexId) -> Place {
         self.label(v).place()
     }
 
-    /// Whether v is the goal.
+    /// Returns whether v is the goal.
     pub fn is_goal(&self, v: VertexId) -> bool {
         self.vertices[v.0].is_goal
     }
 
-    /// The tags by which v is recognised.
+    /// Returns the tags by which v is recognised.
     pub fn tags(&self, v: VertexId) -> &BTreeSet<String> {
         &self.vertices[v.0].tags
     }
 
-    /// The edges that leave v, counter-clockwise from east.
+    /// Returns the edges that leave v, counter-clockwise from east.
     pub fn edges_from(&self, v: VertexId) -> impl Iterator<Item = Edge> + '_ {
         Cardinal::ALL.into_iter().filter_map(move |direction| self.edge(v, direction))
     }
 
-    /// The edge that leaves v in `direction`.
+    /// Returns the edge that leaves v in `direction`.
     pub fn edge(&self, from: VertexId, direction: Cardinal) -> Option<Edge> {
         let (opening, to) = self.vertices[from.0].exits[direction.index()]?;
         Some(Edge { from, direction, opening, to })
     }
 
-    /// E, by vertex and direction.
+    /// Returns E, by vertex and direction.
     pub fn edges(&self) -> impl Iterator<Item = Edge> + '_ {
         self.ids().flat_map(|v| self.edges_from(v))
     }
 
-    /// The edges (v, v∅).
+    /// Returns the edges (v, v∅).
     pub fn unexplored(&self, v: VertexId) -> impl Iterator<Item = Edge> + '_ {
         self.edges_from(v).filter(|edge| edge.to == End::Unexplored)
     }
 
-    /// deg(v) of section 5: how many edges (v, v∅) there are.
+    /// Returns deg(v) of section 5: how many edges (v, v∅) there are.
     pub fn unexplored_degree(&self, v: VertexId) -> usize {
         self.unexplored(v).count()
     }
 
-    /// d(v) of section 5 for every v: the number of edges on a shortest path from `from`; `None` where there is none.
+    /// Computes d(v) of section 5 for every v: the number of edges on a shortest path from `from`; `None` where there
+    /// is none.
     pub fn distances(&self, from: VertexId) -> Vec<Option<usize>> {
         let mut distances = vec![None; self.len()];
         distances[from.0] = Some(0);
@@ -205,8 +207,9 @@ impl ToposemanticMap {
         distances
     }
 
-    /// The corridor along `axis` that `v` is on (section 5, complete corridors first): the longest path through v of which
-    /// all vertices are corridor vertices and all edges run along the axis. From west or south on; empty for a room.
+    /// Returns the corridor along `axis` on which `v` is (section 5, complete corridors first): the longest path
+    /// through v of which all vertices are corridor vertices and all edges run along the axis. From west or south on;
+    /// empty for a room.
     pub fn corridor(&self, v: VertexId, axis: Axis) -> Vec<VertexId> {
         if self.place(v) == Place::Room {
             return Vec::new();
@@ -229,7 +232,7 @@ impl ToposemanticMap {
         path
     }
 
-    /// What the planner needs: all vertices and the explored edges, with each edge's exit.
+    /// Returns the part that the planner needs: all vertices and the explored edges, with each edge's exit.
     pub fn topology(&self) -> (Topology, Vec<(VertexId, Cardinal)>) {
         let mut topology = Topology {
             vertices: self.vertices.iter().map(|vertex| vertex.label.place()).collect(),
@@ -246,7 +249,7 @@ impl ToposemanticMap {
         (topology, exits)
     }
 
-    /// Whether the map keeps Definition 1: L is injective, E is a set, and for every edge e = (vi, vj) there is
+    /// Checks whether the map keeps Definition 1: L is injective, E is a set, and for every edge e = (vi, vj) there is
     /// e' = (vj, vi) with D(e) = D(e') and S(e) ≠ S(e').
     ///
     /// # Errors

@@ -1,4 +1,4 @@
-//! Definition 1 on Figure 1's examples and on random explorations; Algorithm 1; what does not fit.
+//! Definition 1 on Figure 1's examples and on random explorations; Algorithm 1; observations that do not fit.
 
 use super::*;
 use crate::rng::{Seeds, Stream};
@@ -16,13 +16,13 @@ fn seen(tag: &str, place: Place, exits: &[Cardinal], opening: Opening) -> Inters
     Intersection { tags: vec![tag.to_owned()], place, exits, is_goal: false }
 }
 
-/// `here` with a further door.
+/// Returns `here` with a further door.
 fn and_door(mut here: Intersection, direction: Cardinal) -> Intersection {
     here.exits.push(Exit { direction, opening: Opening::Door });
     here
 }
 
-/// S of the edge from one vertex to another: on which side of the first the second is.
+/// Returns axis and S of the edge from one vertex to another: on which side of the first the second is.
 fn side_between(map: &ToposemanticMap, from: VertexId, to: VertexId) -> (Axis, Side) {
     let edge = map.edges_from(from).find(|edge| edge.to == End::Vertex(to)).unwrap();
     (edge.axis(), edge.side())
@@ -246,7 +246,7 @@ fn what_does_not_fit_is_told_and_changes_nothing() {
     );
 }
 
-/// `check` finds what no operation makes.
+/// `check` finds breaches that no operation makes.
 #[test]
 fn an_inconsistent_map_is_found() {
     let mut map = ToposemanticMap::new();
@@ -294,8 +294,8 @@ fn an_inconsistent_map_is_found() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
 
-    /// Random walks through random buildings: Definition 1 holds throughout, every edge of the map is one of the building,
-    /// and what was walked is explored.
+    /// Random walks through random buildings: Definition 1 holds throughout, every edge of the map is one of the
+    /// building, and every edge walked is explored.
     #[test]
     fn a_walk_maps_the_building(seed in 0_u64..1_000_000, corridors in 2_usize..16, rooms in 0_usize..8) {
         let building = Building::random(seed, corridors, rooms, true);
