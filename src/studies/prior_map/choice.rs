@@ -1,4 +1,4 @@
-//! Steps (b) and (c): frontiers, and what they are judged by (section 3.1).
+//! Steps (b) and (c): frontiers, and their appraisal (section 3.1).
 
 use super::explorer::cost;
 use super::field_of_view::{FieldOfView, Headings};
@@ -16,10 +16,10 @@ use crate::navigation::CostGrid;
 use crate::robot::Lidar;
 use std::f64::consts::TAU;
 
-/// A choice among frontiers, with what it was made on. Cells are those of `frame`.
+/// A choice among frontiers, with the data on which it was made. Cells are those of `frame`.
 #[derive(Debug, Clone)]
 pub struct Choice {
-    /// Where the cells lie.
+    /// The frame of the cells.
     pub frame: GridFrame,
     /// All frontiers not given up.
     pub frontiers: Vec<Frontier>,
@@ -31,18 +31,18 @@ pub struct Choice {
     pub chosen: Option<usize>,
 }
 
-/// What a choice is made on.
+/// The data for a choice.
 #[derive(Debug, Clone, Copy)]
 pub struct Sight<'a> {
     /// The map M_E so far.
     pub map: &'a OccupancyMap,
     /// The same map inflated, the place where the robot stands free.
     pub costs: &'a CostGrid,
-    /// Where the robot is, in the map's frame.
+    /// The robot's pose in the map's frame.
     pub pose: Pose,
 }
 
-/// Finds and judges frontiers in one way.
+/// Finds and appraises frontiers by one set of parameters.
 #[derive(Debug)]
 pub struct Chooser {
     exploration: Exploration,
@@ -50,7 +50,7 @@ pub struct Chooser {
     prior: Option<AlignedPrior>,
     /// Range of the scanner in cells.
     range: i32,
-    /// `None` where the scanner looks all round, or is taken to.
+    /// `None` where the scanner looks all round, or is assumed to.
     view: Option<FieldOfView>,
     /// Only for the best of all headings.
     headings: Option<Headings>,
@@ -61,7 +61,7 @@ pub struct Chooser {
 }
 
 impl Chooser {
-    /// One that chooses as `parameters` say, with the prior on the lattice of the robot's map.
+    /// Creates a chooser by `parameters`, with the prior on the lattice of the robot's map.
     pub fn new(parameters: &Parameters, lidar: &Lidar, prior: Option<AlignedPrior>) -> Self {
         let exploration = parameters.exploration.clone();
         let clip_range = parameters.mapping.clip_range_m.unwrap_or(f64::INFINITY);
@@ -85,14 +85,14 @@ impl Chooser {
         }
     }
 
-    /// The same one, choosing along `tour` where the strategy is to.
+    /// Returns the same chooser, choosing along `tour` where the strategy requires it.
     #[must_use]
     pub fn with_tour(self, tour: Option<Tour>) -> Self {
         let tour = tour.filter(|_| self.exploration.strategy == Strategy::TopoMetricTour);
         Self { tour, ..self }
     }
 
-    /// Step (b): the frontiers that the robot can go to.
+    /// Does step (b): finds the frontiers that the robot can reach.
     pub fn frontiers(&self, sight: Sight<'_>) -> Vec<Frontier> {
         let map = sight.map.grid();
         let robot = map.frame().cell_at(sight.pose.position());
@@ -101,8 +101,8 @@ impl Chooser {
         find_frontiers(map, sight.costs, robot, lethal, minimum_frontier_cells, candidate)
     }
 
-    /// The terms of equation 1 for `frontiers`; none is chosen yet. Without a utility there is no gain, and what stands for
-    /// u(p) has the order of the strategy.
+    /// Computes the terms of equation 1 for `frontiers`; none is chosen yet. Without a utility there is no gain, and
+    /// the values in place of u(p) have the order of the strategy.
     pub fn appraise(&mut self, sight: Sight<'_>, frontiers: Vec<Frontier>) -> Choice {
         let frame = *sight.map.grid().frame();
         let by_distance = self.exploration.strategy != Strategy::Utility;
@@ -131,7 +131,7 @@ impl Chooser {
         Choice { frame, frontiers, appraisals, utilities, chosen: None }
     }
 
-    /// I(p) of every candidate location.
+    /// Computes I(p) of every candidate location.
     fn gains(&self, sight: Sight<'_>, candidates: &[Cell]) -> Vec<f64> {
         let (map, offset, prior) = (sight.map.grid(), sight.map.offset(), self.prior.as_ref());
         let exploration = &self.exploration;
@@ -154,7 +154,7 @@ impl Chooser {
             (Some(_), Some(headings)) => gain.best(p, headings),
             (Some(view), None) => {
                 let way = map.frame().center(p) - sight.pose.position();
-                // Where it already stands there is no direction of arrival: it looks as it does.
+                // Where it already stands there is no direction of arrival: it keeps its heading.
                 let is_there = way.norm() < map.frame().resolution;
                 let heading = if is_there { sight.pose.heading } else { math::atan2(way.y, way.x) };
                 gain.within(p, view.facing(heading))

@@ -1,8 +1,8 @@
 //! The robot's mind: perceive, find frontiers, choose, go (section 3.1, steps a to d).
 //!
-//! It sees odometry and scans and answers with velocities; it never sees the world. Locations, ways and waves are in the
-//! map's frame, where the mapper tells it to be ([`Mapper::pose`]): with trusted odometry that is the odometry frame. The
-//! operator and its local map stay in the odometry frame, which does not jump, as in ROS.
+//! It sees odometry and scans and answers with velocities; it never sees the world. Locations, paths and waves are in
+//! the map's frame, in which the mapper localises it ([`Mapper::pose`]): with trusted odometry that is the odometry
+//! frame. The operator and its local map stay in the odometry frame, which does not jump, as in ROS.
 
 use super::choice::{Choice, Chooser, Sight};
 use super::frontier::Frontier;
@@ -27,13 +27,13 @@ use std::sync::Arc;
 
 pub use super::phase::Ending;
 
-/// The navigator plans at 5 Hz, the operator drives at 10 Hz, and the local map is renewed at about 3 Hz
-/// (prior-map facts, section 4).
+/// The navigator plans at 5 Hz, the operator drives at 10 Hz, and the local map is renewed at about 3 Hz (prior-map
+/// facts, section 4).
 pub const CONTROL_PERIOD: Tick = Tick(300);
 const NAVIGATION_PERIOD: Tick = Tick(600);
 const LOCAL_MAP_PERIOD: Tick = Tick(900);
 
-/// Coming closer to a location means by this much (m).
+/// Progress towards a location means coming closer by this much (m).
 const PROGRESS: f64 = 0.1;
 /// A frontier whose candidate is this near (m) to one given up is given up too.
 const GIVEN_UP_RADIUS: f64 = 0.5;
@@ -61,14 +61,14 @@ pub struct Explorer {
     choices: u32,
     last_choice: Option<Choice>,
     path_changed: bool,
-    /// How long choices take to have an effect.
+    /// Draws how long choices take to have an effect.
     delays: Stream,
     decided: Option<Decided>,
 }
 
 impl Explorer {
-    /// A mind that has seen nothing, with the prior on the lattice of its map. `delays` is drawn from where choices take
-    /// time (`exploration.decision-jitter-s`), `particles` where odometry is not trusted.
+    /// Creates a mind without observations, with the prior on the lattice of its map. `delays` is drawn from where
+    /// choices take time (`exploration.decision-jitter-s`), `particles` where odometry is not trusted.
     pub fn new(
         parameters: &Parameters,
         lidar: &Lidar,
@@ -111,19 +111,19 @@ impl Explorer {
         }
     }
 
-    /// The same mind with a tour, in the frame of its map, to choose along under `strategy: topo-metric-tour`.
+    /// Returns the same mind with a tour, in the frame of its map, to choose along under `strategy: topo-metric-tour`.
     #[must_use]
     pub fn with_tour(self, tour: Option<Tour>) -> Self {
         Self { chooser: self.chooser.with_tour(tour), ..self }
     }
 
-    /// Whether the mind will look at the scan taken at `odometry`.
+    /// Returns whether the mind will use the scan taken at `odometry`.
     pub fn wants_scan(&mut self, odometry: Odometry) -> bool {
         self.keyframe_wanted |= self.mapper.wants(odometry.pose);
         self.keyframe_wanted || odometry.stamp >= self.next_local_map
     }
 
-    /// Looks at `scan`, taken at `odometry`, and tells the map cells that changed where it was taken into the map.
+    /// Uses `scan`, taken at `odometry`, and returns the map cells that changed where it was taken into the map.
     pub fn take_scan(&mut self, odometry: Odometry, scan: &Scan) -> Option<&[Change]> {
         if odometry.stamp >= self.next_local_map {
             self.next_local_map = odometry.stamp + LOCAL_MAP_PERIOD;
@@ -140,13 +140,13 @@ impl Explorer {
         if let Phase::Driving(journey) = &mut self.phase
             && before.position().distance(after.position()) > PROGRESS
         {
-            // It is elsewhere than it thought: what it came closer to so far says nothing.
+            // Its pose was corrected: its earlier progress means nothing.
             journey.closest = (f64::INFINITY, odometry.stamp);
         }
         Some(self.mapper.changes())
     }
 
-    /// The velocity for the next control cycle.
+    /// Computes the velocity for the next control cycle.
     pub fn control(&mut self, odometry: Odometry) -> Twist {
         if odometry.stamp >= self.next_navigation {
             self.next_navigation = odometry.stamp + NAVIGATION_PERIOD;
@@ -160,7 +160,7 @@ impl Explorer {
         }
     }
 
-    /// Why exploration ended, once it has.
+    /// Returns why exploration ended, once it has.
     pub fn ending(&self) -> Option<&Ending> {
         match &self.phase {
             Phase::Done(ending) => Some(ending),
@@ -168,37 +168,37 @@ impl Explorer {
         }
     }
 
-    /// The map so far.
+    /// Returns the map so far.
     pub fn map(&self) -> &OccupancyMap {
         self.mapper.map()
     }
 
-    /// How many times a location was chosen.
+    /// Returns how many times a location was chosen.
     pub fn choices(&self) -> u32 {
         self.choices
     }
 
-    /// How many locations were given up.
+    /// Returns how many locations were given up.
     pub fn given_up(&self) -> usize {
         self.given_up.len()
     }
 
-    /// Where in the map it is, when odometry tells `odometry`.
+    /// Returns its pose in the map, when odometry reads `odometry`.
     pub fn pose(&self, odometry: Pose) -> Pose {
         self.mapper.pose(odometry)
     }
 
-    /// Whether it estimates its pose, as odometry is not trusted.
+    /// Returns whether it estimates its pose, that is, whether odometry is not trusted.
     pub fn estimates(&self) -> bool {
         self.mapper.estimates()
     }
 
-    /// Where it was at each scan taken into the map, as it looks from now; empty where odometry is trusted.
+    /// Returns its pose at each scan taken into the map, as now estimated; empty where odometry is trusted.
     pub fn way(&self) -> Vec<Pose> {
         self.mapper.way()
     }
 
-    /// How many frontiers there are as seen from where odometry tells `odometry`, given up or not.
+    /// Returns how many frontiers there are, given up or not, when odometry reads `odometry`.
     pub fn open_frontiers(&self, odometry: Pose) -> usize {
         let pose = self.mapper.pose(odometry);
         let radius = self.parameters.navigation.inflation_radius_cells;
@@ -206,12 +206,12 @@ impl Explorer {
         self.chooser.frontiers(Sight { map: self.map(), costs: &costs, pose }).len()
     }
 
-    /// The choice made since this was last asked, if any.
+    /// Returns the choice made since the last call, if any.
     pub fn take_choice(&mut self) -> Option<Choice> {
         self.last_choice.take()
     }
 
-    /// The planned way (map frame) from where odometry tells `odometry`, if it changed since this was last asked.
+    /// Returns the planned path (map frame) when odometry reads `odometry`, if it changed since the last call.
     pub fn take_path(&mut self, odometry: Pose) -> Option<Vec<Point>> {
         if !std::mem::take(&mut self.path_changed) {
             return None;
@@ -226,7 +226,7 @@ impl Explorer {
     fn navigate(&mut self, odometry: Odometry) {
         let odometry = Odometry { pose: self.mapper.pose(odometry.pose), ..odometry };
         if let Some(decided) = self.decided.take_if(|decided| decided.due <= odometry.stamp) {
-            // Its way was planned on the map of then, whose cells may have got other numbers since.
+            // Its path was planned on the map of then, whose cells may have got other numbers since.
             self.map_changed = true;
             self.take_up(decided);
         }
@@ -313,7 +313,7 @@ impl Explorer {
         self.phase = Phase::Driving(journey);
     }
 
-    /// Step (c): the most promising candidate location that there is a way to.
+    /// Does step (c): chooses the most promising candidate location that can be reached.
     fn choose(&mut self, odometry: Odometry) {
         self.choices += 1;
         self.map_changed = false;
@@ -361,14 +361,15 @@ impl Explorer {
         }
     }
 
-    /// How long the present choice takes to have an effect: numbered by choice, so that no draw depends on another.
+    /// Draws how long the present choice takes to have an effect: numbered by choice, so that no draw depends on
+    /// another.
     fn delay(&mut self) -> Tick {
         let longest = self.parameters.exploration.decision_jitter_s;
         let share = self.delays.at(u64::from(self.choices)).uniform();
         Tick::at_or_after(Seconds(longest * share))
     }
 
-    /// Acts on what was chosen.
+    /// Acts on the choice.
     fn take_up(&mut self, decided: Decided) {
         if let Some(wave) = decided.wave {
             self.wave = Some(wave);
@@ -380,7 +381,7 @@ impl Explorer {
         self.phase = decided.next;
     }
 
-    /// A new journey, or the present one gone on with where the target is still the same.
+    /// Returns a new journey, or the present one continued where the target is still the same.
     fn journey_to(&self, target: Point, closest: (f64, Tick), now: Tick) -> Journey {
         match &self.phase {
             Phase::Driving(journey) if journey.target == target => {
@@ -390,9 +391,9 @@ impl Explorer {
         }
     }
 
-    /// Step (b) and the terms of equation 1, of the frontiers not given up.
+    /// Does step (b) and computes the terms of equation 1, of the frontiers not given up.
     fn appraise(&mut self, costs: &CostGrid, pose: Pose) -> Choice {
-        // Not by `map()`: the chooser learns where its tour leads while it looks.
+        // Not by `map()`: the chooser updates its tour while it looks.
         let sight = Sight { map: self.mapper.map(), costs, pose };
         let mut frontiers = self.chooser.frontiers(sight);
         let frame = sight.map.grid().frame();
@@ -405,7 +406,7 @@ impl Explorer {
         self.given_up.iter().any(|given_up| given_up.distance(candidate) < GIVEN_UP_RADIUS)
     }
 
-    /// The middle of the unknown cells next to the frontier.
+    /// Returns the middle of the unknown cells next to the frontier.
     fn unknown_side(&self, frontier: &Frontier, frame: &GridFrame) -> Point {
         let map = self.map().grid();
         let unknown: Vec<Point> = frontier
@@ -420,13 +421,13 @@ impl Explorer {
         unknown.iter().fold(Point::ZERO, |sum, &point| sum + point * share)
     }
 
-    /// The map inflated, with the place where the robot stands free.
+    /// Returns the map inflated, with the place where the robot stands free.
     fn costs(&mut self, pose: Pose) -> Arc<CostGrid> {
         let map = self.map_with_place(pose);
         self.inflated.update(map)
     }
 
-    /// The map with the place where the robot stands free (prior-map facts, section 4).
+    /// Returns the map with the place where the robot stands free (prior-map facts, section 4).
     fn map_with_place(&self, pose: Pose) -> OccupancyGrid {
         let mut map = self.map().grid().clone();
         let robot = map.frame().cell_at(pose.position());
@@ -456,13 +457,13 @@ impl Explorer {
     }
 }
 
-/// Bearing (rad) of `point` from the robot's heading.
+/// Returns the bearing (rad) of `point` from the robot's heading.
 fn bearing(pose: Pose, point: Point) -> f64 {
     let to = pose.inverse_transform(point);
     math::atan2(to.y, to.x)
 }
 
-/// An inflated cost that a parameter names.
+/// Returns an inflated cost that a parameter names.
 pub(super) fn cost(parameter: u32) -> u8 {
     u8::try_from(parameter.min(101)).unwrap_or(101)
 }

@@ -1,4 +1,4 @@
-//! What a scanner that does not look all round sees from a place, by its heading there.
+//! The cells that a scanner with a limited field of view sees from a place, by its heading there.
 
 use crate::grid::Cell;
 use crate::math;
@@ -7,7 +7,7 @@ use std::f64::consts::{PI, TAU};
 /// Angles closer than this (rad) are one: cells on the very edge of a view belong to it.
 const SAME: f64 = 1e-9;
 
-/// The angles a scanner looks over, relative to the robot's heading (rad).
+/// The angles over which a scanner looks, relative to the robot's heading (rad).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct FieldOfView {
     pub(super) min_angle: f64,
@@ -15,12 +15,12 @@ pub(super) struct FieldOfView {
 }
 
 impl FieldOfView {
-    /// Its width (rad), at most a full turn.
+    /// Returns its width (rad), at most a full turn.
     pub(super) fn width(self) -> f64 {
         (self.max_angle - self.min_angle).clamp(0.0, TAU)
     }
 
-    /// What it covers with the robot headed to `heading` (rad).
+    /// Returns the sector that it covers with the robot headed to `heading` (rad).
     pub(super) fn facing(self, heading: f64) -> Sector {
         let edge = |angle: f64| {
             let (sin, cos) = math::sin_cos(heading + angle);
@@ -39,7 +39,7 @@ pub(super) struct Sector {
 }
 
 impl Sector {
-    /// Whether the direction to the cell that is `offset` away lies in the sector, its edges included.
+    /// Returns whether the direction to the cell that is `offset` away lies in the sector, its edges included.
     pub(super) fn contains(&self, offset: Cell) -> bool {
         let (x, y) = (f64::from(offset.x), f64::from(offset.y));
         let margin = SAME * (x.abs() + y.abs());
@@ -54,15 +54,16 @@ impl Sector {
         }
     }
 
-    /// A narrow sector's two edges, extended backwards, touch in the origin: what lies behind is not in it.
+    /// Returns whether the point is in front: a narrow sector's two edges, extended backwards, touch in the origin, and
+    /// what lies behind is not in it.
     fn is_ahead(&self, x: f64, y: f64) -> bool {
         self.width > PI - SAME
             || x * (self.low.0 + self.high.0) + y * (self.low.1 + self.high.1) >= 0.0
     }
 }
 
-/// All directions from a cell to the cells of the disc around it, in order, so that the heading which sees most cells is
-/// found exactly: a window of the scanner's width is slid over them.
+/// All directions from a cell to the cells of the disc around it, in order, so that the heading which sees most cells
+/// is found exactly: a window of the scanner's width is slid over them.
 #[derive(Debug, Clone)]
 pub(super) struct Headings {
     range: i32,
@@ -74,7 +75,7 @@ pub(super) struct Headings {
 }
 
 impl Headings {
-    /// For a disc of `range` cells and a view of `width` rad.
+    /// Creates the directions for a disc of `range` cells and a view of `width` rad.
     pub(super) fn new(range: i32, width: f64) -> Self {
         let mut offsets: Vec<(f64, usize)> = Vec::new();
         let side = -range..=range;
@@ -115,12 +116,12 @@ impl Headings {
         Self { range, direction, ends }
     }
 
-    /// How many directions there are.
+    /// Returns how many directions there are.
     pub(super) fn count(&self) -> usize {
         self.ends.len()
     }
 
-    /// The number of the direction to the cell that is `offset` away, which is within the range and not zero.
+    /// Returns the number of the direction to the cell that is `offset` away, which is within the range and not zero.
     pub(super) fn direction(&self, offset: Cell) -> usize {
         let side = 2 * self.range + 1;
         #[expect(clippy::cast_sign_loss, reason = "offsets are within the range")]
@@ -128,7 +129,7 @@ impl Headings {
         self.direction[index] as usize
     }
 
-    /// The most cells that one view sees, of `cells` in every direction.
+    /// Returns the most cells that one view sees, of `cells` in every direction.
     pub(super) fn most(&self, cells: &[u32]) -> u32 {
         let mut before = Vec::with_capacity(cells.len() + 1);
         let mut sum = 0;

@@ -1,4 +1,7 @@
-//! Frontiers and candidate locations (section 3.1).
+//! Frontiers and candidate locations (section 3.1):
+//! 1. A flood from the robot over traversable cells finds the frontier cells.
+//! 2. Frontier cells that share a side or a corner form one chain.
+//! 3. Each chain that is long enough is a frontier, with its candidate location.
 
 use crate::grid::{Cell, Occupancy, OccupancyGrid};
 use crate::navigation::CostGrid;
@@ -14,9 +17,9 @@ pub struct Frontier {
     pub candidate: Cell,
 }
 
-/// The frontiers that the robot at `robot` can go to: chains of free cells "adjacent to at least an unknown
-/// cell", of those that a 4-connected flood over cells cheaper than `lethal` reaches. Two cells belong to one
-/// chain where they share a side or a corner. Chains shorter than `minimum` cells are left out.
+/// Finds the frontiers that the robot at `robot` can reach: chains of free cells "adjacent to at least an unknown
+/// cell", of those that a 4-connected flood over cells cheaper than `lethal` reaches. Two cells belong to one chain
+/// where they share a side or a corner. Chains shorter than `minimum` cells are left out.
 pub fn find_frontiers(
     map: &OccupancyGrid,
     costs: &CostGrid,
@@ -25,6 +28,7 @@ pub fn find_frontiers(
     minimum: u32,
     candidate: Candidate,
 ) -> Vec<Frontier> {
+    // 1. The flood.
     let frame = map.frame();
     let mut met = vec![false; frame.len()];
     let mut queue = VecDeque::from([robot]);
@@ -56,6 +60,7 @@ pub fn find_frontiers(
             }
         }
     }
+    // 2. The chains, by the discovery of their first cells.
     let mut by_discovery: Vec<Cell> = vec![robot; order.len()];
     for (&cell, &i) in &order {
         by_discovery[i] = cell;
@@ -75,6 +80,7 @@ pub fn find_frontiers(
             }
         }
         chain.extend(members.into_values());
+        // 3. The candidates.
         if chain.len() >= minimum as usize {
             let candidate = match candidate {
                 Candidate::Middle => middle_of(&chain),
@@ -86,8 +92,8 @@ pub fn find_frontiers(
     frontiers
 }
 
-/// The cell half way along the chain: half way on the shortest way, over the chain's own cells, between two
-/// of its ends that are furthest apart.
+/// Returns the cell half way along the chain: half way on the shortest path, over the chain's own cells, between two of
+/// its ends that are furthest apart.
 fn middle_of(chain: &[Cell]) -> Cell {
     let (_, one_end) = furthest(chain, chain[0]);
     let (way_back, other_end) = furthest(chain, one_end);
@@ -101,8 +107,8 @@ fn middle_of(chain: &[Cell]) -> Cell {
     way[way.len() / 2]
 }
 
-/// The cell nearest to the centroid as the released program takes it: the mean of columns and of rows cut to whole
-/// cells, distances to it cut to whole cells too, the first found among equals (prior-map facts, section 6).
+/// Returns the cell nearest to the centroid as the released program computes it: the mean of columns and of rows cut to
+/// whole cells, distances to it cut to whole cells too, the first found among equals (prior-map facts, section 6).
 fn nearest_to_centroid(chain: &[Cell]) -> Cell {
     let count = i64::try_from(chain.len()).unwrap_or(i64::MAX).max(1);
     let mean = |of: fn(&Cell) -> i32| {
@@ -115,7 +121,7 @@ fn nearest_to_centroid(chain: &[Cell]) -> Cell {
     nearest.copied().unwrap_or(centroid)
 }
 
-/// For every cell of the chain, the next one back to `from`; and the cell that takes the most steps.
+/// Returns, for every cell of the chain, the next one back to `from`; and the cell that takes the most steps.
 fn furthest(chain: &[Cell], from: Cell) -> (BTreeMap<Cell, Cell>, Cell) {
     let members: std::collections::BTreeSet<Cell> = chain.iter().copied().collect();
     let mut way_back = BTreeMap::from([(from, from)]);
@@ -141,7 +147,7 @@ mod tests {
     use crate::navigation::inflate;
     use proptest::prelude::*;
 
-    /// A map drawn in text, the first line its top row: `.` free, `#` occupied, ` ` unknown.
+    /// Reads a map drawn in text, the first line its top row: `.` free, `#` occupied, ` ` unknown.
     fn map(rows: &[&str]) -> OccupancyGrid {
         let (width, height) = (rows[0].len(), rows.len());
         let frame = GridFrame {
@@ -201,7 +207,8 @@ mod tests {
 
     #[test]
     fn the_middle_of_a_bent_chain_is_at_its_bend_and_the_centroid_may_be_nearer_to_an_arm() {
-        // An L of 5 + 4 cells, whose corner the shortest way cuts; the mean (1, 1) is one whole cell from three of them.
+        // An L of 5 + 4 cells, whose corner the shortest path cuts; the mean (1, 1) is one whole cell from three of
+        // them.
         let mut chain: Vec<Cell> = (0..5).rev().map(|y| Cell::new(0, y)).collect();
         chain.extend((1..5).map(|x| Cell::new(x, 0)));
         assert_eq!(middle_of(&chain), Cell::new(1, 0));

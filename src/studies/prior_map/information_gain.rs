@@ -3,7 +3,7 @@
 use super::field_of_view::{Headings, Sector};
 use crate::grid::{Cell, CellSet, Occupancy, OccupancyGrid, Run, visible_runs};
 
-/// What is needed to estimate I(p) on one state of the map.
+/// The data needed to estimate I(p) on one state of the map.
 #[derive(Debug)]
 pub struct InformationGain {
     /// Lattice cell of the map's cell (0, 0).
@@ -19,9 +19,9 @@ pub struct InformationGain {
 }
 
 impl InformationGain {
-    /// For the map M_E so far, whose cell (0, 0) is the lattice cell `offset`, and the prior PK_E on the same lattice, if
-    /// there is one; for a scanner that sees `range` cells far. Without a prior, known obstacles hide what lies behind
-    /// them or not, as `known_obstacles_occlude` says.
+    /// Prepares the map M_E so far, whose cell (0, 0) is the lattice cell `offset`, and the prior PK_E on the same
+    /// lattice, if there is one; for a scanner that sees `range` cells far. Without a prior, `known_obstacles_occlude`
+    /// decides whether known obstacles hide what lies behind them.
     pub fn new(
         map: &OccupancyGrid,
         offset: Cell,
@@ -30,7 +30,7 @@ impl InformationGain {
         known_obstacles_occlude: bool,
     ) -> Self {
         let frame = map.frame();
-        // All that can be seen from any cell of the map, and a little more.
+        // Everything visible from any cell of the map, and a little more.
         let beyond = range + 8;
         let low = Cell::new(offset.x - beyond, offset.y - beyond);
         let high = Cell::new(offset.x + frame.width + beyond, offset.y + frame.height + beyond);
@@ -46,7 +46,7 @@ impl InformationGain {
         Self { offset, range, cell_area, unknown, blocking }
     }
 
-    /// I(p) in m², from the map cell `p`, looking all round.
+    /// Computes I(p) in m², from the map cell `p`, looking all round.
     ///
     /// With a prior, the cells c of M_E that are unknown, within range, and satisfy the three conditions of
     /// section 3.2: c_PK is free; c_PK is visible from p_PK in PK_E; c is visible from p in M_E. Both grids
@@ -59,14 +59,14 @@ impl InformationGain {
         self.area(cells)
     }
 
-    /// The same, of what lies in `sector`.
+    /// Computes the same for the cells within `sector`.
     pub(super) fn within(&self, p: Cell, sector: Sector) -> f64 {
         let mut cells = 0;
         self.each_unknown(p, |offset| cells += u32::from(sector.contains(offset)));
         self.area(cells)
     }
 
-    /// The same, of what is seen with the best of all headings.
+    /// Computes the same for the cells seen with the best of all headings.
     pub(super) fn best(&self, p: Cell, headings: &Headings) -> f64 {
         let mut cells = vec![0; headings.count()];
         let mut here = 0;
@@ -81,7 +81,7 @@ impl InformationGain {
         visible_runs(self.lattice(p), self.range, &self.blocking, see);
     }
 
-    /// Tells every cell that counts, as its offset from `p`.
+    /// Passes to `count` every cell that counts, as its offset from `p`.
     fn each_unknown(&self, p: Cell, mut count: impl FnMut(Cell)) {
         let origin = self.lattice(p);
         let mut members = Vec::new();
@@ -103,7 +103,7 @@ impl InformationGain {
     }
 }
 
-/// Which of the 64 cells of `map` from (`x`, `y`) on along x hold `value`; those outside are unknown.
+/// Returns which of the 64 cells of `map` from (`x`, `y`) on along x hold `value`; those outside are unknown.
 fn word_of(map: &OccupancyGrid, x: i32, y: i32, value: Occupancy) -> u64 {
     let frame = map.frame();
     let outside = if value == Occupancy::Unknown { u64::MAX } else { 0 };
@@ -125,7 +125,7 @@ fn word_of(map: &OccupancyGrid, x: i32, y: i32, value: Occupancy) -> u64 {
     (outside & !mask) | (inside << skipped)
 }
 
-/// A prior map brought to the lattice of the robot's own map, by the start pose known in both (section 3.2).
+/// A prior map transformed to the lattice of the robot's own map, by the start pose known in both (section 3.2).
 #[derive(Debug, Clone)]
 pub struct AlignedPrior {
     free: OccupancyGrid,
@@ -133,7 +133,7 @@ pub struct AlignedPrior {
 }
 
 impl AlignedPrior {
-    /// `prior` (world frame) on the lattice of `resolution` m cells whose frame is the pose `start`: each
+    /// Aligns `prior` (world frame) to the lattice of `resolution` m cells whose frame is the pose `start`: each
     /// lattice cell takes the value of "the cell with the closest center after scaling and alignment".
     pub fn new(prior: &OccupancyGrid, start: crate::geometry::Pose, resolution: f64) -> Self {
         use crate::geometry::{Bounds, Point};
@@ -163,12 +163,12 @@ impl AlignedPrior {
         Self { free: OccupancyGrid::from_cells(frame, cells), corner }
     }
 
-    /// Which of the 64 lattice cells from (`x`, `y`) on along x are free in the prior.
+    /// Returns which of the 64 lattice cells from (`x`, `y`) on along x are free in the prior.
     fn free_word(&self, x: i32, y: i32) -> u64 {
         word_of(&self.free, x - self.corner.x, y - self.corner.y, Occupancy::Free)
     }
 
-    /// Whether the lattice `cell` is free in the prior: neither occupied nor unknown nor outside of it.
+    /// Returns whether the lattice `cell` is free in the prior: neither occupied nor unknown nor outside of it.
     pub fn is_free(&self, cell: Cell) -> bool {
         self.free.at(Cell::new(cell.x - self.corner.x, cell.y - self.corner.y)) == Occupancy::Free
     }
@@ -248,8 +248,8 @@ mod tests {
     }
 
     proptest! {
-        /// Sets of cells that are read by words hold what the map and the prior say cell by cell, wherever the map's cell
-        /// (0, 0) lies on the lattice, and beyond both.
+        /// Sets of cells that are read by words hold what the map and the prior hold cell by cell, wherever the map's
+        /// cell (0, 0) lies on the lattice, and beyond both.
         #[test]
         fn words_are_cells(
             raw in prop::collection::vec(0_u8..3, 40 * 40), x in -70..70_i32, y in -70..70_i32, px in -3.0..3.0_f64,
@@ -264,7 +264,7 @@ mod tests {
             for cell in (-60..110).step_by(3).flat_map(|y| (-60..110).map(move |x| Cell::new(x, y))) {
                 let lattice = Cell::new(cell.x + x, cell.y + y);
                 let run = Run { axis: Axis::X, line: lattice.y, from: lattice.x, to: lattice.x };
-                // As far as anything can be seen from the map.
+                // As far as anything is visible from the map.
                 if (-5..45).contains(&cell.x) && (-5..45).contains(&cell.y) {
                     prop_assert_eq!(gain.unknown.count(run) == 1, map.at(cell) == Occupancy::Unknown);
                     let blocks = map.at(cell) == Occupancy::Occupied || !aligned.is_free(lattice);

@@ -47,7 +47,7 @@ pub use mission::{
     coverage_at_distance, explored_map, is_coverage_at_distance, plan_figure, run,
 };
 
-/// Everything a trial of this study needs.
+/// Everything that a trial of this study needs.
 #[derive(Debug)]
 pub struct Setup {
     /// The true world.
@@ -58,17 +58,17 @@ pub struct Setup {
     pub prior: Option<Arc<OccupancyGrid>>,
     /// Prior knowledge of the other kind, a graph in the world's frame, for `strategy: topo-metric-tour`.
     pub topo_metric_map: Option<Arc<TopoMetricMap>>,
-    /// Where the robot begins, in the world's frame (m, rad).
+    /// The robot's first pose, in the world's frame (m, rad).
     pub start: Pose,
     /// Everything else.
     pub parameters: Parameters,
-    /// What coverage is measured against, perhaps together with other setups.
+    /// The reference of coverage, perhaps shared with other setups.
     reference: SharedReference,
     prepared: OnceLock<Result<Prepared, String>>,
 }
 
 impl Setup {
-    /// A setup; nothing is computed yet.
+    /// Creates a setup; nothing is computed yet.
     pub fn new(
         world: Arc<World>,
         robot: Arc<Robot>,
@@ -88,20 +88,20 @@ impl Setup {
         }
     }
 
-    /// The same setup, measured against `reference` together with others that differ in prior knowledge and
+    /// Returns the same setup, measured against `reference` together with others that differ in prior knowledge and
     /// `exploration` only.
     #[must_use]
     pub fn with_reference(self, reference: SharedReference) -> Self {
         Self { reference, ..self }
     }
 
-    /// The same setup with a topo-metric map.
+    /// Returns the same setup with a topo-metric map.
     #[must_use]
     pub fn with_topo_metric_map(self, map: Option<Arc<TopoMetricMap>>) -> Self {
         Self { topo_metric_map: map, ..self }
     }
 
-    /// How far the scanner reaches when a gain is computed, in cells of the robot's map; 0 without a scanner.
+    /// Returns the scanner's range for computing a gain, in cells of the robot's map; 0 without a scanner.
     pub fn gain_range_cells(&self) -> i32 {
         let (sensing, mapping) = (&self.parameters.sensing, &self.parameters.mapping);
         let own = self.robot.lidar.as_ref().map_or(0.0, |lidar| lidar.max_range);
@@ -112,7 +112,7 @@ impl Setup {
         cells
     }
 
-    /// What all trials of this setup share, computed by the first that asks.
+    /// Returns the data that all trials of this setup share, computed at the first request.
     ///
     /// # Errors
     /// Where the setup cannot run at all, which resolution refuses with a better message.

@@ -134,12 +134,12 @@ parameters!(
 );
 
 impl Mapping {
-    /// When a scan is taken into the map.
+    /// Returns the rule by which a scan is taken into the map.
     pub fn keyframes(&self) -> KeyframeRule {
         KeyframeRule { distance: self.keyframe_distance_m, turn: self.keyframe_turn_rad }
     }
 
-    /// How a scan is taken in.
+    /// Returns how a scan is taken in.
     pub fn scans(&self) -> ScanRule {
         ScanRule {
             resolution: self.resolution_m,
@@ -149,7 +149,7 @@ impl Mapping {
         }
     }
 
-    /// Where it is taken to have been.
+    /// Returns where it is taken to have been.
     pub fn filter(&self) -> FilterRule {
         FilterRule {
             particles: self.particles,
@@ -393,25 +393,25 @@ parameters!(
 // from before them keep their keys. Nothing is lost: a key means what this version's defaults say, and a default that
 // changes raises the engine version.
 
-/// Whether a parameter is at its type's default.
+/// Returns whether a parameter is at its type's default.
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
 
-/// Whether a robot is as patient as it was before that was a parameter (s).
+/// Returns whether a robot is as patient as it was before that was a parameter (s).
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over references")]
 #[expect(clippy::float_cmp, reason = "the very number")]
 fn is_usual_patience(value: &f64) -> bool {
     *value == 15.0
 }
 
-/// Whether a parameter is `N`.
+/// Returns whether a parameter is `N`.
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over references")]
 fn is<const N: u32>(value: &u32) -> bool {
     *value == N
 }
 
-/// Whether a parameter is `N` / 1000.
+/// Returns whether a parameter is `N` / 1000.
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over references")]
 fn is_thousandths<const N: u32>(value: &f64) -> bool {
     *value == f64::from(N) / 1000.0

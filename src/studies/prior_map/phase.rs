@@ -1,15 +1,15 @@
-//! What an exploring mind is about, between its choices.
+//! The phases of an exploring mind between its choices.
 
 use crate::geometry::Point;
 use crate::navigation::Wavefront;
 use crate::units::Tick;
 
-/// What the mind is doing.
+/// The mind's present activity.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Phase {
     /// About to choose a location.
     Choosing,
-    /// On the way to a location.
+    /// Driving to a location.
     Driving(Journey),
     /// At a frontier whose unknown side it has not looked at: turning towards `towards`.
     Facing { towards: Point },
@@ -22,21 +22,21 @@ pub(super) enum Phase {
 pub enum Ending {
     /// No frontier is left.
     NoFrontierLeft,
-    /// Frontiers are left, but there is no way to any of them.
+    /// Frontiers are left, but none can be reached.
     NoWay {
         /// How many.
         frontiers: usize,
     },
 }
 
-/// On the way to a location.
+/// A journey to a location.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Journey {
     /// The location (m, map frame).
     pub(super) target: Point,
     /// Lowest weighted distance so far (m), and when it was reached.
     pub(super) closest: (f64, Tick),
-    /// Weighted distance (m) when last looked at.
+    /// Weighted distance (m) when last computed.
     pub(super) remaining: f64,
     pub(super) chosen_at: Tick,
 }
@@ -46,6 +46,6 @@ pub(super) struct Journey {
 pub(super) struct Decided {
     pub(super) due: Tick,
     pub(super) next: Phase,
-    /// The way to a new target.
+    /// The wave to a new target.
     pub(super) wave: Option<Wavefront>,
 }

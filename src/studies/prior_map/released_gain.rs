@@ -1,4 +1,4 @@
-//! I(p) as the authors' released program computed it (prior-map facts, section 6): sampled rays over the inflated map.
+//! I(p) as the authors' released program computes it (prior-map facts, section 6): sampled rays over the inflated map.
 
 use super::information_gain::AlignedPrior;
 use crate::grid::{Cell, Occupancy, OccupancyGrid};
@@ -14,8 +14,8 @@ pub(super) struct Rays {
 }
 
 impl Rays {
-    /// Rays of `range` cells: the end point is rounded to a cell, and a ray takes one cell per step along its longer
-    /// axis.
+    /// Creates rays of `range` cells: the end point is rounded to a cell, and a ray takes one cell per step along its
+    /// longer axis.
     pub(super) fn new(range: i32) -> Self {
         let side = 2 * range + 1;
         #[expect(clippy::cast_sign_loss, reason = "offsets are within the range")]
@@ -36,7 +36,7 @@ impl Rays {
         Self { rays: (0..=360).map(ray).collect(), squares }
     }
 
-    /// The distinct unknown cells that rays from `p` meet before `stops`.
+    /// Counts the distinct unknown cells that rays from `p` meet before `stops`.
     fn unknown(&self, map: &OccupancyGrid, p: Cell, stops: impl Fn(Cell) -> bool) -> u32 {
         let mut met = vec![false; self.squares];
         let mut unknown = 0;
@@ -56,12 +56,13 @@ impl Rays {
     }
 }
 
-/// Coordinate after `step` of `steps` steps towards `end`, rounded to the nearest cell, halves away from zero.
+/// Returns the coordinate after `step` of `steps` steps towards `end`, rounded to the nearest cell, halves away from
+/// zero.
 fn along(end: i32, step: i32, steps: i32) -> i32 {
     if steps == 0 { 0 } else { (2 * end.abs() * step + steps) / (2 * steps) * end.signum() }
 }
 
-/// What is needed to compute the released program's gain.
+/// The data needed to compute the released program's gain.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ReleasedGain<'a> {
     pub(super) rays: &'a Rays,
@@ -78,7 +79,7 @@ pub(super) struct ReleasedGain<'a> {
 }
 
 impl ReleasedGain<'_> {
-    /// I(p) in m², from the map cell `p`.
+    /// Computes I(p) in m², from the map cell `p`.
     ///
     /// With a prior, rays stop at its border and at its first cell that is not free, and no cell at all counts as one.
     /// Without, the unknown stops nothing.

@@ -1,4 +1,4 @@
-//! What a manifest of this study may ask to see: tables and figures in the paper's layout.
+//! Tables and figures in the paper's layout that a manifest of this study can ask for.
 
 use crate::studies::FactorValue;
 use schemars::JsonSchema;
@@ -87,7 +87,7 @@ pub enum Metric {
 }
 
 impl Metric {
-    /// The name in manifests, tables and records, with its unit.
+    /// Returns the name in manifests, tables and records, with its unit.
     pub fn name(self) -> &'static str {
         match self {
             Self::DistanceM => "distance-m",
@@ -95,7 +95,7 @@ impl Metric {
         }
     }
 
-    /// The measure of a trial record that holds this metric at `percent` of coverage.
+    /// Returns the measure of a trial record that holds this metric at `percent` of coverage.
     pub fn measure_at(self, percent: u32) -> String {
         format!("{}-at-{percent}", self.name())
     }

@@ -1,4 +1,4 @@
-//! The prior-knowledge study as the rest of the program knows it.
+//! The prior-knowledge study behind the interface of a study.
 
 use super::mission::{self, columns, coverage_at_distance, is_coverage_at_distance};
 use super::{Parameters, Setup, Strategy};
@@ -90,7 +90,7 @@ impl Study for PriorMap {
 
     fn setup(&self, condition: &mut dyn ConditionAsWritten) -> Option<AnySetup> {
         let parameters: Option<Parameters> = parameters(condition);
-        // Every part has told its faults by now; the prior needs them all.
+        // Every part has reported its faults by now; the prior needs them all.
         let (parameters, around) = (parameters?, condition.surroundings()?);
         let knowledge = condition.prior(&parameters)?;
         let alike =
@@ -111,7 +111,7 @@ impl Study for PriorMap {
     }
 }
 
-/// A tour needs a graph, and a graph is of no use to anything else.
+/// Returns remarks on tours: one needs a graph, and a graph is of no use to anything else.
 fn tour(setup: &Setup) -> Vec<Remark> {
     let exploration = &setup.parameters.exploration;
     let is_toured = exploration.strategy == Strategy::TopoMetricTour;
@@ -149,7 +149,7 @@ fn tour(setup: &Setup) -> Vec<Remark> {
     remarks
 }
 
-/// A median over an even number of beams would invent a range between two.
+/// Returns a remark on a median over an even number of beams: it would invent a range between two.
 fn median(setup: &Setup) -> Option<Remark> {
     let beams = setup.parameters.navigation.obstacle_median_beams;
     beams.is_multiple_of(2).then(|| Remark {

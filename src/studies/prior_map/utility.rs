@@ -1,6 +1,6 @@
-//! u(p): which candidate location is the next best (section 3.1, equations 1 to 4).
+//! u(p): the ranking of candidate locations (section 3.1, equations 1 to 4).
 
-/// A candidate location with what it is judged by.
+/// A candidate location with the two quantities by which it is judged.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Appraisal {
     /// D(p, p_R): Euclidean distance from the robot (m).
@@ -9,7 +9,7 @@ pub struct Appraisal {
     pub gain: f64,
 }
 
-/// u(p) of every candidate: α d(p) + (1 - α) i(p) (equation 1), with d(p) = (D_max - D) / D_max (equation 2)
+/// Computes u(p) of every candidate: α d(p) + (1 - α) i(p) (equation 1), with d(p) = (D_max - D) / D_max (equation 2)
 /// and i(p) = I / I_max (equation 3).
 ///
 /// Where all candidates are at the robot (`D_max` = 0) or promise nothing (`I_max` = 0) the paper's quotient is
@@ -27,7 +27,8 @@ pub fn utilities(candidates: &[Appraisal], alpha: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Indices of the candidates from the best to the worst; the first found stays first among equals (equation 4).
+/// Returns the indices of the candidates from the best to the worst; the first found stays first among equals (equation
+/// 4).
 pub fn ranked(utilities: &[f64]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..utilities.len()).collect();
     order.sort_by(|&a, &b| utilities[b].total_cmp(&utilities[a]));

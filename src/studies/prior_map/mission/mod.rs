@@ -1,4 +1,16 @@
-//! One trial: the simulator on one end, the mind on the other, and what is measured in between.
+//! One trial: the simulator at one end, the mind at the other, and the measures in between.
+//!
+//! Setting up:
+//! 1. Draw the start of the trial.
+//! 2. Make the scene with the errors of drive and odometry.
+//! 3. Give the mind its prior, or its tour with the noise of the graph's nodes.
+//!
+//! Running:
+//! 1. Perceive the first scan.
+//! 2. At every control period ask the mind for a twist, command it and note the state; end where the trial's end is
+//!    reached.
+//! 3. Advance to the next control or scan, and perceive the scan.
+//! 4. Add the measures to the record, those that the manifest asks for last.
 
 pub mod columns;
 mod plan_figure;
@@ -36,7 +48,7 @@ use trace::Trace;
 /// Recorded at every milestone where a manifest asks for further measures.
 pub const FURTHER_AT_MILESTONES: [&str; 2] = ["decisions", "open-frontiers"];
 
-/// What all trials of a setup share: computed once, from the setup alone.
+/// The data that all trials of a setup share: computed once, from the setup alone.
 #[derive(Debug)]
 pub struct Prepared {
     visible: Vec<Outline>,
@@ -70,8 +82,8 @@ impl Prepared {
     }
 }
 
-/// Runs the trial, writing everything down in `recording` where there is one. The record is the same either way,
-/// and whatever `watch` does.
+/// Runs the trial, writing everything to `recording` where there is one. The record is the same either way, and
+/// whatever `watch` does.
 pub fn run(
     spec: &TrialSpec,
     setup: &Setup,
@@ -84,7 +96,7 @@ pub fn run(
     }
 }
 
-/// Runs the trial and tells the map that its robot ends with, in the world's frame and cut to what is known of it.
+/// Runs the trial and returns the map with which its robot ends, in the world's frame and cut to its known part.
 ///
 /// # Errors
 /// Where the setup cannot run, or the robot starts turned against the world's axes, in words.
@@ -100,7 +112,7 @@ pub fn explored_map(spec: &TrialSpec, setup: &Setup) -> Result<OccupancyGrid, St
         .ok_or_else(|| "its robot mapped nothing".to_owned())
 }
 
-/// The smallest part of `map` that holds all its known cells, its origin moved by `shift`.
+/// Returns the smallest part of `map` that holds all its known cells, its origin moved by `shift`.
 fn known_part(map: &OccupancyGrid, shift: Point) -> Option<OccupancyGrid> {
     let frame = map.frame();
     let known = || frame.cells().filter(|cell| map.at(*cell) != Occupancy::Unknown);
@@ -124,8 +136,10 @@ fn enact(
     recording: Option<&mut Recording>,
     watch: &mut dyn Stopwatch,
 ) -> (TrialRecord, Explorer) {
+    // 1. The start.
     let Parameters { sensing, measurement, .. } = &setup.parameters;
     let start = start::draw(setup, &prepared.solid, &spec.seeds);
+    // 2. The scene.
     let scene = Scene {
         visible: &prepared.visible,
         solid: &prepared.solid,
@@ -147,6 +161,7 @@ fn enact(
         },
     };
     let sim = Simulator::new(scene, &spec.seeds);
+    // 3. The mind.
     let node_noise = setup.parameters.exploration.node_noise_sd_m;
     let tour = setup.topo_metric_map.as_ref().map(|map| {
         let mut noise = spec.seeds.stream("node-noise");
@@ -188,23 +203,25 @@ struct Mission<'a> {
     mind: Explorer,
     trace: Trace,
     recorder: Option<Recorder<'a>>,
-    /// Further measures taken on the way.
+    /// Further measures taken during the trial.
     further: BTreeMap<String, f64>,
-    /// How far off poses are, where they are estimated.
+    /// Errors of poses, where these are estimated.
     errors: PoseErrors,
-    /// Where the robot starts in the frame of the manifest's start, where that is not the origin. The mind knows it: its
-    /// map, its prior and what coverage is measured against share that one frame.
+    /// The robot's start in the frame of the manifest's start, where that is not the origin. The mind knows it: its
+    /// map, its prior and the reference of coverage share that one frame.
     known_start: Option<Pose>,
-    /// Where the robot was when it last had moved on, and when.
+    /// The robot's pose when it last had moved on, and the time.
     moved: (Pose, Tick),
     watch: &'a mut dyn Stopwatch,
 }
 
 impl Mission<'_> {
     fn run(mut self, spec: &TrialSpec) -> (TrialRecord, Explorer) {
+        // 1. The first scan.
         let limit = Tick::at_or_after(Seconds(self.setup.parameters.mission.time_limit_s));
         let mut next_control = Tick(0);
         self.perceive();
+        // 2. Control.
         let (outcome, cause) = loop {
             if self.sim.now() >= next_control {
                 next_control = next_control + CONTROL_PERIOD;
@@ -221,12 +238,14 @@ impl Mission<'_> {
                     break ending;
                 }
             }
+            // 3. Advance.
             let until = next_control.min(self.sim.next_scan());
             self.sim.advance_to(until);
             if self.sim.now() == self.sim.odometry_at_scan().stamp {
                 self.perceive();
             }
         };
+        // 4. Measures.
         let mut record = self.trace.finish(spec, outcome, cause, self.sim.now());
         let mut measure = |name: &str, value: f64| {
             record.measures.insert(name.to_owned(), Some(value));
@@ -260,7 +279,7 @@ impl Mission<'_> {
         (record, self.mind)
     }
 
-    /// Step (a): shows the mind the scan just taken, where it wants it.
+    /// Does step (a): shows the mind the scan just taken, where it wants it.
     fn perceive(&mut self) {
         let odometry = self.known(self.sim.odometry_at_scan());
         let wanted = self.mind.wants_scan(odometry);
@@ -302,7 +321,7 @@ impl Mission<'_> {
         }
     }
 
-    /// Further measures at the keyframe that brought `percent`, with the robot at `pose` in its own frame.
+    /// Notes further measures at the keyframe that brought `percent`, with the robot at `pose` in its own frame.
     fn note_milestone(&mut self, percent: u32, pose: Pose) {
         #[expect(clippy::cast_precision_loss, reason = "few")]
         let open = self.mind.open_frontiers(pose) as f64;
@@ -311,7 +330,7 @@ impl Mission<'_> {
         self.further.insert(format!("open-frontiers-at-{percent}"), open);
     }
 
-    /// Odometry as the mind is told it, in the frame of the manifest's start.
+    /// Returns odometry as the mind receives it, in the frame of the manifest's start.
     fn known(&self, odometry: Odometry) -> Odometry {
         match self.known_start {
             Some(start) => Odometry { pose: start.compose(odometry.pose), ..odometry },

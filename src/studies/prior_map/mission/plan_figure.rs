@@ -3,11 +3,11 @@
 use crate::figure::Plan;
 use crate::studies::prior_map::Setup;
 
-/// The layer of a world that always stands.
+/// The layer of a world that every condition has.
 const WALLS: &str = "walls";
 
-/// The world of `setup` as its scanner sees it, the layers `crossed` as crosses, and over it, where asked for, the obstacles of
-/// its prior called `prior`.
+/// Draws the world of `setup` as its scanner sees it, the layers `crossed` as crosses, and over it, where asked for,
+/// the obstacles of its prior called `prior`.
 pub fn plan_figure(title: &str, setup: &Setup, crossed: &[String], prior: Option<&str>) -> String {
     let height = setup.robot.lidar.as_ref().map_or(0.0, |lidar| lidar.height);
     let cut = |wanted: &dyn Fn(&str) -> bool| {

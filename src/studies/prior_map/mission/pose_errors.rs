@@ -1,10 +1,10 @@
-//! How far the robot was from where it took itself to be: absolute trajectory errors, with nothing aligned but the start.
+//! Errors of the robot's estimated poses: absolute trajectory errors, with nothing aligned but the start.
 
 use crate::geometry::Pose;
 
-/// Measures of a trial whose mind estimates its pose: the error of position (m) over the scans taken into the map, root mean
-/// square, median and largest, of the pose known at the time; root mean square of the way as it looks in the end; and of
-/// odometry alone.
+/// Measures of a trial whose mind estimates its pose: the error of position (m) over the scans taken into the map, root
+/// mean square, median and largest, of the pose known at the time; root mean square of the trajectory as estimated in
+/// the end; and of odometry alone.
 pub const POSE_ERRORS: [&str; 5] = [
     "pose-error-m-rms",
     "pose-error-m-median",
@@ -17,21 +17,22 @@ pub const POSE_ERRORS: [&str; 5] = [
 #[derive(Debug, Default)]
 pub(super) struct PoseErrors {
     truth: Vec<Pose>,
-    /// Squared errors of position (m^2) of what was known at the time, and of odometry.
+    /// Squared errors of position (m^2) of the pose known at the time, and of odometry.
     online: Vec<f64>,
     odometry: Vec<f64>,
 }
 
 impl PoseErrors {
-    /// A scan was taken into the map at `truth`, where the mind took itself to be at `estimate` and odometry told `odometry`.
+    /// Notes that a scan was taken into the map at `truth`, with the mind's pose estimated at `estimate` and odometry
+    /// reading `odometry`.
     pub(super) fn note(&mut self, truth: Pose, estimate: Pose, odometry: Pose) {
         self.truth.push(truth);
         self.online.push(squared(truth, estimate));
         self.odometry.push(squared(truth, odometry));
     }
 
-    /// The measures of a trial whose mind says in the end that its scans were taken along `way`. None where no poses were
-    /// estimated.
+    /// Computes the measures of a trial whose mind estimates in the end that its scans were taken along `way`. None
+    /// where no poses were estimated.
     pub(super) fn measures(&self, way: &[Pose]) -> Vec<(&'static str, f64)> {
         if way.is_empty() || way.len() != self.truth.len() {
             return Vec::new();

@@ -11,7 +11,7 @@ use crate::studies::prior_map::parameters::{Exploration, Strategy};
 use crate::studies::recording::{Decision, Frame, FrontierView, Recording, Sensed};
 use crate::units::Tick;
 
-/// How the next location is chosen, in a sentence (equations 1 to 4).
+/// Describes how the next location is chosen, in a sentence (equations 1 to 4).
 fn rule(exploration: &Exploration) -> String {
     match exploration.strategy {
         Strategy::Utility => {
@@ -56,12 +56,12 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    /// Whether every scan is to be written down, also those that the mind does not look at.
+    /// Returns whether every scan is to be recorded, also those that the mind does not use.
     pub(super) fn wants_scans(&self) -> bool {
         self.recording.sensed.is_some()
     }
 
-    /// Writes `scan` down where scans are wanted, taken where the robot `believed` to be.
+    /// Records `scan` where scans are wanted, taken where the robot `believed` to be.
     pub(super) fn sensed(&mut self, scan: &Scan, odometry: Odometry, believed: Pose) {
         if let Some(sensed) = &mut self.recording.sensed {
             sensed.push(Sensed { scan: scan.clone(), odometry, believed });
@@ -117,7 +117,7 @@ impl<'a> Recorder<'a> {
 }
 
 impl Drop for Recorder<'_> {
-    /// Brings the lattice cells noted on the way to one grid that holds them all.
+    /// Moves the lattice cells noted during the trial to one grid that holds them all.
     fn drop(&mut self) {
         if self.low.x > self.high.x {
             return;

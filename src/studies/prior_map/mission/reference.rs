@@ -1,4 +1,4 @@
-//! What coverage is measured against: the map that ideal exploration of the same world would make.
+//! The reference of coverage: the map that ideal exploration of the same world would make.
 //!
 //! Ideal exploration scans all round, without noise, from every place the robot could stand, and takes the
 //! scans into the same kind of map; so a cell counts if and only if a patient robot could have seen it.
@@ -14,7 +14,7 @@ use std::collections::VecDeque;
 use std::f64::consts::PI;
 use std::sync::{Arc, OnceLock};
 
-/// Ideal exploration scans from every so many metres.
+/// Spacing of the places from which ideal exploration scans (m).
 const SPACING: f64 = 0.5;
 
 /// The map of ideal exploration, on the lattice of the robot's own map.
@@ -25,13 +25,13 @@ pub(super) struct Reference {
     total: u32,
 }
 
-/// A reference that several setups have in common: explored by the first trial that asks. Setups may share one where
-/// they differ in nothing but their prior knowledge and `exploration`, which ideal exploration does not depend on.
+/// A reference that several setups share: explored by the first trial that needs it. Setups may share one where they
+/// differ only in their prior knowledge and `exploration`, on which ideal exploration does not depend.
 #[derive(Debug, Clone, Default)]
 pub struct SharedReference(Arc<OnceLock<Arc<Reference>>>);
 
 impl SharedReference {
-    /// The reference, by `explore` where there is none yet.
+    /// Returns the reference, by `explore` where there is none yet.
     pub(super) fn get_or_explore(&self, explore: impl FnOnce() -> Reference) -> Arc<Reference> {
         Arc::clone(self.0.get_or_init(|| Arc::new(explore())))
     }
@@ -69,14 +69,14 @@ impl Reference {
         Self { total: u32::try_from(counted).unwrap_or(u32::MAX), map, coverage }
     }
 
-    /// Cells that full coverage counts.
+    /// Returns the cells that full coverage counts.
     pub(super) fn total(&self) -> u32 {
         self.total
     }
 
-    /// Whether the robot's map, holding `value` at the lattice `cell`, covers a cell that counts. Mapped means
-    /// known: range noise draws walls thicker than they are, and a cell of free floor that such a wall covers
-    /// has been mapped all the same.
+    /// Returns whether the robot's map, holding `value` at the lattice `cell`, covers a cell that counts. Mapped means
+    /// known: range noise draws walls thicker than they are, and a cell of free floor that such a wall covers has been
+    /// mapped all the same.
     pub(super) fn covers(&self, cell: Cell, value: Occupancy) -> bool {
         value != Occupancy::Unknown && counts(self.coverage, self.map.at_lattice(cell))
     }
@@ -89,7 +89,7 @@ fn counts(coverage: Coverage, value: Occupancy) -> bool {
     }
 }
 
-/// The same scanner looking all round, its beams as dense as before.
+/// Returns the same scanner looking all round, its beams as dense as before.
 fn all_round(lidar: &Lidar) -> Lidar {
     #[expect(
         clippy::cast_possible_truncation,
@@ -101,8 +101,8 @@ fn all_round(lidar: &Lidar) -> Lidar {
     Lidar { beams, min_angle: -PI, max_angle: PI - step, noise_sd: 0.0, ..lidar.clone() }
 }
 
-/// Places (map frame) where the robot could stand, found by a flood from its start over cells whose centre is
-/// a robot's radius clear of everything solid.
+/// Finds the places (map frame) where the robot could stand, by a flood from its start over cells whose centre is a
+/// robot's radius clear of everything solid.
 fn reachable_places(setup: &Setup, solid: &[Outline], resolution: f64) -> Vec<Point> {
     let radius = setup.robot.circumscribed_radius();
     let bounds = solid

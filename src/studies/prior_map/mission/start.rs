@@ -1,16 +1,16 @@
-//! Where a trial begins: the manifest's start, or a place near it drawn for the trial.
+//! The start of a trial: the manifest's, or a place near it drawn for the trial.
 
 use crate::geometry::{Outline, Pose};
 use crate::rng::Seeds;
 use crate::studies::prior_map::Setup;
 
-/// Draws until one fits; a start that nothing near fits keeps the manifest's own place.
+/// Draws until one fits; where none does, the manifest's own start is kept.
 const DRAWS: u64 = 1000;
-/// The straight way from the manifest's start is looked at every so many metres.
+/// The straight line from the manifest's start is tested at this spacing (m).
 const SPACING: f64 = 0.05;
 
-/// The start of one trial in the world's frame (m, rad); `None` where the manifest asks for no jitter. It is such that the
-/// body could have been pushed there in a straight line from the manifest's start without touching anything of `solid`, so
+/// Draws the start of one trial in the world's frame (m, rad); `None` where the manifest asks for no jitter. The body
+/// could have been pushed there in a straight line from the manifest's start without touching anything of `solid`, so
 /// that no draw puts it behind a wall.
 pub(super) fn draw(setup: &Setup, solid: &[Outline], seeds: &Seeds) -> Option<Pose> {
     let mission = &setup.parameters.mission;

@@ -17,7 +17,7 @@ use crate::world::{Body, Solid, World};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Two rooms of 4 x 4 m joined by a door 0.9 m wide; walls 0.15 m thick.
+/// Returns two rooms of 4 x 4 m joined by a door 0.9 m wide; walls 0.15 m thick.
 fn flat() -> World {
     let wall = |x0: f64, y0: f64, x1: f64, y1: f64| Solid {
         name: String::new(),
@@ -80,7 +80,7 @@ fn robot() -> Robot {
     }
 }
 
-/// A prior that knows the outer walls only.
+/// Returns a prior that knows the outer walls only.
 fn footprint() -> OccupancyGrid {
     let frame =
         GridFrame { resolution: 0.1, origin: Point::new(-5.0, -3.0), width: 100, height: 60 };
@@ -91,7 +91,7 @@ fn footprint() -> OccupancyGrid {
     OccupancyGrid::from_cells(frame, cells.collect())
 }
 
-/// The flat with the robot in its left room.
+/// Returns the flat with the robot in its left room.
 pub(super) fn setup(prior: Option<OccupancyGrid>) -> Setup {
     let start = Pose::new(-2.5, 0.5, 0.0);
     let (world, robot) = (Arc::new(flat()), Arc::new(robot()));
@@ -109,12 +109,12 @@ fn spec(trial: u32, prior: bool, parameters: Parameters) -> TrialSpec {
     }
 }
 
-/// Any trial, for tests of records.
+/// Returns any trial, for tests of records.
 pub(super) fn spec_of_the_flat() -> TrialSpec {
     spec(0, false, Parameters::default())
 }
 
-/// The flat's two rooms and its door as a graph, from a robot in the left one.
+/// Returns the flat's two rooms and its door as a graph, from a robot in the left one.
 fn graph(door: f64) -> TopoMetricMap {
     let text = format!(
         "reenact-topo-metric-map: 1\nname: flat\nsource: ours\nnodes:\n  left: {{at-m: [-2, 0]}}\n  door: {{at-m: [0, {door}]}}\n  \
@@ -162,7 +162,7 @@ fn every_kind_of_run_explores_the_flat_without_touching_it() {
     }
 }
 
-/// Every option of choosing, measuring and starting, each at a value that is not its default.
+/// Returns every option of choosing, measuring and starting, each at a value that is not its default.
 fn unusual() -> Vec<(&'static str, Parameters)> {
     let with = |change: fn(&mut Parameters)| {
         let mut parameters = Parameters::default();
@@ -215,7 +215,7 @@ fn every_option_explores_the_flat_and_no_robot_comes_nearer_to_a_wall_than_its_r
             let covered = record.measures["coverage-percent"].unwrap();
             assert!(covered > 95.0, "{what}: {covered} %");
             let solid = flat().contact(0.01, 0.43);
-            // Between frames, 0.1 s apart, the body moves 0.1 m: half that at most from a pose that is looked at.
+            // Between frames, 0.1 s apart, the body moves 0.1 m: half that at most from a pose that is tested.
             for pair in recording.frames.windows(2) {
                 let (a, b) = (pair[0].pose.position(), pair[1].pose.position());
                 for at in [a, (a + b) * 0.5] {
@@ -305,7 +305,7 @@ fn recording_changes_no_bit_and_shows_the_map_that_was_made() {
     );
 }
 
-/// Odometry that loses the way, and a mind that does not trust it.
+/// Returns odometry that loses its position, and a mind that does not trust it.
 fn lost() -> Parameters {
     let mut parameters = Parameters::default();
     parameters.sensing.odometry_noise_distance = 0.03;

@@ -1,4 +1,4 @@
-//! What is written down while a trial runs: coverage over time and distance, and the state-hash chain.
+//! The record of a running trial: coverage over time and distance, and the state-hash chain.
 
 use crate::geometry::Pose;
 use crate::studies::prior_map::Crossing;
@@ -7,15 +7,15 @@ use crate::studies::{Outcome, SeriesPoint, TrialRecord, TrialSpec};
 use crate::units::Tick;
 use std::collections::BTreeMap;
 
-/// Coverages (percent) at which distance and time are told.
+/// Coverages (percent) at which distance and time are measured.
 pub const MILESTONES: [u32; 10] = [50, 55, 60, 65, 70, 75, 80, 85, 90, 95];
 
-/// The measure of coverage (percent) after `distance_m` of travel.
+/// Returns the name of the measure of coverage (percent) after `distance_m` of travel.
 pub fn coverage_at_distance(distance_m: u32) -> String {
     format!("coverage-percent-at-{distance_m}-m")
 }
 
-/// Whether `name` is that of coverage after some distance.
+/// Returns whether `name` is that of coverage after some distance.
 pub fn is_coverage_at_distance(name: &str) -> bool {
     let distance = name.strip_prefix("coverage-percent-at-").and_then(|n| n.strip_suffix("-m"));
     distance.is_some_and(|distance| distance.parse::<u32>().is_ok())
@@ -34,14 +34,14 @@ pub(super) struct Trace {
     undecided: Vec<u32>,
     /// Time (s), distance (m) and coverage (percent) at the last keyframe that changed the map.
     before: (f64, f64, f64),
-    /// Distances (m) at which coverage is asked for, and what it was there.
+    /// Distances (m) at which coverage is asked for, and its value there.
     at_distances: BTreeMap<u32, Option<f64>>,
     chain: StateChain,
 }
 
 impl Trace {
-    /// The trace of a trial in a world of `total` cells to cover, coverages counting as reached as `when` says; coverage is
-    /// also told at `distances` (m).
+    /// Creates the trace of a trial in a world of `total` cells to cover; `when` decides at which moment a coverage
+    /// counts as reached, and coverage is also measured at `distances` (m).
     pub(super) fn new(total: u32, when: Crossing, distances: &[u32]) -> Self {
         Self {
             total,
@@ -62,14 +62,14 @@ impl Trace {
         self.covered += change;
     }
 
-    /// Coverage (percent, 0 to 100).
+    /// Returns the coverage (percent, 0 to 100).
     pub(super) fn coverage_percent(&self) -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "cells of a building")]
         let covered = self.covered as f64;
         100.0 * covered / f64::from(self.total.max(1))
     }
 
-    /// Notes the first crossing of every whole percent, at a keyframe that changed the map, and tells those crossed.
+    /// Notes the first crossing of every whole percent, at a keyframe that changed the map, and returns those crossed.
     pub(super) fn note_coverage(&mut self, now: Tick, distance_m: f64) -> std::ops::Range<u32> {
         let percent = self.coverage_percent();
         let time_s = now.seconds().get();
@@ -95,7 +95,8 @@ impl Trace {
         first..self.next_percent
     }
 
-    /// Time and distance at which `level` percent were reached on a straight line from the keyframe before to `after`.
+    /// Returns the time and distance at which `level` percent were reached on a straight line from the keyframe before
+    /// to `after`.
     fn in_between(&self, level: f64, after: (f64, f64, f64)) -> (f64, f64) {
         let before = self.before;
         let share = (level - before.2) / (after.2 - before.2);
@@ -132,7 +133,7 @@ impl Trace {
         });
     }
 
-    /// The record of the trial that ended `now` with `outcome`.
+    /// Returns the record of the trial that ended `now` with `outcome`.
     pub(super) fn finish(
         self,
         spec: &TrialSpec,
@@ -147,7 +148,7 @@ impl Trace {
             measures.insert(format!("distance-m-at-{percent}"), crossing.map(|c| c.1));
         }
         for (&distance, coverage) in &self.at_distances {
-            // A robot that has nothing left to explore has covered as much after any further way.
+            // A robot that has nothing left to explore has covered as much after any further distance.
             let coverage = coverage.unwrap_or_else(|| self.coverage_percent());
             measures.insert(coverage_at_distance(distance), Some(coverage));
         }
@@ -171,7 +172,7 @@ impl Trace {
 mod tests {
     use super::*;
 
-    /// Keyframes at 2 s and 4 s bring 50 and 60 of 100 cells; a choice follows at 5 s.
+    /// Returns a trace whose keyframes at 2 s and 4 s bring 50 and 60 of 100 cells; a choice follows at 5 s.
     fn trace(when: Crossing) -> Trace {
         let mut trace = Trace::new(100, when, &[]);
         trace.cover(50);

@@ -81,7 +81,7 @@ pub fn read(source: &Source) -> Result<TopoMetricMap, Vec<Diagnostic>> {
     if faults.is_empty() { Ok(map) } else { Err(faults) }
 }
 
-/// The node that an end of the edge `i` names.
+/// Returns the node that an end of the edge `i` names.
 fn index(
     parsed: &Parsed<TopoMetricDoc>,
     names: &[&str],

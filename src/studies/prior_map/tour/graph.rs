@@ -14,7 +14,7 @@ pub(super) struct Node {
 }
 
 /// A graph "whose nodes are locations and edges are direct connections that roughly reflect the true metric distances
-/// between locations" (section 2). Connected, and with a node at least: what reads it sees to that.
+/// between locations" (section 2). Connected, and with at least one node: its reader makes sure.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TopoMetricMap {
     /// By name.
@@ -24,34 +24,35 @@ pub struct TopoMetricMap {
 }
 
 impl TopoMetricMap {
-    /// Where the nodes are (m), by name.
+    /// Returns the positions of the nodes (m), by name.
     pub fn positions(&self) -> Vec<Point> {
         self.nodes.iter().map(|node| node.at).collect()
     }
 
-    /// What the nodes are called, in the order of [`Self::positions`].
+    /// Returns the names of the nodes, in the order of [`Self::positions`].
     pub fn names(&self) -> Vec<&str> {
         self.nodes.iter().map(|node| node.name.as_str()).collect()
     }
 
-    /// Between which places (m) there are direct ways.
+    /// Returns the pairs of places (m) that are joined directly.
     pub fn edges(&self) -> Vec<(Point, Point)> {
         self.edges.iter().map(|&(a, b)| (self.nodes[a].at, self.nodes[b].at)).collect()
     }
 
-    /// Digest of what the graph means.
+    /// Returns the digest of the graph's meaning.
     pub fn meaning(&self) -> MeaningDigest {
         MeaningDigest(Sha256Digest::of(json::canonical_of(self)))
     }
 
-    /// The same graph in the frame of `start`, which is given in the graph's own.
+    /// Returns the same graph in the frame of `start`, which is given in the graph's own.
     #[must_use]
     pub fn seen_from(&self, start: Pose) -> Self {
         self.moved(|_, at| start.inverse_transform(at))
     }
 
-    /// The graph with Gaussian noise of standard deviation `sd` (m) in x and in y on every node: "when Gaussian noise ...
-    /// is added to the node positions of the topo-metric map" (section 4.5). Edges stay, and are as long as it makes them.
+    /// Returns the graph with Gaussian noise of standard deviation `sd` (m) in x and in y on every node: "when Gaussian
+    /// noise ... is added to the node positions of the topo-metric map" (section 4.5). Edges stay, with the lengths
+    /// that follow from it.
     #[must_use]
     pub fn with_noise(&self, sd: f64, noise: &mut Stream) -> Self {
         // Numbered by node, so that no draw depends on another.
@@ -69,7 +70,8 @@ impl TopoMetricMap {
         moved
     }
 
-    /// Lengths (m) of the shortest ways between all pairs of nodes, by Floyd and Warshall; infinite where there is none.
+    /// Computes the lengths (m) of the shortest paths between all pairs of nodes, by Floyd and Warshall; infinite where
+    /// there is none.
     pub fn distances(&self) -> Vec<Vec<f64>> {
         let n = self.nodes.len();
         let mut distances = vec![vec![f64::INFINITY; n]; n];

@@ -1,5 +1,5 @@
-//! The shortest tour: an open path from a fixed first node over all others (a travelling salesperson problem without the
-//! way back).
+//! The shortest tour: an open path from a fixed first node over all others (a travelling salesperson problem without
+//! the return).
 
 /// Up to this many nodes to visit the tour is the shortest there is.
 pub const EXACT_UP_TO: usize = 16;
@@ -9,12 +9,12 @@ const BETTER: f64 = 1e-9;
 /// Or-opt moves up to this many nodes at once.
 const LONGEST_MOVED: usize = 3;
 
-/// The order in which to visit every one of `places` (each once, as indices into `distances`, m), beginning at `first`,
-/// which is left out of the answer unless it is one of them: it then comes first, at no cost.
+/// Finds the order in which to visit every one of `places` (each once, as indices into `distances`, m), beginning at
+/// `first`, which is left out of the answer unless it is one of them: it then comes first, at no cost.
 ///
 /// Exact (Held and Karp 1962) for up to [`EXACT_UP_TO`] places; above, nearest insertion and then Or-opt and 2-opt
 /// until neither finds anything better. The first found wins among equals, so the answer is always the same; but places
-/// that the way to the next one leads through anyway come before it.
+/// through which the path to the next one leads anyway come before it.
 pub fn open_tour(distances: &[Vec<f64>], first: usize, places: &[usize]) -> Vec<usize> {
     let mut tour: Vec<usize> = places.iter().copied().filter(|&place| place == first).collect();
     let others: Vec<usize> = places.iter().copied().filter(|&place| place != first).collect();
@@ -27,8 +27,8 @@ pub fn open_tour(distances: &[Vec<f64>], first: usize, places: &[usize]) -> Vec<
     tour
 }
 
-/// The same tour with every place where it is first passed. In a graph a way to a place leads through others; visiting
-/// them later is as long, but then nothing has been done about them when the robot was there.
+/// Returns the same tour with every place where it is first passed. In a graph the path to a place leads through
+/// others; visiting them later is as long, but leaves them unexplored when the robot is there.
 fn passed_first(distances: &[Vec<f64>], first: usize, mut left: Vec<usize>) -> Vec<usize> {
     let mut tour = Vec::with_capacity(left.len());
     let mut here = first;
@@ -36,7 +36,7 @@ fn passed_first(distances: &[Vec<f64>], first: usize, mut left: Vec<usize>) -> V
         let way = distances[here][next];
         let is_passed =
             |place: usize| distances[here][place] + distances[place][next] <= way + BETTER;
-        // Of those on the way, the nearest.
+        // Of those on the path, the nearest.
         let passed = (0..left.len()).filter(|&i| is_passed(left[i]));
         let nearest = passed.min_by(|&a, &b| {
             distances[here][left[a]].total_cmp(&distances[here][left[b]]).then(a.cmp(&b))
@@ -47,13 +47,13 @@ fn passed_first(distances: &[Vec<f64>], first: usize, mut left: Vec<usize>) -> V
     tour
 }
 
-/// Length (m) of the path from `first` over `tour`.
+/// Returns the length (m) of the path from `first` over `tour`.
 fn length(distances: &[Vec<f64>], first: usize, tour: &[usize]) -> f64 {
     let ends = std::iter::once(&first).chain(tour);
     ends.zip(tour).map(|(&a, &b)| distances[a][b]).sum()
 }
 
-/// Dynamic programming over the sets of nodes visited.
+/// Finds the shortest tour by dynamic programming over the sets of nodes visited.
 fn held_karp(distances: &[Vec<f64>], first: usize, places: &[usize]) -> Vec<usize> {
     let n = places.len();
     if n == 0 {
@@ -99,7 +99,7 @@ fn held_karp(distances: &[Vec<f64>], first: usize, places: &[usize]) -> Vec<usiz
     tour
 }
 
-/// Takes the place nearest to the tour again and again, and puts it where it costs least.
+/// Builds a tour: takes the place nearest to it again and again, and inserts it where it costs least.
 fn nearest_insertion(distances: &[Vec<f64>], first: usize, places: &[usize]) -> Vec<usize> {
     let mut left = places.to_vec();
     let mut tour: Vec<usize> = Vec::with_capacity(left.len());
@@ -123,13 +123,13 @@ fn nearest_insertion(distances: &[Vec<f64>], first: usize, places: &[usize]) -> 
     tour
 }
 
-/// Index of the first least value.
+/// Returns the index of the first least value.
 fn least(values: impl Iterator<Item = f64>) -> usize {
     let smaller = |best: (usize, f64), (i, value)| if value < best.1 { (i, value) } else { best };
     values.enumerate().fold((0, f64::INFINITY), smaller).0
 }
 
-/// Or-opt and 2-opt to a local optimum.
+/// Improves a tour by Or-opt and 2-opt to a local optimum.
 fn improved(distances: &[Vec<f64>], first: usize, mut tour: Vec<usize>) -> Vec<usize> {
     let mut best = length(distances, first, &tour);
     // The tour gets shorter by `BETTER` at least every time, so this ends.
@@ -140,8 +140,8 @@ fn improved(distances: &[Vec<f64>], first: usize, mut tour: Vec<usize>) -> Vec<u
     tour
 }
 
-/// The first tour shorter than `best` that one move leads to: a piece taken elsewhere, forwards or backwards (Or 1976), or
-/// turned round where it is (Croes 1958).
+/// Returns the first tour shorter than `best` that one move yields: a piece moved elsewhere, forwards or backwards (Or
+/// 1976), or turned round in place (Croes 1958).
 fn one_better(
     distances: &[Vec<f64>],
     first: usize,
@@ -184,7 +184,7 @@ mod tests {
     use crate::rng::Seeds;
     use proptest::prelude::*;
 
-    /// Every node joined to the one before it and to one more: connected, and far from complete.
+    /// Returns a graph with every node joined to the one before it and to one more: connected, and far from complete.
     fn distances(places: &[(f64, f64)], more: &[usize]) -> Vec<Vec<f64>> {
         let mut edges: Vec<(usize, usize)> = (1..places.len()).map(|i| (i - 1, i)).collect();
         let further = more.iter().enumerate().map(|(i, other)| (i, other % places.len()));
@@ -231,15 +231,15 @@ mod tests {
 
     #[test]
     fn a_place_is_visited_when_it_is_first_passed() {
-        // 2 hangs on 1: to go 0, 2, 1, 3 or 0, 1, 2, 3 is as long.
+        // 2 hangs on 1: the order 0, 2, 1, 3 is as long as 0, 1, 2, 3.
         let star = [(0.0, 0.0), (5.0, 0.0), (5.0, 4.0), (30.0, 0.0)];
         let distances = graph(&star, &[(0, 1), (1, 2), (1, 3)]).distances();
         assert_eq!(passed_first(&distances, 0, vec![2, 1, 3]), [1, 2, 3]);
         assert_eq!(open_tour(&distances, 0, &[1, 2, 3]), [1, 2, 3]);
     }
 
-    /// How near a local optimum comes is measured, on the same 400 graphs every time; there is no bound (a search among
-    /// others found one 1.27 times as long as the exact tour).
+    /// The distance of a local optimum from the exact tour is measured, on the same 400 graphs every time; there is no
+    /// bound (a search among others found one 1.27 times as long as the exact tour).
     #[test]
     fn improved_tours_come_near_the_exact_ones() {
         let mut stream = Seeds::new(2020, vec![]).stream("salesperson");

@@ -1,4 +1,4 @@
-//! The tour completed on-line: which frontier is next.
+//! The tour completed on-line: the choice of the next frontier.
 
 use super::graph::TopoMetricMap;
 use super::salesperson::open_tour;
@@ -7,9 +7,9 @@ use crate::geometry::Point;
 /// A tour under way, in the frame of the robot's map.
 #[derive(Debug)]
 pub struct Tour {
-    /// Where the nodes are taken to be (m).
+    /// Assumed positions of the nodes (m).
     nodes: Vec<Point>,
-    /// Lengths of the ways between them over edges (m).
+    /// Lengths of the shortest paths between them over edges (m).
     distances: Vec<Vec<f64>>,
     /// The nodes still to be visited, in the order of the tour.
     ahead: Vec<usize>,
@@ -18,26 +18,26 @@ pub struct Tour {
 }
 
 impl Tour {
-    /// A tour over all nodes of `map`, which is in the frame of the robot's map. It is planned at the first choice, from
-    /// where the robot then is.
+    /// Creates a tour over all nodes of `map`, which is in the frame of the robot's map. It is planned at the first
+    /// choice, from where the robot then is.
     pub fn new(map: &TopoMetricMap) -> Self {
         let nodes = map.positions();
         let ahead = (0..nodes.len()).collect();
         Self { nodes, distances: map.distances(), ahead, place: None }
     }
 
-    /// The nodes still to be visited, in the order of the tour.
+    /// Returns the nodes still to be visited, in the order of the tour.
     pub fn ahead(&self) -> &[usize] {
         &self.ahead
     }
 
-    /// What each of `frontiers` (candidate locations, m) is worth, from 1 for the next one down to above 0, for a robot at
-    /// `robot` whose map knows the places that `is_known` says.
+    /// Returns the worth of each of `frontiers` (candidate locations, m), from 1 for the next one down to above 0, for
+    /// a robot at `robot` whose map knows the places for which `is_known` holds.
     ///
-    /// A frontier belongs to the nearest node still to be visited. Nodes that are known and have no frontier are done with:
-    /// they are left out, and the rest of the tour is planned anew from the node that was explored last. The frontiers of
-    /// the tour's first node that has any come first, those of the next one next; within a node, and once no node is
-    /// left, the nearest comes first.
+    /// A frontier belongs to the nearest node still to be visited. Nodes that are known and have no frontier are
+    /// finished: they are left out, and the rest of the tour is planned anew from the node that was explored last. The
+    /// frontiers of the tour's first node that has any come first, those of the next one next; within a node, and once
+    /// no node is left, the nearest comes first.
     pub fn rank(
         &mut self,
         robot: Point,
@@ -57,7 +57,7 @@ impl Tour {
         if let Some(place) = place
             && (is_new || self.ahead.len() < before)
         {
-            // Whatever is planned from does not depend on how the tour ran before.
+            // The plan does not depend on how the tour ran before.
             self.ahead.sort_unstable();
             self.ahead = open_tour(&self.distances, place, &self.ahead);
         }
@@ -82,7 +82,7 @@ impl Tour {
     }
 }
 
-/// The one of `among` that is nearest to `point`, the first among equals.
+/// Returns the one of `among` that is nearest to `point`, the first among equals.
 fn nearest(nodes: &[Point], among: &[usize], point: Point) -> Option<usize> {
     let nearer = |a: &usize, b: &usize| {
         let [a, b] = [a, b].map(|node| (nodes[*node].distance(point), *node));
@@ -97,7 +97,7 @@ mod tests {
     use super::*;
     use crate::studies::prior_map::utility::ranked;
 
-    /// A corridor of four nodes along x, 10 m apart, and a side room at the second.
+    /// Returns a corridor of four nodes along x, 10 m apart, and a side room at the second.
     fn corridor() -> Tour {
         let nodes = [(0.0, 0.0), (10.0, 0.0), (20.0, 0.0), (30.0, 0.0), (10.0, 8.0)];
         Tour::new(&graph(&nodes, &[(0, 1), (1, 2), (2, 3), (1, 4)]))
@@ -110,12 +110,12 @@ mod tests {
     #[test]
     fn the_current_node_comes_before_nearer_frontiers_of_others() {
         let mut tour = corridor();
-        // The room is on the way: the tour is 0, 1, 4, 2, 3.
+        // The room is on the path: the tour is 0, 1, 4, 2, 3.
         let frontiers = [at(14.9, 0.0), at(10.0, 7.0), at(18.0, 0.0)];
         let worth = tour.rank(at(13.0, 0.0), &frontiers, |p| p.x < 14.0 && p.y < 5.0);
         assert_eq!(tour.ahead(), [1, 4, 2, 3], "0 is known and has no frontier");
         assert_eq!(ranked(&worth), [0, 1, 2]);
-        // 1 gets known without a frontier of its own: the room is next, although others are nearer.
+        // 1 becomes known without a frontier of its own: the room is next, although others are nearer.
         let worth = tour.rank(at(14.0, 0.0), &frontiers[1..], |p| p.x < 16.0 && p.y < 5.0);
         assert_eq!(tour.ahead(), [4, 2, 3]);
         assert_eq!(ranked(&worth), [0, 1]);
