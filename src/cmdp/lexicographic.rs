@@ -168,7 +168,7 @@ pub fn solve(cmdp: &Cmdp) -> Result<Outcome, SolveError> {
     solve_with(cmdp, &vec![Unmeetable::Refuse; cmdp.secondary().len()])
 }
 
-/// Solves `cmdp`, handling bounds that cannot be met as `handling` says, one entry per secondary cost. Bounds are
+/// Solves `cmdp`, handling bounds that cannot be met by `handling`, one entry per secondary cost. Bounds are
 /// imposed in the model's order, so that the first to be relaxed is declared last. The steps are those of the module
 /// documentation.
 ///

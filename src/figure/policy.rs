@@ -389,7 +389,7 @@ fn arrow(a: (f64, f64), b: (f64, f64), fast: bool, passes: f64) -> [Element; 2] 
     let (mx, my) = (f64::midpoint(a.0, b.0), f64::midpoint(a.1, b.1));
     // Heads leave part of a short line free.
     let size = (4.0 + width).min(length / 2.6);
-    // From the middle on, as far as it stands.
+    // One head, `on` px beyond the middle of the line.
     let triangle = |on: f64| {
         let (x, y) = (mx + ux * on, my + uy * on);
         let corners = [

@@ -1,9 +1,10 @@
 //! Mutual visibility of cells: exactly, in integers.
 //!
 //! A cell is visible where the segment between the two centres touches no blocking cell (cells are closed squares).
-//! From the origin cell, the square of column c and row d ≥ 1 hides the slopes (column per row) between its two outer
-//! corners: of cells in later rows all of [(c - ½) / (d ± ½), (c + ½) / (d ∓ ½)], of cells in its own row only what
+//! From the origin cell, the square of column c and row d ≥ 1 hides the slopes (column per row) from one of its
+//! corners to another: of cells in later rows all of [(c - ½) / (d ± ½), (c + ½) / (d ∓ ½)], of cells in its own row only what
 //! lies before the row's middle.
+//!
 //! Each quadrant is swept row by row, keeping the slopes hidden so far as a sorted list of intervals:
 //! 1. Blocking neighbours beside the origin touch the diagonals with a corner: two first intervals.
 //! 2. Stop where one interval hides the whole quadrant.

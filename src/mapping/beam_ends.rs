@@ -1,4 +1,4 @@
-//! Where the beams of a scan end.
+//! The ends of a scan's beams.
 
 use crate::geometry::{Point, Pose};
 use crate::math;

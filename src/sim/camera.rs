@@ -35,7 +35,7 @@ pub(super) struct Camera {
 }
 
 impl Camera {
-    /// Creates a camera whose view the `visible` outlines block where `scene` says so.
+    /// Creates a camera whose view the `visible` outlines block where `scene` requires it.
     pub(super) fn new(scene: CameraScene<'_>, visible: &[Outline]) -> Self {
         let screens = match scene.occlusion {
             Occlusion::None => Vec::new(),

@@ -11,7 +11,7 @@ use crate::units::{Seconds, Tick};
 pub struct CompassNoise {
     /// How it is distributed.
     pub distribution: Distribution,
-    /// Its size (rad): a standard deviation or a bound, as the distribution says.
+    /// Its size (rad): a standard deviation or a bound, by its distribution.
     pub heading: f64,
     /// How long one error lasts; if no longer than the time between readings, the error is white. A time, so that it
     /// does not depend on any rate.

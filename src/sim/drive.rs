@@ -10,8 +10,8 @@ use crate::units::{Seconds, Tick};
 pub struct DriveNoise {
     /// How the two errors are distributed.
     pub distribution: Distribution,
-    /// Size of the error of linear speed, as a share of the command: a standard deviation or a bound, as the
-    /// distribution says.
+    /// Size of the error of linear speed, as a share of the command: a standard deviation or a bound, by
+    /// the distribution.
     pub linear: f64,
     /// Size of the error of angular speed, as a share of the command.
     pub angular: f64,

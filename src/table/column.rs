@@ -96,7 +96,7 @@ impl Column {
         Self { pattern: Some(pattern), ..self }
     }
 
-    /// Returns the same, empty where `when` says.
+    /// Returns the same, with `when` for the cases in which it is empty.
     #[must_use]
     pub fn empty_where(self, when: &str) -> Self {
         Self { empty: Some(when.to_owned()), ..self }

@@ -1,4 +1,4 @@
-//! The policies executed: drawn afresh at every visit, walks must take on average what evaluation says.
+//! The policies executed: drawn afresh at every visit, walks must take on average what evaluation gives.
 
 use super::*;
 

@@ -1,11 +1,7 @@
 //! The pilot: drives one leg after the other.
 //!
-//! [`Pilot::control`] runs once a control period:
-//! 1. Convert the scan to points in the base frame.
-//! 2. Carry on by the last command: heading, target, hub and door, corrected by compass, walls and camera.
-//! 3. Wish: the command if nothing stood in the way, by the phase.
-//! 4. Guard: limit the wish to what brings no obstacle too near.
-//! 5. Back off, or give up, where the guard has held the robot up for long.
+//! Once a control period [`Pilot::control`] carries its state on by the last command and by what is sensed, computes the
+//! wished command, lets the guard limit it, and backs off, gives up or goes on to the next phase where that held it up.
 //!
 //! The wish goes by the phase:
 //! 1. Looking: turn once around, then stand.
@@ -159,15 +155,10 @@ impl Pilot {
     /// Computes the command for the next control period.
     pub fn control(&mut self, sense: &Sense<'_>) -> Twist {
         let period = CONTROL_PERIOD.seconds().get();
-        // 1. The scan in the base frame.
         self.seen.read(sense.scan);
-        // 2. What the last command did, and what is sensed.
         self.carry_on(sense, period);
-        // 3. What the pilot would do if nothing stood in the way.
         let wish = self.wish(period);
-        // 4. What the guard lets through.
         let given = self.guard.limit(&self.rule, self.body, self.seen.points(), wish);
-        // 5. Held up for long?
         self.notice_hold_up(wish, given, period);
         self.command = given;
         given
@@ -376,7 +367,7 @@ impl Pilot {
         Twist { linear: 0.0, angular: angular.min(limits.angular_rad_s).copysign(error) }
     }
 
-    /// Backs off where the guard has held it up for long.
+    /// Backs off, or leaves a phase that needs no room, where the guard has held the robot up for long.
     fn notice_hold_up(&mut self, wish: Twist, given: Twist, period: f64) {
         let held_up =
             given == Twist::STOP && wish != Twist::STOP || wish.linear > 0.0 && given.linear == 0.0;
