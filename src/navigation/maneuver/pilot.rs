@@ -367,7 +367,7 @@ impl Pilot {
         Twist { linear: 0.0, angular: angular.min(limits.angular_rad_s).copysign(error) }
     }
 
-    /// Backs off, or leaves a phase that needs no room, where the guard has held the robot up for long.
+    /// Backs off, or ends the present phase, where the guard has held the robot up for long.
     fn notice_hold_up(&mut self, wish: Twist, given: Twist, period: f64) {
         let held_up =
             given == Twist::STOP && wish != Twist::STOP || wish.linear > 0.0 && given.linear == 0.0;
