@@ -289,6 +289,5 @@ fn described_inputs(plan: &Plan) -> Vec<DescribedTable> {
 
 /// A list of verdicts as bundles hold it.
 pub(super) fn verdicts_json(verdicts: &[Verdict]) -> Vec<u8> {
-    let list: Vec<Value> = verdicts.iter().map(Verdict::to_json).collect();
-    (crate::json::canonical(&json!(list)) + "\n").into_bytes()
+    (crate::json::canonical(&json!(verdicts)) + "\n").into_bytes()
 }

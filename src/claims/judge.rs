@@ -7,6 +7,7 @@ use super::metric::WALL_TIME;
 use super::observations::Observations;
 use super::terms::{Correction, Sides, Terms};
 use super::verdict::{CellNumbers, ComparisonVerdict, Judgement, Verdict};
+use super::words::Words;
 use crate::stats::distribution::normal_quantile;
 use crate::stats::multiple::holm;
 use crate::stats::real;
@@ -103,10 +104,12 @@ fn conclude(claim: &Claim, bench: &Bench<'_>, drafts: Vec<Draft>) -> Verdict {
             about: draft.about,
             judgement,
             reason,
-            test: draft.test,
-            p_for: tested.then_some((raw_for[i], p_for[i])),
-            p_against: tested.then_some((raw_against[i], p_against[i])),
-            statistics: evidence.as_ref().map(|e| e.statistics.clone()).unwrap_or_default(),
+            test: draft.test.into(),
+            p_for: tested.then_some(raw_for[i]),
+            p_for_corrected: tested.then_some(p_for[i]),
+            p_against: tested.then_some(raw_against[i]),
+            p_against_corrected: tested.then_some(p_against[i]),
+            statistics: evidence.iter().flat_map(|e| e.statistics.iter().copied()).collect(),
             effect: evidence.and_then(|e| e.effect),
             cells: draft.cells,
             trials_to_decide,
@@ -123,19 +126,21 @@ fn conclude(claim: &Claim, bench: &Bench<'_>, drafts: Vec<Draft>) -> Verdict {
     } else {
         None
     };
+    let (says, ours) = match claim.words() {
+        Words::Says(text) => (Some(text), None),
+        Words::Ours(text) => (None, Some(text)),
+    };
     Verdict {
         id: claim.id.clone(),
-        words: claim.words(),
+        says,
+        ours,
         cite: claim.cite.clone(),
         paper_table: claim.papers_table(),
         judgement,
         reason,
-        form: claim.expect.form(),
+        form: claim.expect.form().into(),
         alpha: terms.alpha,
-        correction: match terms.correction {
-            Correction::Holm => "holm",
-            Correction::None => "none",
-        },
+        correction: terms.correction,
         required,
         minimum_n: terms.minimum_n,
         comparisons,
@@ -182,10 +187,10 @@ fn sum_up(
         }
         (_, 1) => {
             let (p, which) = match judgement {
-                Judgement::Contradicted => (comparisons[0].p_against, "of the opposite "),
-                _ => (comparisons[0].p_for, ""),
+                Judgement::Contradicted => (comparisons[0].p_against_corrected, "of the opposite "),
+                _ => (comparisons[0].p_for_corrected, ""),
             };
-            let p = p.map_or(1.0, |(_, corrected)| corrected);
+            let p = p.unwrap_or(1.0);
             format!("p {which}{p:.2e} at alpha {} by {}", terms.alpha, comparisons[0].test)
         }
         _ => format!(

@@ -1,8 +1,16 @@
-//! What judging a claim yields, and its canonical form in `results/claims.json`.
+//! What judging a claim yields: the entries of `results/claims.json`, written and read by one type.
+//!
+//! Numbers are written to nine significant digits, one that is none as `null`, which is read as no number. What is left out is
+//! read as nothing; an entry without `id` and `verdict` is none.
 
-use super::words::{PaperTable, Words};
+use super::terms::Correction;
+use super::words::PaperTable;
 use crate::stats::Interval;
-use serde_json::{Map, Value, json};
+use serde::ser::SerializeMap;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde_json::{Value, json};
+use std::borrow::Cow;
+use std::collections::BTreeMap;
 use std::fmt;
 
 /// Names of the statistics that `also-at-n` tells of the first trials: their number, their p in the claimed direction,
@@ -12,7 +20,8 @@ pub(super) const FIRST_N_P: &str = "first-n-p";
 pub(super) const FIRST_N_HEDGES_G: &str = "first-n-hedges-g";
 
 /// The answer to a claim or to one of its comparisons.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Judgement {
     /// There is evidence for it.
     Supported,
@@ -41,62 +50,175 @@ impl fmt::Display for Judgement {
     }
 }
 
+/// A name that the engine gives, or that was read.
+pub type Name = Cow<'static, str>;
+
+/// A number of `claims.json`.
+mod number {
+    use super::{Deserialize, Deserializer, Serialize, Serializer, rounded};
+
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over references")]
+    pub(super) fn serialize<S: Serializer>(x: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+        rounded(*x).serialize(serializer)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+        Ok(Option::deserialize(deserializer)?.unwrap_or(f64::NAN))
+    }
+
+    pub(super) fn none() -> f64 {
+        f64::NAN
+    }
+}
+
+/// Writes a number that is left out where there is none.
+#[expect(clippy::ref_option, reason = "serde hands over references")]
+fn given<S: Serializer>(x: &Option<f64>, serializer: S) -> Result<S::Ok, S::Error> {
+    x.map(rounded).serialize(serializer)
+}
+
 /// What was counted in one cell or pool.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub struct CellNumbers {
     /// The selection in words.
+    #[serde(default)]
     pub cell: String,
     /// Runs in the cell.
+    #[serde(default)]
     pub trials: u64,
     /// Runs that reached the measure; the rest are censored. For shares, all of them.
+    #[serde(default)]
     pub reached: u64,
     /// Runs that count, for shares.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub successes: Option<u64>,
     /// Mean of those that reached it, or the share.
+    #[serde(default, skip_serializing_if = "Option::is_none", serialize_with = "given")]
     pub mean: Option<f64>,
     /// Sample standard deviation of those that reached it, for measures.
+    #[serde(default, skip_serializing_if = "Option::is_none", serialize_with = "given")]
     pub sd: Option<f64>,
     /// Median of those that reached it, for measures.
+    #[serde(default, skip_serializing_if = "Option::is_none", serialize_with = "given")]
     pub median: Option<f64>,
     /// The paper's number for the cell, in the metric's unit, where it is compared with.
+    #[serde(default, skip_serializing_if = "Option::is_none", serialize_with = "given")]
     pub published: Option<f64>,
 }
 
 /// The size of what was found.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub struct Effect {
     /// Which measure of effect.
-    pub name: &'static str,
+    #[serde(default)]
+    pub name: Name,
     /// Its value, first cell less second.
+    #[serde(with = "number", default = "number::none")]
     pub value: f64,
-    /// Where it lies; the confidence matches the test: 1 - 2 alpha for one-sided, 1 - alpha for two-sided ones.
-    pub interval: Interval,
-    /// The same without unit (`hedges-g`), where there is one.
-    pub standardised: Option<(&'static str, f64)>,
+    /// The lower end of its interval.
+    #[serde(with = "number", default = "number::none")]
+    pub low: f64,
+    /// The upper end.
+    #[serde(with = "number", default = "number::none")]
+    pub high: f64,
+    /// The interval's; it matches the test: 1 - 2 alpha for one-sided, 1 - alpha for two-sided ones.
+    #[serde(with = "number", default = "number::none")]
+    pub confidence: f64,
+    /// The same without unit, for a difference of means.
+    #[serde(default, skip_serializing_if = "Option::is_none", serialize_with = "given")]
+    pub hedges_g: Option<f64>,
+}
+
+impl Effect {
+    pub(super) fn new(name: &'static str, value: f64, interval: Interval) -> Self {
+        let Interval { low, high, confidence } = interval;
+        Self { name: name.into(), value, low, high, confidence, hedges_g: None }
+    }
+}
+
+/// The statistics of a test by name, in the order of the test.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Statistics(Vec<(Name, f64)>);
+
+impl Statistics {
+    /// Returns each name with its value.
+    pub fn iter(&self) -> impl Iterator<Item = (&str, f64)> {
+        self.0.iter().map(|(name, value)| (name.as_ref(), *value))
+    }
+
+    /// Returns the value of one of them.
+    pub fn get(&self, name: &str) -> Option<f64> {
+        self.iter().find(|(known, _)| *known == name).map(|(_, value)| value)
+    }
+
+    fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+}
+
+impl FromIterator<(&'static str, f64)> for Statistics {
+    fn from_iter<I: IntoIterator<Item = (&'static str, f64)>>(named: I) -> Self {
+        Self(named.into_iter().map(|(name, value)| (name.into(), value)).collect())
+    }
+}
+
+impl Serialize for Statistics {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(self.0.len()))?;
+        self.iter().try_for_each(|(name, value)| map.serialize_entry(name, &rounded(value)))?;
+        map.end()
+    }
+}
+
+impl<'de> Deserialize<'de> for Statistics {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let read = BTreeMap::<String, Option<f64>>::deserialize(deserializer)?;
+        let named = read.into_iter().map(|(name, x)| (name.into(), x.unwrap_or(f64::NAN)));
+        Ok(Self(named.collect()))
+    }
 }
 
 /// One comparison of a claim.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub struct ComparisonVerdict {
     /// Metric and cells in words.
+    #[serde(default)]
     pub about: String,
     /// What was found.
+    #[serde(rename = "verdict")]
     pub judgement: Judgement,
     /// Why it cannot be tested, where it cannot.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
     /// Name of the test.
-    pub test: &'static str,
-    /// Name and value of the test's statistics.
-    pub statistics: Vec<(&'static str, f64)>,
-    /// p-value of the claim's direction, as tested and corrected.
-    pub p_for: Option<(f64, f64)>,
-    /// p-value of the opposite, as tested and corrected.
-    pub p_against: Option<(f64, f64)>,
+    #[serde(default)]
+    pub test: Name,
+    /// What the test counted.
+    #[serde(default, skip_serializing_if = "Statistics::is_empty")]
+    pub statistics: Statistics,
+    /// p-value of the claim's direction, as tested.
+    #[serde(default, skip_serializing_if = "Option::is_none", serialize_with = "given")]
+    pub p_for: Option<f64>,
+    /// The same, corrected.
+    #[serde(default, skip_serializing_if = "Option::is_none", serialize_with = "given")]
+    pub p_for_corrected: Option<f64>,
+    /// p-value of the opposite, as tested.
+    #[serde(default, skip_serializing_if = "Option::is_none", serialize_with = "given")]
+    pub p_against: Option<f64>,
+    /// The same, corrected.
+    #[serde(default, skip_serializing_if = "Option::is_none", serialize_with = "given")]
+    pub p_against_corrected: Option<f64>,
     /// The effect and its interval.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub effect: Option<Effect>,
     /// The numbers used.
+    #[serde(default)]
     pub cells: Vec<CellNumbers>,
     /// Trials per condition that would have decided it with 80 % power, if what was seen is the truth.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub trials_to_decide: Option<u64>,
 }
 
@@ -122,35 +244,52 @@ pub fn agreement_in_words<'a>(statistics: impl IntoIterator<Item = (&'a str, f64
 }
 
 /// The verdict on a claim. What the paper says, what its own table shows and what we find stay three facts.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub struct Verdict {
     /// The claim's id.
     pub id: String,
-    /// What is claimed, by the paper or by us.
-    pub words: Words,
-    /// Where it says so.
+    /// What the paper claims, in its words; none where the claim is ours.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub says: Option<String>,
+    /// What we claim besides.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ours: Option<String>,
+    /// Where the paper says so.
+    #[serde(default)]
     pub cite: Option<String>,
     /// What the paper's own table shows, as the manifest states it.
+    #[serde(default)]
     pub paper_table: PaperTable,
     /// What we find.
+    #[serde(rename = "verdict")]
     pub judgement: Judgement,
     /// The judgement in a sentence.
+    #[serde(default)]
     pub reason: String,
     /// Form of expectation.
-    pub form: &'static str,
+    #[serde(default)]
+    pub form: Name,
     /// Level of significance.
+    #[serde(with = "number", default = "number::none")]
     pub alpha: f64,
-    /// `holm` or `none`.
-    pub correction: &'static str,
+    /// What keeps its comparisons honest.
+    #[serde(default)]
+    pub correction: Correction,
     /// Comparisons that must hold.
+    #[serde(default)]
     pub required: usize,
     /// Runs per cell without which nothing is judged.
+    #[serde(default)]
     pub minimum_n: u64,
     /// All comparisons, those that could not be tested among them.
+    #[serde(default)]
     pub comparisons: Vec<ComparisonVerdict>,
     /// What a reader should know beside it.
+    #[serde(default)]
     pub notes: Vec<String>,
     /// Trials per condition that would have decided every open comparison.
+    #[serde(default)]
     pub trials_to_decide: Option<u64>,
 }
 
@@ -164,84 +303,16 @@ pub fn rounded(x: f64) -> Value {
     json!(nine)
 }
 
-impl CellNumbers {
-    fn to_json(&self) -> Value {
-        let mut map = Map::new();
-        map.insert("cell".into(), json!(self.cell));
-        map.insert("trials".into(), json!(self.trials));
-        map.insert("reached".into(), json!(self.reached));
-        if let Some(successes) = self.successes {
-            map.insert("successes".into(), json!(successes));
-        }
-        let numbers = [
-            ("mean", self.mean),
-            ("sd", self.sd),
-            ("median", self.median),
-            ("published", self.published),
-        ];
-        for (name, number) in numbers {
-            if let Some(number) = number {
-                map.insert(name.into(), rounded(number));
-            }
-        }
-        Value::Object(map)
-    }
-}
-
-impl Effect {
-    fn to_json(&self) -> Value {
-        let mut map = Map::new();
-        map.insert("name".into(), json!(self.name));
-        map.insert("value".into(), rounded(self.value));
-        map.insert("low".into(), rounded(self.interval.low));
-        map.insert("high".into(), rounded(self.interval.high));
-        map.insert("confidence".into(), rounded(self.interval.confidence));
-        if let Some((name, value)) = self.standardised {
-            map.insert(name.into(), rounded(value));
-        }
-        Value::Object(map)
-    }
-}
-
 impl ComparisonVerdict {
     /// What `also-at-n` asked for in words: effect and p at the paper's number of runs beside those at ours.
     pub fn at_both_numbers(&self) -> Option<String> {
-        let found = |name: &str| self.statistics.iter().find(|(n, _)| *n == name).map(|(_, x)| *x);
-        let (n, p) = (found(FIRST_N)?, found(FIRST_N_P)?);
+        let (n, p) = (self.statistics.get(FIRST_N)?, self.statistics.get(FIRST_N_P)?);
         let of = |g: Option<f64>| g.map(|g| format!(", g {g:+.2}")).unwrap_or_default();
-        let all = self.effect.as_ref().and_then(|effect| effect.standardised).map(|(_, g)| g);
+        let all = self.effect.as_ref().and_then(|effect| effect.hedges_g);
         let most = self.cells.iter().map(|cell| cell.reached).max().unwrap_or(0);
-        let all = format!("at n = {most} p {:.1e}{}", self.p_for?.0, of(all));
-        Some(format!("at n = {n} p {p:.1e}{}; {all}", of(found(FIRST_N_HEDGES_G))))
-    }
-
-    fn to_json(&self) -> Value {
-        let mut map = Map::new();
-        map.insert("about".into(), json!(self.about));
-        map.insert("verdict".into(), json!(self.judgement.to_string()));
-        map.insert("test".into(), json!(self.test));
-        map.insert("cells".into(), self.cells.iter().map(CellNumbers::to_json).collect());
-        if let Some(reason) = &self.reason {
-            map.insert("reason".into(), json!(reason));
-        }
-        for (name, p) in [("p-for", self.p_for), ("p-against", self.p_against)] {
-            if let Some((raw, corrected)) = p {
-                map.insert(name.into(), rounded(raw));
-                map.insert(format!("{name}-corrected"), rounded(corrected));
-            }
-        }
-        if let Some(effect) = &self.effect {
-            map.insert("effect".into(), effect.to_json());
-        }
-        if !self.statistics.is_empty() {
-            let statistics: Map<String, Value> =
-                self.statistics.iter().map(|(n, x)| ((*n).to_owned(), rounded(*x))).collect();
-            map.insert("statistics".into(), Value::Object(statistics));
-        }
-        if let Some(trials) = self.trials_to_decide {
-            map.insert("trials-to-decide".into(), json!(trials));
-        }
-        Value::Object(map)
+        let all = format!("at n = {most} p {:.1e}{}", self.p_for?, of(all));
+        let first = of(self.statistics.get(FIRST_N_HEDGES_G));
+        Some(format!("at n = {n} p {p:.1e}{first}; {all}"))
     }
 }
 
@@ -260,26 +331,6 @@ impl Verdict {
         let all: u64 = seen.iter().map(|cell| cell.2).sum();
         let reached: u64 = seen.iter().map(|cell| cell.1).sum();
         (reached < all).then(|| (all - reached, all))
-    }
-
-    /// The entry of `results/claims.json`, statistics rounded to nine significant digits.
-    pub fn to_json(&self) -> Value {
-        json!({
-            "id": self.id,
-            self.words.key(): self.words.text(),
-            "cite": self.cite,
-            "paper-table": self.paper_table.to_string(),
-            "verdict": self.judgement.to_string(),
-            "reason": self.reason,
-            "form": self.form,
-            "alpha": rounded(self.alpha),
-            "correction": self.correction,
-            "required": self.required,
-            "minimum-n": self.minimum_n,
-            "comparisons": self.comparisons.iter().map(ComparisonVerdict::to_json).collect::<Vec<_>>(),
-            "notes": self.notes,
-            "trials-to-decide": self.trials_to_decide,
-        })
     }
 }
 
@@ -332,12 +383,11 @@ impl Score {
     /// What the verdicts say of the paper, and apart from it what they say of our own checks: one line each, those of
     /// nothing left out.
     pub fn lines(verdicts: &[Verdict]) -> Vec<String> {
-        let of = |wanted: fn(&Words) -> bool, what: &str| {
-            let score = Self::of(verdicts.iter().filter(|verdict| wanted(&verdict.words)));
+        let of = |papers: bool, what: &str| {
+            let score = Self::of(verdicts.iter().filter(|v| v.says.is_some() == papers));
             (score.all() > 0).then(|| score.in_words(what))
         };
-        let papers = of(|words| matches!(words, Words::Says(_)), "claims of the paper");
-        let ours = of(|words| matches!(words, Words::Ours(_)), "checks of our own");
+        let (papers, ours) = (of(true, "claims of the paper"), of(false, "checks of our own"));
         [papers, ours].into_iter().flatten().collect()
     }
 }

@@ -31,7 +31,7 @@ impl Words {
 }
 
 /// What the paper's own table shows of a claim: a statement of the manifest's author, never computed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum PaperTable {
     /// The printed numbers bear the claim out.
@@ -39,6 +39,7 @@ pub enum PaperTable {
     /// The printed numbers speak against it.
     Contradicts,
     /// There are no printed numbers on it, or they decide nothing.
+    #[default]
     Silent,
 }
 

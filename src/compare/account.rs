@@ -2,8 +2,10 @@
 
 use super::Settings;
 use crate::bundle::{Bundle, Fault};
+use crate::claims::Verdict;
 use crate::digest::{FileDigest, ResultsDigest, Sha256Digest, TrialKey};
 use crate::studies::TrialRecord;
+use serde::Deserialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
@@ -165,11 +167,9 @@ fn verdicts(results: &BTreeMap<String, ResultFile>) -> Result<BTreeMap<String, S
     let Some(file) = results.get("claims.json") else { return Ok(BTreeMap::new()) };
     let text = file.text.as_deref().unwrap_or_default();
     let list: Vec<Value> = serde_json::from_str(text).map_err(|e| fault(e.to_string()))?;
-    let pair = |claim: &Value| Some((word(claim, "id")?, word(claim, "verdict")?));
-    let pairs = list.iter().map(|claim| pair(claim).ok_or_else(|| fault(claim.to_string())));
-    pairs.collect()
-}
-
-fn word(value: &Value, key: &str) -> Option<String> {
-    value[key].as_str().map(str::to_owned)
+    let pair = |claim: &Value| {
+        let read = Verdict::deserialize(claim).map_err(|_| fault(claim.to_string()))?;
+        Ok((read.id, read.judgement.to_string()))
+    };
+    list.iter().map(pair).collect()
 }

@@ -1,11 +1,11 @@
 //! A claim as the page shows it: verdict, finding in human words, and every comparison behind it.
 
 use super::template::{fixed, percent};
-use crate::claims::Claim;
-use crate::claims::verdict::agreement_in_words;
+use crate::claims::terms::Correction;
+use crate::claims::verdict::{CellNumbers, ComparisonVerdict, agreement_in_words, rounded};
+use crate::claims::{Claim, Judgement, PaperTable, Verdict};
 use crate::math::exp;
 use serde::Serialize;
-use serde_json::Value;
 
 /// A claim and what became of it.
 #[derive(Debug, Clone, Default, Serialize)]
@@ -63,59 +63,59 @@ pub(super) fn rows(
     claims: &[Claim],
 ) -> Result<Vec<ClaimRow>, String> {
     let Some(bytes) = bytes else { return Ok(Vec::new()) };
-    let verdicts: Vec<Value> = serde_json::from_slice(bytes).map_err(|e| format!("{path}: {e}"))?;
+    let verdicts: Vec<Verdict> =
+        serde_json::from_slice(bytes).map_err(|e| format!("{path}: {e}"))?;
     let why = |id: &str| {
         let claim = claims.iter().find(|claim| claim.id == id);
         claim.and_then(|claim| claim.why.clone()).unwrap_or_default()
     };
-    Ok(verdicts.iter().map(|v| ClaimRow { why: why(&text(v, "id")), ..row(v) }).collect())
+    Ok(verdicts.into_iter().map(|v| ClaimRow { why: why(&v.id), ..row(v) }).collect())
 }
 
-fn row(verdict: &Value) -> ClaimRow {
-    let comparisons: Vec<&Value> = list(verdict, "comparisons").collect();
-    let (found, paper_table) = (text(verdict, "verdict"), text(verdict, "paper-table"));
+fn row(verdict: Verdict) -> ClaimRow {
     ClaimRow {
-        id: text(verdict, "id"),
-        says: text(verdict, "says"),
-        ours: text(verdict, "ours"),
-        cite: text(verdict, "cite"),
-        numbers: numbers(verdict, &comparisons) + &censored(&comparisons),
-        differs: differs(&found, &paper_table).to_owned(),
-        verdict: found,
-        paper_table,
+        numbers: numbers(&verdict) + &censored(&verdict),
+        differs: differs(verdict.judgement, verdict.paper_table).to_owned(),
+        rule: rule(&verdict),
+        comparisons: verdict.comparisons.iter().map(comparison).collect(),
+        verdict: verdict.judgement.to_string(),
+        paper_table: verdict.paper_table.to_string(),
+        id: verdict.id,
+        says: verdict.says.unwrap_or_default(),
+        ours: verdict.ours.unwrap_or_default(),
+        cite: verdict.cite.unwrap_or_default(),
         why: String::new(),
-        rule: rule(verdict, comparisons.len()),
-        notes: list(verdict, "notes").filter_map(Value::as_str).map(str::to_owned).collect(),
-        comparisons: comparisons.into_iter().map(comparison).collect(),
+        notes: verdict.notes,
     }
 }
 
 /// Where what we find and what the paper's own table shows are at odds.
-fn differs(verdict: &str, paper_table: &str) -> &'static str {
+fn differs(verdict: Judgement, paper_table: PaperTable) -> &'static str {
     match (verdict, paper_table) {
-        ("supported", "contradicts") => {
+        (Judgement::Supported, PaperTable::Contradicts) => {
             "The paper's own table contradicts its sentence; our trials support it."
         }
-        ("contradicted", "supports") => {
+        (Judgement::Contradicted, PaperTable::Supports) => {
             "The paper's own table supports its sentence; our trials contradict it."
         }
         _ => "",
     }
 }
 
-fn rule(verdict: &Value, comparisons: usize) -> String {
-    let mut rule = format!("Level of significance {}", text_of(&verdict["alpha"]));
+fn rule(verdict: &Verdict) -> String {
+    let mut rule = format!("Level of significance {}", rounded(verdict.alpha));
+    let comparisons = verdict.comparisons.len();
     if comparisons > 1 {
-        let required = verdict["required"].as_u64().unwrap_or_default();
-        rule.push_str(&format!("; {required} of {comparisons} comparisons must hold"));
-        if verdict["correction"] == "holm" {
+        rule.push_str(&format!("; {} of {comparisons} comparisons must hold", verdict.required));
+        if verdict.correction == Correction::Holm {
             rule.push_str(", p-values corrected after Holm");
         }
     }
-    if let Some(n) = verdict["minimum-n"].as_u64().filter(|n| *n > 0) {
+    if verdict.minimum_n > 0 {
+        let n = verdict.minimum_n;
         rule.push_str(&format!("; nothing is judged below {n} runs a cell"));
     }
-    if let Some(n) = verdict["trials-to-decide"].as_u64() {
+    if let Some(n) = verdict.trials_to_decide {
         rule.push_str(&format!(
             "; about {n} trials per condition would decide it with 80 % power, if what was seen is the truth"
         ));
@@ -124,75 +124,58 @@ fn rule(verdict: &Value, comparisons: usize) -> String {
 }
 
 /// What decided a verdict, as one would say it.
-fn numbers(verdict: &Value, comparisons: &[&Value]) -> String {
-    match comparisons {
+fn numbers(verdict: &Verdict) -> String {
+    match &verdict.comparisons[..] {
+        [] => verdict.reason.clone(),
+        [only] if effect(only).is_empty() => verdict.reason.clone(),
         [only] => {
-            let known = only["statistics"].as_object().into_iter().flatten();
-            let known = known.filter_map(|(name, x)| Some((name.as_str(), x.as_f64()?)));
+            let known = only.statistics.iter().filter(|(_, x)| x.is_finite());
             let parts = [effect(only), agreement_in_words(known), test(only)];
-            let parts: Vec<String> = parts.into_iter().filter(|part| !part.is_empty()).collect();
-            if effect(only).is_empty() { text(verdict, "reason") } else { parts.join("; ") }
+            parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("; ")
         }
-        [] => text(verdict, "reason"),
         all => {
-            let count = |name| all.iter().filter(|c| c["verdict"] == name).count();
-            let mut words =
-                vec![format!("{} of {} comparisons hold", count("supported"), all.len())];
-            for (name, rest) in [
-                ("contradicted", "the other way"),
-                ("inconclusive", "undecided"),
-                ("cannot-be-tested", "not testable"),
+            let count = |judgement| all.iter().filter(|c| c.judgement == judgement).count();
+            let hold = count(Judgement::Supported);
+            let mut words = vec![format!("{hold} of {} comparisons hold", all.len())];
+            for (judgement, rest) in [
+                (Judgement::Contradicted, "the other way"),
+                (Judgement::Inconclusive, "undecided"),
+                (Judgement::CannotBeTested, "not testable"),
             ] {
-                if count(name) > 0 {
-                    words.push(format!("{} {rest}", count(name)));
+                if count(judgement) > 0 {
+                    words.push(format!("{} {rest}", count(judgement)));
                 }
             }
-            let required = verdict["required"].as_u64().unwrap_or_default();
-            format!("{}; {required} must hold", words.join(", "))
+            format!("{}; {} must hold", words.join(", "), verdict.required)
         }
     }
 }
 
 /// Runs that never reached what they were compared by, in words; empty where all did.
-fn censored(comparisons: &[&Value]) -> String {
-    let mut seen: Vec<(String, u64, u64)> = Vec::new();
-    for cell in comparisons.iter().flat_map(|comparison| list(comparison, "cells")) {
-        let count = |key: &str| cell[key].as_u64().unwrap_or(0);
-        let one = (text(cell, "cell"), count("reached"), count("trials"));
-        if !seen.contains(&one) {
-            seen.push(one);
-        }
-    }
-    let all: u64 = seen.iter().map(|cell| cell.2).sum();
-    let reached: u64 = seen.iter().map(|cell| cell.1).sum();
-    if reached < all {
-        format!("; {} of {all} runs compared never reached the measure", all - reached)
-    } else {
-        String::new()
-    }
+fn censored(verdict: &Verdict) -> String {
+    let words =
+        |(censored, all)| format!("; {censored} of {all} runs compared never reached the measure");
+    verdict.censored().map(words).unwrap_or_default()
 }
 
-fn comparison(comparison: &Value) -> ComparisonRow {
-    let reason = text(comparison, "reason");
+fn comparison(comparison: &ComparisonVerdict) -> ComparisonRow {
     ComparisonRow {
-        about: text(comparison, "about"),
-        verdict: text(comparison, "verdict"),
-        finding: if reason.is_empty() { effect(comparison) } else { reason },
+        about: comparison.about.clone(),
+        verdict: comparison.judgement.to_string(),
+        finding: comparison.reason.clone().unwrap_or_else(|| effect(comparison)),
         test: test(comparison),
-        cells: list(comparison, "cells").map(cell).collect(),
+        cells: comparison.cells.iter().map(cell).collect(),
     }
 }
 
 /// `+30 percentage points (98 % interval +12 to +47)`; empty where no effect is told.
-fn effect(comparison: &Value) -> String {
-    let effect = &comparison["effect"];
-    let number = |key: &str| effect[key].as_f64();
-    let (Some(value), Some(low), Some(high)) = (number("value"), number("low"), number("high"))
-    else {
+fn effect(comparison: &ComparisonVerdict) -> String {
+    let Some(effect) = &comparison.effect else { return String::new() };
+    let (value, low, high) = (effect.value, effect.low, effect.high);
+    if ![value, low, high].iter().all(|x| x.is_finite()) {
         return String::new();
-    };
-    let name = text(effect, "name");
-    let of_logs = text(comparison, "about").contains("mean log of");
+    }
+    let of_logs = comparison.about.contains("mean log of");
     // A difference of logarithms is a ratio, and that is how people speak of it.
     let ratio = |x: f64| percent(100.0 * (exp(x) - 1.0));
     let signed = |x: f64, digits| {
@@ -204,7 +187,8 @@ fn effect(comparison: &Value) -> String {
     let share = |x: f64| format!("{}\u{a0}%", fixed(100.0 * x, 0));
     let plain = |x: f64| if x.abs() >= 100.0 { signed(x, 0) } else { signed(x, 2) };
     let said = |words: &str, show: &dyn Fn(f64) -> String| {
-        let confidence = 100.0 * number("confidence").unwrap_or(0.95);
+        let known = Some(effect.confidence).filter(|confidence| confidence.is_finite());
+        let confidence = 100.0 * known.unwrap_or(0.95);
         // Claims at a strict level have intervals that are not of 100 %.
         let digits = if confidence > 99.5 { 4 } else { 0 };
         format!(
@@ -215,9 +199,9 @@ fn effect(comparison: &Value) -> String {
             show(high)
         )
     };
-    match name.as_str() {
+    match effect.name.as_ref() {
         "risk-difference" => said(" percentage points", &points),
-        "largest-difference" if text(comparison, "test").contains("newcombe") => {
+        "largest-difference" if comparison.test.contains("newcombe") => {
             format!("largest difference {}", said(" percentage points", &points))
         }
         "share" => said("", &share),
@@ -234,36 +218,35 @@ fn effect(comparison: &Value) -> String {
 }
 
 /// `p = 0.0018 (welch)`, in the direction that was found.
-fn test(comparison: &Value) -> String {
-    let contradicted = comparison["verdict"] == "contradicted";
-    let key = if contradicted { "p-against" } else { "p-for" };
-    let corrected = &comparison[format!("{key}-corrected")];
-    let Some(p) = corrected.as_f64().or_else(|| comparison[key].as_f64()) else {
-        return text(comparison, "test").replace('-', " ");
+fn test(comparison: &ComparisonVerdict) -> String {
+    let name = comparison.test.replace('-', " ");
+    let (of, corrected, raw) = match comparison.judgement {
+        Judgement::Contradicted => {
+            (" for the opposite", comparison.p_against_corrected, comparison.p_against)
+        }
+        _ => ("", comparison.p_for_corrected, comparison.p_for),
     };
+    let Some(p) = corrected.or(raw) else { return name };
     let p = if p < 0.0001 {
         "p < 0.0001".to_owned()
     } else {
         format!("p = {}", fixed(p, if p < 0.01 { 4 } else { 2 }))
     };
-    let of = if contradicted { " for the opposite" } else { "" };
-    format!("{p}{of} ({})", text(comparison, "test").replace('-', " "))
+    format!("{p}{of} ({name})")
 }
 
 /// `start=A, strategy=random: 96 %, 48 of 50 runs`.
-fn cell(cell: &Value) -> String {
-    let number = |key: &str| cell[key].as_f64();
-    let count = |key: &str| cell[key].as_u64();
-    let (trials, reached) = (count("trials").unwrap_or(0), count("reached").unwrap_or(0));
+fn cell(cell: &CellNumbers) -> String {
+    let (trials, reached) = (cell.trials, cell.reached);
     let mut parts = Vec::new();
-    match (count("successes"), number("mean")) {
+    match (cell.successes, cell.mean) {
         (Some(successes), Some(share)) => {
             let share = fixed(100.0 * share, 0);
             parts.push(format!("{share}\u{a0}%, {successes} of {trials} runs"));
         }
         (_, mean) => {
             if let Some(mean) = mean {
-                let sd = number("sd").map(|sd| format!(" ± {}", fixed(sd, 2))).unwrap_or_default();
+                let sd = cell.sd.map(|sd| format!(" ± {}", fixed(sd, 2))).unwrap_or_default();
                 parts.push(format!("mean {}{sd}", fixed(mean, 2)));
             }
             parts.push(if reached < trials {
@@ -273,28 +256,16 @@ fn cell(cell: &Value) -> String {
             });
         }
     }
-    if let Some(published) = number("published") {
+    if let Some(published) = cell.published {
         parts.push(format!("paper {}", fixed(published, 2)));
     }
-    format!("{}: {}", text(cell, "cell"), parts.join(", "))
-}
-
-fn text(value: &Value, key: &str) -> String {
-    value[key].as_str().unwrap_or_default().to_owned()
-}
-
-fn text_of(value: &Value) -> String {
-    value.as_str().map_or_else(|| value.to_string(), str::to_owned)
-}
-
-fn list<'a>(value: &'a Value, key: &str) -> impl Iterator<Item = &'a Value> {
-    value[key].as_array().map(Vec::as_slice).unwrap_or_default().iter()
+    format!("{}: {}", cell.cell, parts.join(", "))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use serde_json::json;
+    use serde_json::{Value, json};
 
     fn one(verdict: &str, comparisons: &[Value]) -> ClaimRow {
         let verdict = json!([{

@@ -8,8 +8,9 @@
 use super::closeness::{self, Closeness};
 use super::{Replanned, Severity};
 use crate::bundle::{Bundle, BundleContent, Fault, format};
+use crate::claims::verdict::Effect;
+use crate::claims::{self, Judgement};
 use serde::Serialize;
-use serde_json::Value;
 
 /// The claims file, relative to `results/`.
 const CLAIMS: &str = "claims.json";
@@ -61,10 +62,12 @@ pub enum Standing {
 }
 
 impl Standing {
-    fn of(sealed: &str, fresh: &str) -> Self {
-        let is_decided = |verdict: &str| matches!(verdict, "supported" | "contradicted");
-        match (is_decided(sealed), is_decided(fresh)) {
-            _ if sealed == fresh => Self::Holds,
+    /// Of a sealed verdict and the fresh one, if there is one.
+    fn of(sealed: Judgement, fresh: Option<Judgement>) -> Self {
+        let is_decided =
+            |verdict| matches!(verdict, Judgement::Supported | Judgement::Contradicted);
+        match (is_decided(sealed), fresh.is_some_and(is_decided)) {
+            _ if Some(sealed) == fresh => Self::Holds,
             (true, true) => Self::Flipped,
             (true, false) => Self::Weaker,
             (false, true) => Self::Stronger,
@@ -188,43 +191,37 @@ fn finding(claim: &ClaimAgain, path: &str) -> Option<(Severity, Fault)> {
 
 /// The claims of two `claims.json`, those of the first in its order. Level 3 has shown that the sealed one is ours.
 fn judged_twice(sealed: &str, fresh: &str) -> Vec<ClaimAgain> {
-    let list = |text: &str| serde_json::from_str::<Vec<Value>>(text).unwrap_or_default();
+    let list = |text: &str| serde_json::from_str::<Vec<claims::Verdict>>(text).unwrap_or_default();
     let fresh = list(fresh);
-    let word = |claim: &Value, key: &str| claim[key].as_str().unwrap_or_default().to_owned();
-    list(sealed)
-        .iter()
-        .map(|sealed| {
-            let id = word(sealed, "id");
-            let missing = Value::Null;
-            let fresh = fresh.iter().find(|claim| word(claim, "id") == id).unwrap_or(&missing);
-            let verdict = |claim: &Value| word(claim, "verdict");
-            ClaimAgain {
-                standing: Standing::of(&verdict(sealed), &verdict(fresh)),
-                id,
-                sealed: verdict(sealed),
-                sealed_numbers: numbers(sealed),
-                fresh: verdict(fresh),
-                fresh_numbers: numbers(fresh),
-            }
-        })
-        .collect()
+    let twice = |sealed: claims::Verdict| {
+        let fresh = fresh.iter().find(|claim| claim.id == sealed.id);
+        let judgement = fresh.map(|claim| claim.judgement);
+        ClaimAgain {
+            standing: Standing::of(sealed.judgement, judgement),
+            sealed: sealed.judgement.to_string(),
+            sealed_numbers: numbers(&sealed),
+            fresh: judgement.map(|judgement| judgement.to_string()).unwrap_or_default(),
+            fresh_numbers: fresh.map_or_else(|| NO_REASON.to_owned(), numbers),
+            id: sealed.id,
+        }
+    };
+    list(sealed).into_iter().map(twice).collect()
 }
 
+const NO_REASON: &str = "no reason given";
+
 /// The reason of a verdict, and the size of what was found where one comparison decides it.
-fn numbers(claim: &Value) -> String {
-    let mut text = claim["reason"].as_str().unwrap_or("no reason given").to_owned();
-    if let Some([only]) = claim["comparisons"].as_array().map(Vec::as_slice)
-        && let Some(name) = only["effect"]["name"].as_str()
-    {
-        let number = |key: &str| only["effect"][key].as_f64().unwrap_or(f64::NAN);
-        text.push_str(&format!(
-            ", {name} {:.3} within {:.3} to {:.3}",
-            number("value"),
-            number("low"),
-            number("high")
-        ));
-    }
-    text
+fn numbers(verdict: &claims::Verdict) -> String {
+    let reason = if verdict.reason.is_empty() { NO_REASON } else { &verdict.reason };
+    let effect = match &verdict.comparisons[..] {
+        [only] => only.effect.as_ref(),
+        _ => None,
+    };
+    let of = |effect: &Effect| {
+        let Effect { name, value, low, high, .. } = effect;
+        format!(", {name} {value:.3} within {low:.3} to {high:.3}")
+    };
+    reason.to_owned() + &effect.map(of).unwrap_or_default()
 }
 
 fn result_of<'a>(content: &'a BundleContent, path: &str) -> Option<&'a [u8]> {
@@ -239,14 +236,14 @@ fn text(bytes: Option<&[u8]>) -> String {
 mod tests {
     use super::Standing::{Flipped, Holds, Open, Stronger, Weaker};
     use super::*;
-    use serde_json::json;
+    use serde_json::{Value, json};
 
     fn claim(id: &str, verdict: &str, p: f64) -> Value {
         json!({
             "id": id,
             "verdict": verdict,
             "reason": format!("p {p} at alpha 0.05 by welch"),
-            "comparisons": [{"effect": {"name": "difference", "value": p, "low": -1.5, "high": null}}],
+            "comparisons": [{"verdict": verdict, "effect": {"name": "difference", "value": p, "low": -1.5, "high": null}}],
         })
     }
 

@@ -178,7 +178,7 @@ fn mean_level(group: &Group, bounds: Bounds, confidence: f64) -> Result<Evidence
         (student_t_sf(t, df), student_t_sf(-t, df))
     });
     let interval = mean_interval(group.summary, confidence);
-    let effect = Effect { name: "mean", value: group.summary.mean, interval, standardised: None };
+    let effect = Effect::new("mean", group.summary.mean, interval);
     Ok(Evidence { p_for, p_against, statistics: Vec::new(), effect: Some(effect) })
 }
 
@@ -204,8 +204,7 @@ fn quantile_level(
         &mut bench.stream(about),
     );
     let name = if q == 0.5 { "median" } else { "p95" };
-    let effect =
-        Effect { name, value: found.estimate, interval: found.interval, standardised: None };
+    let effect = Effect::new(name, found.estimate, found.interval);
     Evidence { p_for, p_against, statistics: Vec::new(), effect: Some(effect) }
 }
 
@@ -245,6 +244,6 @@ fn relative(bench: &Bench<'_>, a: &Group, b: &Group, bounds: Bounds) -> Result<E
         confidence: bench.confidence(),
     };
     let value = exp(ln_ratio) - 1.0;
-    let effect = Effect { name: "relative-difference", value, interval, standardised: None };
+    let effect = Effect::new("relative-difference", value, interval);
     Ok(Evidence { p_for, p_against, statistics: Vec::new(), effect: Some(effect) })
 }

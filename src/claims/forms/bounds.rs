@@ -70,6 +70,6 @@ pub(super) fn share_level(share: Proportion, bounds: Bounds, confidence: f64) ->
         if z.is_nan() { (0.5, 0.5) } else { (normal_sf(z), normal_sf(-z)) }
     });
     let interval = wilson(share, confidence);
-    let effect = Effect { name: "share", value: share.share(), interval, standardised: None };
+    let effect = Effect::new("share", share.share(), interval);
     Evidence { p_for, p_against, statistics: Vec::new(), effect: Some(effect) }
 }

@@ -156,11 +156,10 @@ fn correlated(
             ("pearson", pearson(x, y)),
             ("slope", xy / xx),
         ],
-        effect: Some(Effect {
-            name: "spearman",
-            value: r,
-            interval: spearman_interval(r, clusters.len() as u64, bench.confidence()),
-            standardised: None,
-        }),
+        effect: Some(Effect::new(
+            "spearman",
+            r,
+            spearman_interval(r, clusters.len() as u64, bench.confidence()),
+        )),
     })
 }

@@ -59,7 +59,7 @@ fn of_the_first(
     let found = evidence(&bench, "first trials", test, &groups[0], &groups[1])?;
     let (p, _) = directed(found.tails, found.difference, side, found.sides);
     let mut told = vec![(FIRST_N, real(n)), (FIRST_N_P, p)];
-    told.extend(found.effect.standardised.map(|(_, g)| (FIRST_N_HEDGES_G, g)));
+    told.extend(found.effect.hedges_g.map(|g| (FIRST_N_HEDGES_G, g)));
     Ok(told)
 }
 
@@ -160,12 +160,7 @@ fn evidence(
                 difference: delta.estimate,
                 sides: bench.terms.sides,
                 statistics: vec![("u", found.u), ("exact", f64::from(u8::from(found.exact)))],
-                effect: Effect {
-                    name: "cliff-delta",
-                    value: delta.estimate,
-                    interval: delta.interval,
-                    standardised: None,
-                },
+                effect: Effect::new("cliff-delta", delta.estimate, delta.interval),
             }
         }
         Test::BrownForsythe => {
@@ -179,7 +174,7 @@ fn evidence(
                 sides: bench.terms.sides,
                 statistics: vec![("t", found.t), ("df", found.df)],
                 effect: Effect {
-                    name: "difference-of-distances-from-the-median",
+                    name: "difference-of-distances-from-the-median".into(),
                     ..mean_effect(&a, &b, found.interval(bench.confidence()))
                 },
             }
@@ -198,11 +193,11 @@ fn from_median(group: &Group) -> Group {
 pub(super) fn share_effect(a: Proportion, b: Proportion, confidence: f64) -> Effect {
     let value = risk_difference(a, b);
     let interval = newcombe(a, b, confidence);
-    Effect { name: "risk-difference", value, interval, standardised: None }
+    Effect::new("risk-difference", value, interval)
 }
 
 pub(super) fn mean_effect(a: &Group, b: &Group, interval: Interval) -> Effect {
     let value = a.summary.mean - b.summary.mean;
-    let standardised = Some(("hedges-g", hedges_g(a.summary, b.summary)));
-    Effect { name: "mean-difference", value, interval, standardised }
+    let hedges_g = Some(hedges_g(a.summary, b.summary));
+    Effect { hedges_g, ..Effect::new("mean-difference", value, interval) }
 }

@@ -109,7 +109,7 @@ fn all_pairs(bench: &Bench<'_>, groups: &[Group], margin: f64) -> Result<Evidenc
             p_for = p_for.max(found.inside);
             beyond.push(found.beyond);
             if widest.as_ref().is_none_or(|(size, _)| effect.value.abs() > *size) {
-                effect.name = "largest-difference";
+                effect.name = "largest-difference".into();
                 widest = Some((effect.value.abs(), effect));
             }
         }

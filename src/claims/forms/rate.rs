@@ -219,11 +219,6 @@ fn compared(
         p_for,
         p_against,
         statistics: vec![("first", rates[0]), ("second", rates[1]), ("resamples", resamples)],
-        effect: Some(Effect {
-            name: "rate-difference",
-            value: found.estimate,
-            interval: found.interval,
-            standardised: None,
-        }),
+        effect: Some(Effect::new("rate-difference", found.estimate, found.interval)),
     })
 }

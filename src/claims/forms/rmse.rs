@@ -159,12 +159,7 @@ fn bounded(found: &Bootstrapped, at_most: f64, statistics: Vec<(&'static str, f6
         p_for: share(count(&|x| x >= at_most)),
         p_against: share(count(&|x| x <= at_most)),
         statistics,
-        effect: Some(Effect {
-            name: "rmse",
-            value: found.estimate,
-            interval: found.interval,
-            standardised: None,
-        }),
+        effect: Some(Effect::new("rmse", found.estimate, found.interval)),
     }
 }
 

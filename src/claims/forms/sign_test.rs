@@ -128,12 +128,8 @@ impl Form for SignTest {
                 ),
             };
             let share = Proportion::new(claimed, pairs);
-            let effect = Effect {
-                name: "share-of-pairs",
-                value: share.share(),
-                interval: wilson(share, bench.confidence()),
-                standardised: None,
-            };
+            let effect =
+                Effect::new("share-of-pairs", share.share(), wilson(share, bench.confidence()));
             let statistics = vec![
                 ("pairs", real(pairs)),
                 ("as-claimed", real(claimed)),

@@ -157,11 +157,10 @@ fn resampled(
         p_for: share(above),
         p_against: share(below),
         statistics: vec![("resamples", resamples)],
-        effect: Some(Effect {
-            name: if compared { "spread-difference" } else { "spread" },
-            value: found.estimate,
-            interval: found.interval,
-            standardised: None,
-        }),
+        effect: Some(Effect::new(
+            if compared { "spread-difference" } else { "spread" },
+            found.estimate,
+            found.interval,
+        )),
     })
 }

@@ -184,7 +184,7 @@ fn weigh(
             let tails = spearman_permutation(&x, &y, bench.context.permutations, &mut stream);
             let (p_for, p_against) = directed(tails, rho, side, sides);
             let interval = spearman_interval(rho, x.len() as u64, bench.confidence());
-            let effect = Effect { name: "spearman", value: rho, interval, standardised: None };
+            let effect = Effect::new("spearman", rho, interval);
             Ok(Evidence { p_for, p_against, statistics: Vec::new(), effect: Some(effect) })
         }
         _ => Err(format!("{} does not apply to this metric", test.name())),

@@ -63,8 +63,8 @@ fn judged(trials: &Table, expect: &str) -> Verdict {
 }
 
 fn statistic(verdict: &Verdict, name: &str) -> f64 {
-    let found = verdict.comparisons[0].statistics.iter().find(|(n, _)| *n == name);
-    found.unwrap_or_else(|| panic!("no {name}: {:?}", verdict.comparisons[0])).1
+    let found = verdict.comparisons[0].statistics.get(name);
+    found.unwrap_or_else(|| panic!("no {name}: {:?}", verdict.comparisons[0]))
 }
 
 const BOTH: &str = "metric: [distance-m-at-80, distance-m-at-95]";

@@ -57,7 +57,7 @@ fn explorations() -> Table {
 }
 
 #[test]
-fn every_documented_example_is_judged() {
+fn every_documented_example_is_judged_and_its_verdict_read_back() {
     let page = examples(include_str!("../../../docs/claims.md"), "");
     let page = page.iter().flat_map(|text| serde_yaml::from_str::<Vec<Claim>>(text).unwrap());
     let code = super::super::forms::FILES.iter().flat_map(|(_, text)| examples(text, "//!"));
@@ -81,6 +81,9 @@ fn every_documented_example_is_judged() {
         assert_ne!(found.judgement, Judgement::CannotBeTested, "{}: {}", claim.id, found.reason);
         assert!(!found.comparisons.is_empty(), "{}", claim.id);
         assert!(found.comparisons.iter().all(|c| !c.cells.is_empty()), "{}", claim.id);
+        let written = serde_json::json!(found);
+        let read: Verdict = serde_json::from_value(written.clone()).unwrap();
+        assert_eq!(serde_json::json!(read), written, "{}", claim.id);
         *judged.entry(claim.expect.form()).or_default() += 1;
     }
     // Once in its own file, and once or more on the page.
@@ -127,11 +130,11 @@ fn rates_compare_two_quantities_of_the_same_trials() {
     assert_eq!(found.judgement, Judgement::Supported);
     // 100 collisions in 7500 fast maneuvers against 20 in 7500 slow ones.
     let comparison = &found.comparisons[0];
-    assert_eq!(comparison.statistics[..2], [("first", 100.0 / 7500.0), ("second", 20.0 / 7500.0)]);
+    assert_eq!(statistics(comparison)[..2], [("first", 100.0 / 7500.0), ("second", 20.0 / 7500.0)]);
     let effect = comparison.effect.as_ref().unwrap();
     assert_close(effect.value, 80.0 / 7500.0, 1e-12);
     // Poisson: sqrt(100 + 20) / 7500 is the standard error, within the noise of 2000 resamples and of fixed counts.
-    let half = (effect.interval.high - effect.interval.low) / 2.0;
+    let half = (effect.high - effect.low) / 2.0;
     let poisson = 1.645 * 120.0_f64.sqrt() / 7500.0;
     assert!((0.8..1.1).contains(&(half / poisson)), "{half} {poisson}");
     let cells: Vec<&str> = comparison.cells.iter().map(|cell| cell.cell.as_str()).collect();
@@ -192,7 +195,7 @@ fn coverages_of_a_published_table_are_metrics_of_ours() {
     assert_eq!(found.judgement, Judgement::Supported, "{}", found.reason);
     let comparison = &found.comparisons[0];
     // Twelve conditions at two coverages: what is measured on the same runs is drawn together.
-    assert_eq!(comparison.statistics[..2], [("cells", 24.0), ("independent-cells", 12.0)]);
+    assert_eq!(statistics(comparison)[..2], [("cells", 24.0), ("independent-cells", 12.0)]);
     let cell = &comparison.cells[12];
     assert_eq!(cell.cell, "distance-m-at-80: environment=basic, furnished=true, prior=none");
     assert_eq!(cell.published, Some(32.0));
@@ -200,7 +203,7 @@ fn coverages_of_a_published_table_are_metrics_of_ours() {
                        distance-m, at-least: 0.3}}";
     let found = judged(correlation);
     assert_eq!(found.judgement, Judgement::Supported, "{}", found.reason);
-    assert_eq!(found.comparisons[0].statistics[1], ("independent-cells", 12.0));
+    assert_eq!(statistics(&found.comparisons[0])[1], ("independent-cells", 12.0));
     // Many coverages of three conditions are three, not nine.
     let nested = correlation
         .replace("at-least", "where: {environment: basic, prior: none}, minimum-n: 4, at-least");

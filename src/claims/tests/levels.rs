@@ -37,12 +37,12 @@ fn shares(groups: [(&str, i64, i64); 2]) -> Table {
 
 fn raw(found: &Verdict) -> (f64, f64) {
     let comparison = &found.comparisons[0];
-    (comparison.p_for.unwrap().0, comparison.p_against.unwrap().0)
+    (comparison.p_for.unwrap(), comparison.p_against.unwrap())
 }
 
 fn interval(found: &Verdict) -> (f64, f64) {
-    let interval = found.comparisons[0].effect.as_ref().unwrap().interval;
-    (interval.low, interval.high)
+    let effect = found.comparisons[0].effect.as_ref().unwrap();
+    (effect.low, effect.high)
 }
 
 fn assert_all_close(found: &[f64], expected: &[f64]) {

@@ -42,7 +42,7 @@ fn our_own_checks_are_told_and_counted_apart_from_the_papers_claims() {
         ..said.clone()
     };
     let verdicts = [said, own].map(|claim| judge(&claim, &trials, &context).unwrap());
-    let json = verdicts.clone().map(|verdict| verdict.to_json());
+    let json = verdicts.clone().map(|verdict| serde_json::json!(verdict));
     assert_eq!((json[0]["says"].as_str(), json[0].get("ours")), (Some("something"), None));
     assert_eq!((json[1]["ours"].as_str(), json[1].get("says")), (Some("ours alone"), None));
     assert_eq!(json[1]["paper-table"], "silent");
@@ -61,7 +61,7 @@ fn verdicts_have_one_text() {
     // p by scipy.stats.fisher_exact, limits by statsmodels' Newcombe interval at 90 %.
     let expect = "{less: {metric: success, where: {start: C, deadline-s: 5628, strategy: random}, than: {where: {start: C, \
                   deadline-s: 5628, strategy: frontier}}}}";
-    let text = canonical(&verdict(expect).to_json());
+    let text = canonical(&serde_json::json!(verdict(expect)));
     assert_eq!(
         text,
         "{\"alpha\":0.05,\"cite\":null,\"comparisons\":[{\"about\":\"success: (deadline-s=5628, start=C, \

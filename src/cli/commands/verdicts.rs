@@ -1,7 +1,7 @@
 //! Verdicts in print: what the paper's table shows beside what we find, and the reproduction score.
 
-use crate::claims::verdict::agreement_in_words;
-use crate::claims::{Judgement, Score, Verdict, Words};
+use crate::claims::verdict::{Effect, agreement_in_words};
+use crate::claims::{Judgement, Score, Verdict};
 
 /// The verdicts on a study's claims with their score, and those on the machine, which count for nothing; empty
 /// where nothing is claimed. A function of the verdicts alone: no lock changes what is printed.
@@ -28,7 +28,7 @@ pub(super) fn in_words(verdicts: &[Verdict], machine: &[Verdict]) -> String {
 /// What the paper says, and apart from it what we check besides; empty lists are left out.
 fn lists(titles: [&str; 2], verdicts: &[Verdict]) -> String {
     let (papers, ours): (Vec<&Verdict>, Vec<&Verdict>) =
-        verdicts.iter().partition(|verdict| matches!(verdict.words, Words::Says(_)));
+        verdicts.iter().partition(|verdict| verdict.says.is_some());
     let lists = titles.into_iter().zip([papers, ours]).filter(|(_, list)| !list.is_empty());
     lists.map(|(title, verdicts)| list(title, &verdicts)).collect()
 }
@@ -50,11 +50,11 @@ fn list(title: &str, verdicts: &[&Verdict]) -> String {
             text.push_str(&format!("  {:id$}  {}\n", "", verdict.reason));
         }
         for comparison in &verdict.comparisons {
-            let words = agreement_in_words(comparison.statistics.iter().copied());
+            let words = agreement_in_words(comparison.statistics.iter());
             if let (false, Some(effect)) = (words.is_empty(), &comparison.effect) {
-                let (value, interval) = (effect.value, &effect.interval);
-                let range = format!("[{:.2}, {:.2}]", interval.low, interval.high);
-                text.push_str(&format!("  {:id$}  {} {value:.2} {range}\n", "", effect.name));
+                let Effect { name, value, low, high, .. } = effect;
+                let range = format!("[{low:.2}, {high:.2}]");
+                text.push_str(&format!("  {:id$}  {name} {value:.2} {range}\n", ""));
                 for part in words.split(", ") {
                     text.push_str(&format!("  {:id$}  {part}\n", ""));
                 }
