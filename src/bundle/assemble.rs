@@ -3,7 +3,7 @@
 
 use super::content::{Author, BundleContent, Citation, SealedCondition, SealedInput};
 use super::{figures, format, wall_time};
-use crate::claims::{self, Observations, Verdict};
+use crate::claims::{self, ClaimVerdict, Observations};
 use crate::manifest::{Input, InputKind};
 use crate::plan::{ENGINE_VERSION, Plan, Selection};
 use crate::studies::{Dictionary, Findings, Outcome, TableLayout, TrialRecord, coverage_tables};
@@ -86,7 +86,7 @@ pub fn assemble(
 ///
 /// # Errors
 /// Where a claim cannot be judged at all, in words.
-pub fn verdicts(plan: &Plan, records: &[TrialRecord]) -> Result<Vec<Verdict>, String> {
+pub fn verdicts(plan: &Plan, records: &[TrialRecord]) -> Result<Vec<ClaimVerdict>, String> {
     if plan.partial {
         return Ok(Vec::new());
     }
@@ -288,6 +288,6 @@ fn described_inputs(plan: &Plan) -> Vec<DescribedTable> {
 }
 
 /// A list of verdicts as bundles hold it.
-pub(super) fn verdicts_json(verdicts: &[Verdict]) -> Vec<u8> {
+pub(super) fn verdicts_json(verdicts: &[ClaimVerdict]) -> Vec<u8> {
     (crate::json::canonical(&json!(verdicts)) + "\n").into_bytes()
 }

@@ -2,7 +2,7 @@
 
 use super::assemble;
 use crate::claims::metric::WALL_TIME_COLUMNS;
-use crate::claims::{self, Verdict};
+use crate::claims::{self, ClaimVerdict};
 use crate::digest::TrialKey;
 use crate::plan::Plan;
 use crate::studies::TrialRecord;
@@ -25,7 +25,7 @@ pub type WallTimes = BTreeMap<TrialKey, WallTime>;
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Measured {
     /// In the manifest's order.
-    pub verdicts: Vec<Verdict>,
+    pub verdicts: Vec<ClaimVerdict>,
     /// As [`super::Circumstance::files`] takes them; none where nothing is claimed of the machine.
     pub files: Vec<(String, Vec<u8>)>,
 }

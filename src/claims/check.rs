@@ -2,7 +2,7 @@
 
 use super::assume::Assume;
 use super::claim::Claim;
-use super::faults::{Fault, Faults, Known};
+use super::faults::{ClaimFault, Faults, Known};
 use super::forms::Form;
 use super::metric::{Metric, WALL_TIME};
 use super::terms::{Censored, Sides, Test};
@@ -13,18 +13,19 @@ use std::collections::BTreeSet;
 pub fn check_all<'a>(
     claims: &'a [Claim],
     known: Known<'a>,
-) -> impl Iterator<Item = (usize, Fault<'a>)> + 'a {
+) -> impl Iterator<Item = (usize, ClaimFault<'a>)> + 'a {
     let mut ids = BTreeSet::new();
     claims.iter().enumerate().flat_map(move |(i, claim)| {
-        let twice = (!ids.insert(claim.id.as_str()))
-            .then(|| Fault::new("/id", format!("the id `{}` is used twice", quoted(&claim.id))));
+        let twice = (!ids.insert(claim.id.as_str())).then(|| {
+            ClaimFault::new("/id", format!("the id `{}` is used twice", quoted(&claim.id)))
+        });
         twice.into_iter().chain(claim.check(known)).map(move |fault| (i, fault))
     })
 }
 
 impl Claim {
     /// The faults of this claim in a study where this is `known`. Empty where it can be judged.
-    pub fn check<'a>(&'a self, known: Known<'a>) -> Vec<Fault<'a>> {
+    pub fn check<'a>(&'a self, known: Known<'a>) -> Vec<ClaimFault<'a>> {
         let mut faults = Faults::new(known);
         if self.id.is_empty() {
             faults.add("/id", "expected a name, found nothing".to_owned());
@@ -87,7 +88,7 @@ impl Claim {
                 let message = format!(
                     "`{metric}` is a result of the study; only claims on {WALL_TIME} metrics are circumstance"
                 );
-                faults.found.push(Fault::new("/circumstance", message));
+                faults.found.push(ClaimFault::new("/circumstance", message));
             }
         }
     }

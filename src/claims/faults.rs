@@ -17,7 +17,7 @@ pub struct Known<'a> {
 
 /// What is wrong with a claim.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Fault<'a> {
+pub struct ClaimFault<'a> {
     /// JSON pointer of it in the claim: `/expect/less/where/start/1`, the second value where a list of them is written. Empty
     /// where it is the claim itself.
     pub pointer: String,
@@ -29,7 +29,7 @@ pub struct Fault<'a> {
     pub unknown: Option<(String, Vec<&'a str>)>,
 }
 
-impl Fault<'_> {
+impl ClaimFault<'_> {
     pub(super) fn new(pointer: impl Into<String>, message: impl Into<String>) -> Self {
         Self { pointer: pointer.into(), at_key: false, message: message.into(), unknown: None }
     }
@@ -45,7 +45,7 @@ pub(super) struct Faults<'a> {
     known: Known<'a>,
     /// Pointer of what paths are relative to.
     pub(super) base: String,
-    pub(super) found: Vec<Fault<'a>>,
+    pub(super) found: Vec<ClaimFault<'a>>,
 }
 
 impl<'a> Faults<'a> {
@@ -54,7 +54,7 @@ impl<'a> Faults<'a> {
     }
 
     pub(super) fn add(&mut self, path: &str, message: String) {
-        self.found.push(Fault::new(format!("{}{path}", self.base), message));
+        self.found.push(ClaimFault::new(format!("{}{path}", self.base), message));
     }
 
     pub(super) fn unless(&mut self, holds: bool, path: &str, message: impl FnOnce() -> String) {
@@ -72,8 +72,8 @@ impl<'a> Faults<'a> {
         known: impl Iterator<Item = &'a String>,
     ) {
         let unknown = Some((name.to_owned(), known.map(String::as_str).collect()));
-        let fault = Fault::new(format!("{}{path}", self.base), message);
-        self.found.push(Fault { unknown, ..fault });
+        let fault = ClaimFault::new(format!("{}{path}", self.base), message);
+        self.found.push(ClaimFault { unknown, ..fault });
     }
 
     /// A factor that there is not, named by a value or by a key.
@@ -81,8 +81,8 @@ impl<'a> Faults<'a> {
         let known = self.known.factors.iter().map(|(factor, _)| factor.as_str()).collect();
         let unknown = Some((name.to_owned(), known));
         let message = format!("unknown factor `{}`", quoted(name));
-        let fault = Fault::new(format!("{}{path}", self.base), message);
-        self.found.push(Fault { at_key, unknown, ..fault });
+        let fault = ClaimFault::new(format!("{}{path}", self.base), message);
+        self.found.push(ClaimFault { at_key, unknown, ..fault });
     }
 
     pub(super) fn values_of(&self, factor: &str) -> Option<&'a [String]> {

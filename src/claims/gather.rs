@@ -5,7 +5,7 @@ use super::context::Context;
 use super::metric::Metric;
 use super::observations::Observations;
 use super::terms::{Censored, Sides, Terms};
-use super::verdict::{CellNumbers, Effect};
+use super::verdict::{CellNumbers, EffectSize};
 use crate::rng::{Seeds, Stream};
 use crate::stats::proportion::{Proportion, chi_square_homogeneity, fisher_exact};
 use crate::stats::summary::{Summary, median};
@@ -51,7 +51,7 @@ pub(super) struct Evidence {
     pub(super) p_for: f64,
     pub(super) p_against: f64,
     pub(super) statistics: Vec<(&'static str, f64)>,
-    pub(super) effect: Option<Effect>,
+    pub(super) effect: Option<EffectSize>,
 }
 
 /// The runs of one cell or pool.

@@ -6,7 +6,7 @@ use super::gather::{Bench, COUNT, Draft, Evidence};
 use super::metric::WALL_TIME;
 use super::observations::Observations;
 use super::terms::{Correction, Sides, Terms};
-use super::verdict::{CellNumbers, ComparisonVerdict, Judgement, Verdict};
+use super::verdict::{CellNumbers, ClaimVerdict, ComparisonVerdict, Judgement};
 use super::words::Words;
 use crate::stats::distribution::normal_quantile;
 use crate::stats::multiple::holm;
@@ -23,7 +23,7 @@ const MOST_TRIALS: f64 = 1e6;
 ///
 /// # Errors
 /// Where the table has not the columns of the contract ([`Observations::read`]).
-pub fn judge(claim: &Claim, trials: &Table, context: &Context<'_>) -> Result<Verdict, String> {
+pub fn judge(claim: &Claim, trials: &Table, context: &Context<'_>) -> Result<ClaimVerdict, String> {
     Ok(judge_observations(claim, &Observations::read(trials)?, context))
 }
 
@@ -32,7 +32,7 @@ pub fn judge_observations(
     claim: &Claim,
     observations: &Observations,
     context: &Context<'_>,
-) -> Verdict {
+) -> ClaimVerdict {
     let bench =
         Bench { claim: &claim.id, observations, context, terms: claim.expect.as_form().terms() };
     let machine = claim.expect.metrics().into_iter().find(|m| m.starts_with(WALL_TIME));
@@ -50,7 +50,7 @@ pub fn judge_observations(
 }
 
 /// The verdict on a claim for which nothing was measured, for this `reason`.
-pub fn not_measured(claim: &Claim, reason: &str, context: &Context<'_>) -> Verdict {
+pub fn not_measured(claim: &Claim, reason: &str, context: &Context<'_>) -> ClaimVerdict {
     let observations = Observations::default();
     let terms = claim.expect.as_form().terms();
     let bench = Bench { claim: &claim.id, observations: &observations, context, terms };
@@ -58,7 +58,7 @@ pub fn not_measured(claim: &Claim, reason: &str, context: &Context<'_>) -> Verdi
     conclude(claim, &bench, vec![Draft::untestable(about, reason.to_owned())])
 }
 
-fn conclude(claim: &Claim, bench: &Bench<'_>, drafts: Vec<Draft>) -> Verdict {
+fn conclude(claim: &Claim, bench: &Bench<'_>, drafts: Vec<Draft>) -> ClaimVerdict {
     let terms = bench.terms;
     let p_of = |pick: fn(&Evidence) -> f64| -> Vec<f64> {
         // One that cannot be tested still counts in the family.
@@ -130,7 +130,7 @@ fn conclude(claim: &Claim, bench: &Bench<'_>, drafts: Vec<Draft>) -> Verdict {
         Words::Says(text) => (Some(text), None),
         Words::Ours(text) => (None, Some(text)),
     };
-    Verdict {
+    ClaimVerdict {
         id: claim.id.clone(),
         says,
         ours,

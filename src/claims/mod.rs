@@ -5,7 +5,7 @@
 //!
 //! A verdict is supported, contradicted, inconclusive or cannot-be-tested. What the paper says
 //! ([`Claim::words`]), what its own table shows ([`Claim::paper_table`]) and what we find
-//! ([`Verdict::judgement`]) stay three facts: none is computed from another.
+//! ([`ClaimVerdict::judgement`]) stay three facts: none is computed from another.
 //!
 //! The rules (`docs/claims.md`): a p-value above alpha is never evidence of equality; runs that did not reach a
 //! measure are counted and never silently dropped; trials that share their noise are refused by tests that
@@ -24,6 +24,7 @@ pub mod metric;
 pub mod observations;
 pub mod power;
 pub mod published;
+mod score;
 pub mod sensitivity;
 pub mod terms;
 pub mod verdict;
@@ -33,12 +34,13 @@ pub use assume::{Assume, AssumedCell};
 pub use check::check_all;
 pub use claim::Claim;
 pub use context::Context;
-pub use faults::{Fault, Known};
+pub use faults::{ClaimFault, Known};
 pub use forms::Expect;
 pub use judge::{judge, judge_observations, not_measured};
 pub use observations::Observations;
+pub use score::Score;
 pub use sensitivity::Sensitivity;
-pub use verdict::{Judgement, Score, Verdict};
+pub use verdict::{ClaimVerdict, Judgement};
 pub use words::{PaperTable, Words};
 
 #[cfg(test)]

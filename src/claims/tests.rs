@@ -80,7 +80,7 @@ fn claim(expect: &str) -> Claim {
     serde_yaml::from_str(&text).unwrap_or_else(|fault| panic!("{text}\n{fault}"))
 }
 
-fn verdict_on(trials: &Table, expect: &str) -> Verdict {
+fn verdict_on(trials: &Table, expect: &str) -> ClaimVerdict {
     let published = published();
     judge(&claim(expect), trials, &Context::new(&published, &[], 2019)).unwrap()
 }
@@ -89,7 +89,7 @@ fn statistics(comparison: &verdict::ComparisonVerdict) -> Vec<(&str, f64)> {
     comparison.statistics.iter().collect()
 }
 
-fn verdict(expect: &str) -> Verdict {
+fn verdict(expect: &str) -> ClaimVerdict {
     verdict_on(&as_printed(), expect)
 }
 

@@ -110,7 +110,7 @@ pub struct CellNumbers {
 /// The size of what was found.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub struct Effect {
+pub struct EffectSize {
     /// Which measure of effect.
     #[serde(default)]
     pub name: Name,
@@ -131,7 +131,7 @@ pub struct Effect {
     pub hedges_g: Option<f64>,
 }
 
-impl Effect {
+impl EffectSize {
     pub(super) fn new(name: &'static str, value: f64, interval: Interval) -> Self {
         let Interval { low, high, confidence } = interval;
         Self { name: name.into(), value, low, high, confidence, hedges_g: None }
@@ -213,7 +213,7 @@ pub struct ComparisonVerdict {
     pub p_against_corrected: Option<f64>,
     /// The effect and its interval.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub effect: Option<Effect>,
+    pub effect: Option<EffectSize>,
     /// The numbers used.
     #[serde(default)]
     pub cells: Vec<CellNumbers>,
@@ -246,7 +246,7 @@ pub fn agreement_in_words<'a>(statistics: impl IntoIterator<Item = (&'a str, f64
 /// The verdict on a claim. What the paper says, what its own table shows and what we find stay three facts.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub struct Verdict {
+pub struct ClaimVerdict {
     /// The claim's id.
     pub id: String,
     /// What the paper claims, in its words; none where the claim is ours.
@@ -316,7 +316,7 @@ impl ComparisonVerdict {
     }
 }
 
-impl Verdict {
+impl ClaimVerdict {
     /// Runs that never reached what they were compared by, and all runs, each cell counted once for each of its measures.
     /// `None` where all did.
     pub fn censored(&self) -> Option<(u64, u64)> {
@@ -331,64 +331,6 @@ impl Verdict {
         let all: u64 = seen.iter().map(|cell| cell.2).sum();
         let reached: u64 = seen.iter().map(|cell| cell.1).sum();
         (reached < all).then(|| (all - reached, all))
-    }
-}
-
-/// How many claims of a study hold. A function of the verdicts alone: no lock enters, so blessing a new lock
-/// cannot change it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Score {
-    /// Claims with evidence for them.
-    pub supported: usize,
-    /// Claims with evidence against them.
-    pub contradicted: usize,
-    /// Claims with evidence for neither.
-    pub inconclusive: usize,
-    /// Claims that could not be tested.
-    pub cannot_be_tested: usize,
-}
-
-impl Score {
-    /// Counts `verdicts`, whosever words they are on.
-    pub fn of<'a>(verdicts: impl IntoIterator<Item = &'a Verdict>) -> Self {
-        let found: Vec<Judgement> = verdicts.into_iter().map(|v| v.judgement).collect();
-        let count = |j| found.iter().filter(|found| **found == j).count();
-        Self {
-            supported: count(Judgement::Supported),
-            contradicted: count(Judgement::Contradicted),
-            inconclusive: count(Judgement::Inconclusive),
-            cannot_be_tested: count(Judgement::CannotBeTested),
-        }
-    }
-}
-
-impl Score {
-    /// All of them.
-    pub fn all(&self) -> usize {
-        self.supported + self.contradicted + self.inconclusive + self.cannot_be_tested
-    }
-
-    /// The counts in words, `what` being what is counted: `2 of 3 claims of the paper supported, ...`.
-    pub fn in_words(&self, what: &str) -> String {
-        format!(
-            "{} of {} {what} supported, {} contradicted, {} inconclusive, {} cannot be tested",
-            self.supported,
-            self.all(),
-            self.contradicted,
-            self.inconclusive,
-            self.cannot_be_tested
-        )
-    }
-
-    /// What the verdicts say of the paper, and apart from it what they say of our own checks: one line each, those of
-    /// nothing left out.
-    pub fn lines(verdicts: &[Verdict]) -> Vec<String> {
-        let of = |papers: bool, what: &str| {
-            let score = Self::of(verdicts.iter().filter(|v| v.says.is_some() == papers));
-            (score.all() > 0).then(|| score.in_words(what))
-        };
-        let (papers, ours) = (of(true, "claims of the paper"), of(false, "checks of our own"));
-        [papers, ours].into_iter().flatten().collect()
     }
 }
 

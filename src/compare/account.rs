@@ -2,7 +2,7 @@
 
 use super::Settings;
 use crate::bundle::{Bundle, Fault};
-use crate::claims::Verdict;
+use crate::claims::ClaimVerdict;
 use crate::digest::{FileDigest, ResultsDigest, Sha256Digest, TrialKey};
 use crate::studies::TrialRecord;
 use serde::Deserialize;
@@ -168,7 +168,7 @@ fn verdicts(results: &BTreeMap<String, ResultFile>) -> Result<BTreeMap<String, S
     let text = file.text.as_deref().unwrap_or_default();
     let list: Vec<Value> = serde_json::from_str(text).map_err(|e| fault(e.to_string()))?;
     let pair = |claim: &Value| {
-        let read = Verdict::deserialize(claim).map_err(|_| fault(claim.to_string()))?;
+        let read = ClaimVerdict::deserialize(claim).map_err(|_| fault(claim.to_string()))?;
         Ok((read.id, read.judgement.to_string()))
     };
     list.iter().map(pair).collect()

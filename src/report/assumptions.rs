@@ -1,6 +1,6 @@
 //! What the paper leaves open: every choice with its reason, the values it was tried at, and the verdicts that hang on it.
 
-use super::content::{Assumption, Flip, Tried};
+use super::content::{Assumption, FlipRow, Tried};
 use crate::claims::Sensitivity;
 use crate::claims::sensitivity::in_words;
 use crate::manifest::Experiment;
@@ -24,7 +24,7 @@ fn tried(found: &Sensitivity, assumption: &crate::manifest::Assumption) -> Optio
     let attempts = found.attempts();
     let of_it = attempts.iter().filter(|a| a.setting == assumption.path && a.chosen == chosen);
     let tried = of_it.map(|attempt| {
-        let flip = |flip: crate::claims::sensitivity::Flip| Flip {
+        let flip = |flip: crate::claims::sensitivity::Flip| FlipRow {
             claim: flip.claim,
             from: flip.from.to_string(),
             to: flip.to.to_string(),

@@ -3,7 +3,7 @@
 use super::template::{fixed, percent};
 use crate::claims::terms::Correction;
 use crate::claims::verdict::{CellNumbers, ComparisonVerdict, agreement_in_words, rounded};
-use crate::claims::{Claim, Judgement, PaperTable, Verdict};
+use crate::claims::{Claim, ClaimVerdict, Judgement, PaperTable};
 use crate::math::exp;
 use serde::Serialize;
 
@@ -63,7 +63,7 @@ pub(super) fn rows(
     claims: &[Claim],
 ) -> Result<Vec<ClaimRow>, String> {
     let Some(bytes) = bytes else { return Ok(Vec::new()) };
-    let verdicts: Vec<Verdict> =
+    let verdicts: Vec<ClaimVerdict> =
         serde_json::from_slice(bytes).map_err(|e| format!("{path}: {e}"))?;
     let why = |id: &str| {
         let claim = claims.iter().find(|claim| claim.id == id);
@@ -72,7 +72,7 @@ pub(super) fn rows(
     Ok(verdicts.into_iter().map(|v| ClaimRow { why: why(&v.id), ..row(v) }).collect())
 }
 
-fn row(verdict: Verdict) -> ClaimRow {
+fn row(verdict: ClaimVerdict) -> ClaimRow {
     ClaimRow {
         numbers: numbers(&verdict) + &censored(&verdict),
         differs: differs(verdict.judgement, verdict.paper_table).to_owned(),
@@ -102,7 +102,7 @@ fn differs(verdict: Judgement, paper_table: PaperTable) -> &'static str {
     }
 }
 
-fn rule(verdict: &Verdict) -> String {
+fn rule(verdict: &ClaimVerdict) -> String {
     let mut rule = format!("Level of significance {}", rounded(verdict.alpha));
     let comparisons = verdict.comparisons.len();
     if comparisons > 1 {
@@ -124,7 +124,7 @@ fn rule(verdict: &Verdict) -> String {
 }
 
 /// What decided a verdict, as one would say it.
-fn numbers(verdict: &Verdict) -> String {
+fn numbers(verdict: &ClaimVerdict) -> String {
     match &verdict.comparisons[..] {
         [] => verdict.reason.clone(),
         [only] if effect(only).is_empty() => verdict.reason.clone(),
@@ -152,7 +152,7 @@ fn numbers(verdict: &Verdict) -> String {
 }
 
 /// Runs that never reached what they were compared by, in words; empty where all did.
-fn censored(verdict: &Verdict) -> String {
+fn censored(verdict: &ClaimVerdict) -> String {
     let words =
         |(censored, all)| format!("; {censored} of {all} runs compared never reached the measure");
     verdict.censored().map(words).unwrap_or_default()

@@ -197,13 +197,13 @@ pub struct Tried {
     /// The value tried, as text: `0.2`.
     pub at: String,
     /// The verdicts that are not what they are at the value chosen; empty where all stay.
-    pub flips: Vec<Flip>,
+    pub flips: Vec<FlipRow>,
 }
 
 /// A verdict that another value of a setting changes.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub struct Flip {
+pub struct FlipRow {
     /// The claim's id: `D4`.
     pub claim: String,
     /// Its verdict at the value chosen.

@@ -282,8 +282,8 @@ fn claims() -> Vec<ClaimRow> {
 
 /// One assumption without a range, one that decides nothing within its range, one that decides a verdict.
 fn assumptions() -> Vec<Assumption> {
-    let tried = |at: &str, flips: &[Flip]| Tried { at: at.into(), flips: flips.to_vec() };
-    let flip = |claim: &str, from: &str, to: &str| Flip {
+    let tried = |at: &str, flips: &[FlipRow]| Tried { at: at.into(), flips: flips.to_vec() };
+    let flip = |claim: &str, from: &str, to: &str| FlipRow {
         claim: claim.into(),
         from: from.into(),
         to: to.into(),

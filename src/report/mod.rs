@@ -29,7 +29,7 @@ pub use bag::{Bag, bag, bag_under_banner};
 pub use banner::{drawing_under_banner, page_under_banner};
 pub use claim::{ClaimRow, ComparisonRow};
 pub use content::{
-    Assumption, Citation, Figure, Flip, Headline, Measured, OutcomeCount, ReportCell,
+    Assumption, Citation, Figure, FlipRow, Headline, Measured, OutcomeCount, ReportCell,
     ReportContent, ReportRow, ReportTable, Tried,
 };
 pub use difference::difference_page;

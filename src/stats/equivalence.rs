@@ -9,7 +9,7 @@ use super::summary::Summary;
 
 /// The position of a difference relative to the margins ± `margin`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Equivalence {
+pub struct EquivalenceTest {
     /// p-value of "inside": the larger of the two one-sided ones.
     pub inside: f64,
     /// p-value of "beyond": the difference exceeds the margin on the side where it was observed.
@@ -17,10 +17,10 @@ pub struct Equivalence {
 }
 
 /// Tests the equivalence of two means by Welch's test against both margins.
-pub fn tost_means(a: Summary, b: Summary, margin: f64) -> Equivalence {
+pub fn tost_means(a: Summary, b: Summary, margin: f64) -> EquivalenceTest {
     let upper = welch_shifted(a, b, margin).tails;
     let lower = welch_shifted(a, b, -margin).tails;
-    Equivalence { inside: upper.less.max(lower.greater), beyond: upper.greater.min(lower.less) }
+    EquivalenceTest { inside: upper.less.max(lower.greater), beyond: upper.greater.min(lower.less) }
 }
 
 /// Tests the equivalence of two shares by Newcombe's interval.
@@ -28,11 +28,11 @@ pub fn tost_means(a: Summary, b: Summary, margin: f64) -> Equivalence {
 /// The p-value belongs to the narrowest interval of confidence 1 - 2p that a margin touches, so `p <= alpha`
 /// and "the 1 - 2 alpha interval lies inside" are the same statement. Unlike Wald's test it does not call
 /// 0 of 5 and 0 of 5 equal.
-pub fn tost_proportions(a: Proportion, b: Proportion, margin: f64) -> Equivalence {
+pub fn tost_proportions(a: Proportion, b: Proportion, margin: f64) -> EquivalenceTest {
     let (below_upper, beyond_upper) = tails_at(a, b, margin);
     // The lower margin is the upper one of the groups exchanged.
     let (above_lower, beyond_lower) = tails_at(b, a, margin);
-    Equivalence { inside: below_upper.max(above_lower), beyond: beyond_upper.min(beyond_lower) }
+    EquivalenceTest { inside: below_upper.max(above_lower), beyond: beyond_upper.min(beyond_lower) }
 }
 
 /// Computes the p-values of "the difference is below `margin`" and "above": the limit that faces the margin is moved

@@ -97,7 +97,7 @@ pub fn chi_square_homogeneity(groups: &[Proportion]) -> ChiSquare {
 
 /// A trend of shares along scores.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Trend {
+pub struct TrendTest {
     /// Standard normal under no trend; positive where the share rises with the score.
     pub z: f64,
     /// p-values: "greater" is a rising share, "less" a falling one.
@@ -108,7 +108,7 @@ pub struct Trend {
 ///
 /// z = Σ sᵢ (kᵢ - nᵢ p) / √(p (1 - p) (Σ nᵢ sᵢ² - (Σ nᵢ sᵢ)² / N)). Where none or all succeeded, or all scores are
 /// equal, z is 0.
-pub fn cochran_armitage(groups: &[Proportion], scores: &[f64]) -> Trend {
+pub fn cochran_armitage(groups: &[Proportion], scores: &[f64]) -> TrendTest {
     let pooled = pool(groups);
     let (n, share) = (real(pooled.trials), pooled.share());
     let pairs = || groups.iter().zip(scores);
@@ -117,7 +117,7 @@ pub fn cochran_armitage(groups: &[Proportion], scores: &[f64]) -> Trend {
     let spread: f64 = pairs().map(|(g, s)| real(g.trials) * (s - centre) * (s - centre)).sum();
     let variance = share * (1.0 - share) * spread;
     let z = if variance > 0.0 { slope / variance.sqrt() } else { 0.0 };
-    Trend { z, tails: normal_tails(z) }
+    TrendTest { z, tails: normal_tails(z) }
 }
 
 /// Pools all groups.

@@ -31,5 +31,5 @@ pub use ladder::{Options, Report, Reviewer, Rows, Verdict, climb, climb_and_keep
 pub use pipeline::{Pipeline, PlannedTrial, Replanned};
 pub use reexecution::Sample;
 pub use replan::{Reenactment, plan_of};
-pub use replication::{ClaimAgain, Replication, Standing};
+pub use replication::{ClaimAgain, Replication, VerdictStanding};
 pub use signature::{NAMESPACE, Signed, Trust, Vouching, path_in_bag};

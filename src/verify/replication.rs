@@ -8,8 +8,8 @@
 use super::closeness::{self, Closeness};
 use super::{Replanned, Severity};
 use crate::bundle::{Bundle, BundleContent, Fault, format};
-use crate::claims::verdict::Effect;
-use crate::claims::{self, Judgement};
+use crate::claims::verdict::EffectSize;
+use crate::claims::{ClaimVerdict, Judgement};
 use serde::Serialize;
 
 /// The claims file, relative to `results/`.
@@ -42,13 +42,13 @@ pub struct ClaimAgain {
     /// The numbers behind that.
     pub fresh_numbers: String,
     /// The two beside each other.
-    pub standing: Standing,
+    pub standing: VerdictStanding,
 }
 
 /// A fresh verdict beside the sealed one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Standing {
+pub enum VerdictStanding {
     /// The same.
     Holds,
     /// Decided in the bundle, not in the fresh run.
@@ -61,7 +61,7 @@ pub enum Standing {
     Flipped,
 }
 
-impl Standing {
+impl VerdictStanding {
     /// Of a sealed verdict and the fresh one, if there is one.
     fn of(sealed: Judgement, fresh: Option<Judgement>) -> Self {
         let is_decided =
@@ -85,11 +85,11 @@ impl Replication {
             text.push_str("the study makes no claim, so there is no verdict to replicate\n");
         } else {
             let named = [
-                (Standing::Holds, "have the same verdict"),
-                (Standing::Weaker, "are no longer decided"),
-                (Standing::Stronger, "are decided only now"),
-                (Standing::Open, "stay open for another reason"),
-                (Standing::Flipped, "have the opposite verdict"),
+                (VerdictStanding::Holds, "have the same verdict"),
+                (VerdictStanding::Weaker, "are no longer decided"),
+                (VerdictStanding::Stronger, "are decided only now"),
+                (VerdictStanding::Open, "stay open for another reason"),
+                (VerdictStanding::Flipped, "have the opposite verdict"),
             ];
             let parts: Vec<String> = named
                 .into_iter()
@@ -170,16 +170,16 @@ pub(super) fn check(
 fn finding(claim: &ClaimAgain, path: &str) -> Option<(Severity, Fault)> {
     let ClaimAgain { id, sealed, sealed_numbers, fresh, fresh_numbers, standing } = claim;
     let (severity, hint) = match standing {
-        Standing::Holds => return None,
-        Standing::Flipped => (
+        VerdictStanding::Holds => return None,
+        VerdictStanding::Flipped => (
             Severity::Error,
             "where the sealed verdict is right, chance does this in at most alpha of all runs: another `--sample-seed` tells",
         ),
-        Standing::Weaker => (
+        VerdictStanding::Weaker => (
             Severity::Note,
             "not the opposite: the number of trials decides it in some runs and not in others",
         ),
-        Standing::Stronger | Standing::Open => (Severity::Note, ""),
+        VerdictStanding::Stronger | VerdictStanding::Open => (Severity::Note, ""),
     };
     let fault = Fault::new(
         path,
@@ -191,13 +191,13 @@ fn finding(claim: &ClaimAgain, path: &str) -> Option<(Severity, Fault)> {
 
 /// The claims of two `claims.json`, those of the first in its order. Level 3 has shown that the sealed one is ours.
 fn judged_twice(sealed: &str, fresh: &str) -> Vec<ClaimAgain> {
-    let list = |text: &str| serde_json::from_str::<Vec<claims::Verdict>>(text).unwrap_or_default();
+    let list = |text: &str| serde_json::from_str::<Vec<ClaimVerdict>>(text).unwrap_or_default();
     let fresh = list(fresh);
-    let twice = |sealed: claims::Verdict| {
+    let twice = |sealed: ClaimVerdict| {
         let fresh = fresh.iter().find(|claim| claim.id == sealed.id);
         let judgement = fresh.map(|claim| claim.judgement);
         ClaimAgain {
-            standing: Standing::of(sealed.judgement, judgement),
+            standing: VerdictStanding::of(sealed.judgement, judgement),
             sealed: sealed.judgement.to_string(),
             sealed_numbers: numbers(&sealed),
             fresh: judgement.map(|judgement| judgement.to_string()).unwrap_or_default(),
@@ -211,14 +211,14 @@ fn judged_twice(sealed: &str, fresh: &str) -> Vec<ClaimAgain> {
 const NO_REASON: &str = "no reason given";
 
 /// The reason of a verdict, and the size of what was found where one comparison decides it.
-fn numbers(verdict: &claims::Verdict) -> String {
+fn numbers(verdict: &ClaimVerdict) -> String {
     let reason = if verdict.reason.is_empty() { NO_REASON } else { &verdict.reason };
     let effect = match &verdict.comparisons[..] {
         [only] => only.effect.as_ref(),
         _ => None,
     };
-    let of = |effect: &Effect| {
-        let Effect { name, value, low, high, .. } = effect;
+    let of = |effect: &EffectSize| {
+        let EffectSize { name, value, low, high, .. } = effect;
         format!(", {name} {value:.3} within {low:.3} to {high:.3}")
     };
     reason.to_owned() + &effect.map(of).unwrap_or_default()
@@ -234,7 +234,7 @@ fn text(bytes: Option<&[u8]>) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::Standing::{Flipped, Holds, Open, Stronger, Weaker};
+    use super::VerdictStanding::{Flipped, Holds, Open, Stronger, Weaker};
     use super::*;
     use serde_json::{Value, json};
 

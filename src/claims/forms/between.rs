@@ -24,7 +24,7 @@ use crate::claims::faults::Faults;
 use crate::claims::gather::{Bench, Draft, Evidence, Group, varies};
 use crate::claims::metric::Metric;
 use crate::claims::terms::Terms;
-use crate::claims::verdict::Effect;
+use crate::claims::verdict::EffectSize;
 use crate::math::{exp, exp_m1, ln, ln_1p};
 use crate::stats::bootstrap::bootstrap;
 use crate::stats::distribution::{
@@ -38,7 +38,8 @@ use serde::{Deserialize, Serialize};
 
 form! {
     /// `between`.
-    pub struct Level {
+    #[schemars(rename = "Level")]
+    pub struct Between {
         /// What is measured.
         pub metric: Values,
         /// The cell or pool.
@@ -77,7 +78,7 @@ pub enum Statistic {
     P95,
 }
 
-impl Level {
+impl Between {
     fn bounds(&self) -> Bounds {
         Bounds { low: self.low, high: self.high }
     }
@@ -113,7 +114,7 @@ impl Level {
     }
 }
 
-impl Form for Level {
+impl Form for Between {
     fn terms(&self) -> Terms {
         self.shared_terms()
     }
@@ -178,7 +179,7 @@ fn mean_level(group: &Group, bounds: Bounds, confidence: f64) -> Result<Evidence
         (student_t_sf(t, df), student_t_sf(-t, df))
     });
     let interval = mean_interval(group.summary, confidence);
-    let effect = Effect::new("mean", group.summary.mean, interval);
+    let effect = EffectSize::new("mean", group.summary.mean, interval);
     Ok(Evidence { p_for, p_against, statistics: Vec::new(), effect: Some(effect) })
 }
 
@@ -204,7 +205,7 @@ fn quantile_level(
         &mut bench.stream(about),
     );
     let name = if q == 0.5 { "median" } else { "p95" };
-    let effect = Effect::new(name, found.estimate, found.interval);
+    let effect = EffectSize::new(name, found.estimate, found.interval);
     Evidence { p_for, p_against, statistics: Vec::new(), effect: Some(effect) }
 }
 
@@ -244,6 +245,6 @@ fn relative(bench: &Bench<'_>, a: &Group, b: &Group, bounds: Bounds) -> Result<E
         confidence: bench.confidence(),
     };
     let value = exp(ln_ratio) - 1.0;
-    let effect = Effect::new("relative-difference", value, interval);
+    let effect = EffectSize::new("relative-difference", value, interval);
     Ok(Evidence { p_for, p_against, statistics: Vec::new(), effect: Some(effect) })
 }

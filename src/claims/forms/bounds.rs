@@ -2,7 +2,7 @@
 
 use crate::claims::faults::Faults;
 use crate::claims::gather::Evidence;
-use crate::claims::verdict::Effect;
+use crate::claims::verdict::EffectSize;
 use crate::stats::distribution::normal_sf;
 use crate::stats::proportion::{Proportion, wilson};
 use crate::stats::real;
@@ -70,6 +70,6 @@ pub(super) fn share_level(share: Proportion, bounds: Bounds, confidence: f64) ->
         if z.is_nan() { (0.5, 0.5) } else { (normal_sf(z), normal_sf(-z)) }
     });
     let interval = wilson(share, confidence);
-    let effect = Effect::new("share", share.share(), interval);
+    let effect = EffectSize::new("share", share.share(), interval);
     Evidence { p_for, p_against, statistics: Vec::new(), effect: Some(effect) }
 }

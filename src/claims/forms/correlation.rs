@@ -21,7 +21,7 @@ use crate::claims::cells::{Values, Where};
 use crate::claims::faults::Faults;
 use crate::claims::gather::{Bench, Draft, Evidence};
 use crate::claims::terms::{Terms, one};
-use crate::claims::verdict::Effect;
+use crate::claims::verdict::EffectSize;
 use crate::math::ln;
 use crate::stats::distribution::normal_sf;
 use crate::stats::length;
@@ -156,7 +156,7 @@ fn correlated(
             ("pearson", pearson(x, y)),
             ("slope", xy / xx),
         ],
-        effect: Some(Effect::new(
+        effect: Some(EffectSize::new(
             "spearman",
             r,
             spearman_interval(r, clusters.len() as u64, bench.confidence()),

@@ -7,9 +7,9 @@ macro_rules! form {
         form!(@ {$(#[$meta])* $name} {$($own)*} {} $($terms)*);
     };
     (@ {$(#[$meta:meta])* $name:ident} {$($fields:tt)*} {$($term:ident)*}) => {
-        $(#[$meta])*
         #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize, schemars::JsonSchema)]
         #[serde(deny_unknown_fields, rename_all = "kebab-case")]
+        $(#[$meta])*
         pub struct $name {
             $($fields)*
         }

@@ -4,7 +4,7 @@ use crate::claims::cells::Where;
 use crate::claims::gather::{Bench, Draft, Evidence, Group, varies};
 use crate::claims::metric::Metric;
 use crate::claims::terms::{Side, Sides, Terms, Test};
-use crate::claims::verdict::{Effect, FIRST_N, FIRST_N_HEDGES_G, FIRST_N_P};
+use crate::claims::verdict::{EffectSize, FIRST_N, FIRST_N_HEDGES_G, FIRST_N_P};
 use crate::stats::bootstrap::bootstrap;
 use crate::stats::effect::{cliff_delta, hedges_g, risk_difference};
 use crate::stats::means::{anova, student, welch};
@@ -83,7 +83,7 @@ struct Found {
     difference: f64,
     sides: Sides,
     statistics: Vec<(&'static str, f64)>,
-    effect: Effect,
+    effect: EffectSize,
 }
 
 fn evidence(
@@ -160,7 +160,7 @@ fn evidence(
                 difference: delta.estimate,
                 sides: bench.terms.sides,
                 statistics: vec![("u", found.u), ("exact", f64::from(u8::from(found.exact)))],
-                effect: Effect::new("cliff-delta", delta.estimate, delta.interval),
+                effect: EffectSize::new("cliff-delta", delta.estimate, delta.interval),
             }
         }
         Test::BrownForsythe => {
@@ -173,7 +173,7 @@ fn evidence(
                 difference: found.difference,
                 sides: bench.terms.sides,
                 statistics: vec![("t", found.t), ("df", found.df)],
-                effect: Effect {
+                effect: EffectSize {
                     name: "difference-of-distances-from-the-median".into(),
                     ..mean_effect(&a, &b, found.interval(bench.confidence()))
                 },
@@ -190,14 +190,14 @@ fn from_median(group: &Group) -> Group {
     Group { summary: Summary::of(&values), values, ..group.clone() }
 }
 
-pub(super) fn share_effect(a: Proportion, b: Proportion, confidence: f64) -> Effect {
+pub(super) fn share_effect(a: Proportion, b: Proportion, confidence: f64) -> EffectSize {
     let value = risk_difference(a, b);
     let interval = newcombe(a, b, confidence);
-    Effect::new("risk-difference", value, interval)
+    EffectSize::new("risk-difference", value, interval)
 }
 
-pub(super) fn mean_effect(a: &Group, b: &Group, interval: Interval) -> Effect {
+pub(super) fn mean_effect(a: &Group, b: &Group, interval: Interval) -> EffectSize {
     let value = a.summary.mean - b.summary.mean;
     let hedges_g = Some(hedges_g(a.summary, b.summary));
-    Effect { hedges_g, ..Effect::new("mean-difference", value, interval) }
+    EffectSize { hedges_g, ..EffectSize::new("mean-difference", value, interval) }
 }

@@ -16,7 +16,7 @@
 //!     alpha: 0.01
 //! ```
 
-use super::comparison::{Comparison, Directed};
+use super::contrast::{Contrast, Directed};
 use crate::claims::terms::Side;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -24,12 +24,12 @@ use serde::{Deserialize, Serialize};
 /// `greater`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(transparent)]
-pub struct Greater(pub Comparison);
+pub struct Greater(pub Contrast);
 
 impl Directed for Greater {
     const SIDE: Side = Side::Greater;
 
-    fn comparison(&self) -> &Comparison {
+    fn contrast(&self) -> &Contrast {
         &self.0
     }
 }

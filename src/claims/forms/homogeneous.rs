@@ -20,7 +20,7 @@ use crate::claims::faults::Faults;
 use crate::claims::gather::{Bench, Draft, Evidence, Group};
 use crate::claims::metric::Metric;
 use crate::claims::terms::Terms;
-use crate::claims::verdict::Effect;
+use crate::claims::verdict::EffectSize;
 use crate::stats::means::anova;
 use crate::stats::multiple::holm;
 use crate::stats::proportion::{Proportion, chi_square_homogeneity};
@@ -101,7 +101,7 @@ fn all_pairs(bench: &Bench<'_>, groups: &[Group], margin: f64) -> Result<Evidenc
         return Err("one cell has nothing to be alike to".to_owned());
     }
     let mut beyond = Vec::new();
-    let mut widest: Option<(f64, Effect)> = None;
+    let mut widest: Option<(f64, EffectSize)> = None;
     let mut p_for = 0.0_f64;
     for (i, a) in groups.iter().enumerate() {
         for b in &groups[i + 1..] {

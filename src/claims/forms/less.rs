@@ -18,7 +18,7 @@
 //!     censored: reached-only
 //! ```
 
-use super::comparison::{Comparison, Directed};
+use super::contrast::{Contrast, Directed};
 use crate::claims::terms::Side;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -26,12 +26,12 @@ use serde::{Deserialize, Serialize};
 /// `less`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(transparent)]
-pub struct Less(pub Comparison);
+pub struct Less(pub Contrast);
 
 impl Directed for Less {
     const SIDE: Side = Side::Less;
 
-    fn comparison(&self) -> &Comparison {
+    fn contrast(&self) -> &Contrast {
         &self.0
     }
 }

@@ -3,8 +3,8 @@
 use super::difference::{mean_effect, share_effect};
 use crate::claims::gather::{Bench, Group, varies};
 use crate::claims::metric::Metric;
-use crate::claims::verdict::Effect;
-use crate::stats::equivalence::{Equivalence, tost_means, tost_proportions};
+use crate::claims::verdict::EffectSize;
+use crate::stats::equivalence::{EquivalenceTest, tost_means, tost_proportions};
 use crate::stats::means::welch;
 
 /// Name of the test for a metric.
@@ -18,7 +18,7 @@ pub(super) fn pair(
     a: &Group,
     b: &Group,
     margin: f64,
-) -> Result<(Equivalence, Effect), String> {
+) -> Result<(EquivalenceTest, EffectSize), String> {
     if let Some((p, q)) = a.proportion.zip(b.proportion) {
         return Ok((tost_proportions(p, q, margin), share_effect(p, q, bench.confidence())));
     }

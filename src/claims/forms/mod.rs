@@ -1,13 +1,13 @@
 //! The forms of expectation: one file a form, with what is written, where it looks, what can be wrong with it, how it is judged,
 //! and an example that is parsed, checked and judged by a test. A new form is a file and a line of [`Expect`].
 //!
-//! What several forms do alike stands in a file of its own: [`comparison`] (cell against cell), `difference`, `margin`,
+//! What several forms do alike stands in a file of its own: [`contrast`] (cell against cell), `difference`, `margin`,
 //! [`condition`] (of one trial), `bounds`, `agreement` and `pairing` (with published numbers).
 
 mod agreement;
 mod bounds;
-pub mod comparison;
 pub mod condition;
+pub mod contrast;
 mod declare;
 mod difference;
 mod form;
@@ -74,7 +74,7 @@ forms! {
     /// Two cells are equal within a margin.
     "equivalent" => Equivalent(equivalent::Equivalence),
     /// A cell lies between bounds.
-    "between" => Between(between::Level),
+    "between" => Between(between::Between),
     /// A metric rises or falls along scores.
     "trend" => Trend(trend::Trend),
     /// Cells are equal within a margin.

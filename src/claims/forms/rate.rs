@@ -22,7 +22,7 @@ use crate::claims::faults::Faults;
 use crate::claims::gather::{Bench, Draft, Evidence};
 use crate::claims::metric::Metric;
 use crate::claims::terms::{Side, Sides, Terms};
-use crate::claims::verdict::{CellNumbers, Effect};
+use crate::claims::verdict::{CellNumbers, EffectSize};
 use crate::stats::bootstrap::bootstrap;
 use crate::stats::{Tails, real};
 use schemars::JsonSchema;
@@ -219,6 +219,6 @@ fn compared(
         p_for,
         p_against,
         statistics: vec![("first", rates[0]), ("second", rates[1]), ("resamples", resamples)],
-        effect: Some(Effect::new("rate-difference", found.estimate, found.interval)),
+        effect: Some(EffectSize::new("rate-difference", found.estimate, found.interval)),
     })
 }

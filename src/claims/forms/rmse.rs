@@ -21,7 +21,7 @@ use crate::claims::cells::{Values, Where};
 use crate::claims::faults::Faults;
 use crate::claims::gather::{Bench, Draft, Evidence};
 use crate::claims::terms::{Terms, one};
-use crate::claims::verdict::Effect;
+use crate::claims::verdict::EffectSize;
 use crate::stats::agreement;
 use crate::stats::bootstrap::{Bootstrapped, bootstrap};
 use crate::stats::distribution::student_t_quantile;
@@ -159,7 +159,7 @@ fn bounded(found: &Bootstrapped, at_most: f64, statistics: Vec<(&'static str, f6
         p_for: share(count(&|x| x >= at_most)),
         p_against: share(count(&|x| x <= at_most)),
         statistics,
-        effect: Some(Effect::new("rmse", found.estimate, found.interval)),
+        effect: Some(EffectSize::new("rmse", found.estimate, found.interval)),
     }
 }
 

@@ -23,7 +23,7 @@ use crate::claims::faults::Faults;
 use crate::claims::gather::{Bench, Draft, Evidence};
 use crate::claims::metric::Metric;
 use crate::claims::terms::{Censored, Side, Sides, Terms};
-use crate::claims::verdict::{CellNumbers, Effect};
+use crate::claims::verdict::{CellNumbers, EffectSize};
 use crate::stats;
 use crate::stats::proportion::{Proportion, wilson};
 use crate::stats::real;
@@ -129,7 +129,7 @@ impl Form for SignTest {
             };
             let share = Proportion::new(claimed, pairs);
             let effect =
-                Effect::new("share-of-pairs", share.share(), wilson(share, bench.confidence()));
+                EffectSize::new("share-of-pairs", share.share(), wilson(share, bench.confidence()));
             let statistics = vec![
                 ("pairs", real(pairs)),
                 ("as-claimed", real(claimed)),

@@ -22,7 +22,7 @@ use crate::claims::faults::Faults;
 use crate::claims::gather::{Bench, Draft, Evidence, Group, varies};
 use crate::claims::metric::Metric;
 use crate::claims::terms::Terms;
-use crate::claims::verdict::Effect;
+use crate::claims::verdict::EffectSize;
 use crate::stats::bootstrap::{bootstrap, bootstrap_shares};
 use crate::stats::proportion::Proportion;
 use crate::stats::real;
@@ -157,7 +157,7 @@ fn resampled(
         p_for: share(above),
         p_against: share(below),
         statistics: vec![("resamples", resamples)],
-        effect: Some(Effect::new(
+        effect: Some(EffectSize::new(
             if compared { "spread-difference" } else { "spread" },
             found.estimate,
             found.interval,

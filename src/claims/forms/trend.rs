@@ -25,7 +25,7 @@ use crate::claims::faults::Faults;
 use crate::claims::gather::{Bench, Draft, Evidence, Group};
 use crate::claims::metric::Metric;
 use crate::claims::terms::{Side, Terms, Test};
-use crate::claims::verdict::Effect;
+use crate::claims::verdict::EffectSize;
 use crate::stats::proportion::{Proportion, cochran_armitage};
 use crate::stats::rank::{spearman, spearman_interval, spearman_permutation};
 use schemars::JsonSchema;
@@ -184,7 +184,7 @@ fn weigh(
             let tails = spearman_permutation(&x, &y, bench.context.permutations, &mut stream);
             let (p_for, p_against) = directed(tails, rho, side, sides);
             let interval = spearman_interval(rho, x.len() as u64, bench.confidence());
-            let effect = Effect::new("spearman", rho, interval);
+            let effect = EffectSize::new("spearman", rho, interval);
             Ok(Evidence { p_for, p_against, statistics: Vec::new(), effect: Some(effect) })
         }
         _ => Err(format!("{} does not apply to this metric", test.name())),

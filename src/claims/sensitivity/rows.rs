@@ -1,6 +1,6 @@
 //! The rows of the table, and what they say of attempts, runs and claims.
 
-use crate::claims::verdict::{Judgement, Verdict};
+use crate::claims::verdict::{ClaimVerdict, Judgement};
 use crate::digest::Sha256Digest;
 
 /// One claim under one other value of one setting.
@@ -42,7 +42,7 @@ impl std::fmt::Display for Run {
 impl Run {
     /// What `fresh` verdicts and records would have the table say of this run.
     #[must_use]
-    pub fn with(&self, fresh: &[Verdict], records: Sha256Digest) -> Self {
+    pub fn with(&self, fresh: &[ClaimVerdict], records: Sha256Digest) -> Self {
         let verdicts = fresh.iter().map(|verdict| (verdict.id.clone(), verdict.judgement));
         Self { verdicts: verdicts.collect(), records: Some(records), ..self.clone() }
     }
@@ -105,8 +105,8 @@ impl Sensitivity {
     pub fn push(
         &mut self,
         attempt: &Attempt,
-        (at_chosen, records_at_chosen): (&[Verdict], Sha256Digest),
-        (at_tried, records_at_tried): (&[Verdict], Sha256Digest),
+        (at_chosen, records_at_chosen): (&[ClaimVerdict], Sha256Digest),
+        (at_tried, records_at_tried): (&[ClaimVerdict], Sha256Digest),
     ) {
         for before in at_chosen {
             if let Some(after) = at_tried.iter().find(|after| after.id == before.id) {

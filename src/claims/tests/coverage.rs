@@ -57,12 +57,12 @@ pub(super) fn printed() -> BTreeMap<String, Table> {
     [("distance-m".to_owned(), table)].into()
 }
 
-fn judged(trials: &Table, expect: &str) -> Verdict {
+fn judged(trials: &Table, expect: &str) -> ClaimVerdict {
     let published = printed();
     judge(&claim(expect), trials, &Context::new(&published, &[], 7)).unwrap()
 }
 
-fn statistic(verdict: &Verdict, name: &str) -> f64 {
+fn statistic(verdict: &ClaimVerdict, name: &str) -> f64 {
     let found = verdict.comparisons[0].statistics.get(name);
     found.unwrap_or_else(|| panic!("no {name}: {:?}", verdict.comparisons[0]))
 }

@@ -154,7 +154,7 @@ fn the_papers_own_tables_decide_these_claims() {
             .into();
     let context = Context::new(&tables, &[], 2019);
     let trials = Observations::read(&as_printed_in_full()).unwrap();
-    let verdicts: Vec<Verdict> =
+    let verdicts: Vec<ClaimVerdict> =
         claims().iter().map(|claim| judge_observations(claim, &trials, &context)).collect();
     let found: Vec<(&str, Judgement)> =
         verdicts.iter().map(|v| (v.id.as_str(), v.judgement)).collect();

@@ -6,7 +6,7 @@ use super::*;
 pub(super) type Things = (Vec<(String, Vec<String>)>, Vec<String>, Vec<String>);
 
 /// A fault on one line: where, numbers of items left out, what, and what may have been meant.
-pub(super) fn told(fault: &Fault<'_>) -> String {
+pub(super) fn told(fault: &ClaimFault<'_>) -> String {
     let steps = fault.pointer.split('/').skip(1).filter(|step| step.parse::<usize>().is_err());
     let place = steps.collect::<Vec<_>>().join(".");
     let colon = if place.is_empty() { "" } else { ": " };

@@ -82,7 +82,7 @@ fn every_documented_example_is_judged_and_its_verdict_read_back() {
         assert!(!found.comparisons.is_empty(), "{}", claim.id);
         assert!(found.comparisons.iter().all(|c| !c.cells.is_empty()), "{}", claim.id);
         let written = serde_json::json!(found);
-        let read: Verdict = serde_json::from_value(written.clone()).unwrap();
+        let read: ClaimVerdict = serde_json::from_value(written.clone()).unwrap();
         assert_eq!(serde_json::json!(read), written, "{}", claim.id);
         *judged.entry(claim.expect.form()).or_default() += 1;
     }

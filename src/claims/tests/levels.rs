@@ -35,12 +35,12 @@ fn shares(groups: [(&str, i64, i64); 2]) -> Table {
     table
 }
 
-fn raw(found: &Verdict) -> (f64, f64) {
+fn raw(found: &ClaimVerdict) -> (f64, f64) {
     let comparison = &found.comparisons[0];
     (comparison.p_for.unwrap(), comparison.p_against.unwrap())
 }
 
-fn interval(found: &Verdict) -> (f64, f64) {
+fn interval(found: &ClaimVerdict) -> (f64, f64) {
     let effect = found.comparisons[0].effect.as_ref().unwrap();
     (effect.low, effect.high)
 }

@@ -5,7 +5,7 @@ use super::locked::{self, Held};
 use super::{probe, tables, verdicts};
 use crate::bundle::wall_time;
 use crate::bundle::{Additions, Form, Sealed, assemble, capsule, format, seal_with};
-use crate::claims::Verdict;
+use crate::claims::ClaimVerdict;
 use crate::cli::args::{Format, RunArgs};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::fold::{narrowed, wrapped};
@@ -109,9 +109,9 @@ fn run_one(
 struct Done {
     plan: Plan,
     records: Vec<TrialRecord>,
-    verdicts: Vec<Verdict>,
+    verdicts: Vec<ClaimVerdict>,
     /// On claims about this machine.
-    machine_verdicts: Vec<Verdict>,
+    machine_verdicts: Vec<ClaimVerdict>,
     cached: usize,
     /// Of those from the store, executed again.
     doubted: usize,
@@ -195,8 +195,8 @@ impl Done {
     }
 
     fn to_json(&self) -> String {
-        let by_id = |verdicts: &[Verdict]| -> Map<String, Value> {
-            let entry = |v: &Verdict| (v.id.clone(), v.judgement.to_string().into());
+        let by_id = |verdicts: &[ClaimVerdict]| -> Map<String, Value> {
+            let entry = |v: &ClaimVerdict| (v.id.clone(), v.judgement.to_string().into());
             verdicts.iter().map(entry).collect()
         };
         let path = std::path::absolute(&self.path).unwrap_or_else(|_| self.path.clone());

@@ -3,7 +3,7 @@
 
 use super::execution::{Execution, Times, jobs};
 use crate::bundle::assemble;
-use crate::claims::Verdict;
+use crate::claims::ClaimVerdict;
 use crate::claims::sensitivity::{Attempt, Flip, Sensitivity, in_words};
 use crate::cli::args::VaryArgs;
 use crate::cli::exit::{Exit, Failure};
@@ -106,7 +106,10 @@ impl Study<'_> {
     }
 
     /// What the claims of `experiment` come to, and digest of the records by which they do.
-    fn verdicts(&self, experiment: Experiment) -> Result<(Vec<Verdict>, Sha256Digest), Failure> {
+    fn verdicts(
+        &self,
+        experiment: Experiment,
+    ) -> Result<(Vec<ClaimVerdict>, Sha256Digest), Failure> {
         let plan = Plan::of(experiment);
         let records = self.execution.execute(&plan, Times::Once, self.terminal)?.records;
         let verdicts = assemble::verdicts(&plan, &records).map_err(Failure::failed)?;

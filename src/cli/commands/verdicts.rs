@@ -1,11 +1,11 @@
 //! Verdicts in print: what the paper's table shows beside what we find, and the reproduction score.
 
-use crate::claims::verdict::{Effect, agreement_in_words};
-use crate::claims::{Judgement, Score, Verdict};
+use crate::claims::verdict::{EffectSize, agreement_in_words};
+use crate::claims::{ClaimVerdict, Judgement, Score};
 
 /// The verdicts on a study's claims with their score, and those on the machine, which count for nothing; empty
 /// where nothing is claimed. A function of the verdicts alone: no lock changes what is printed.
-pub(super) fn in_words(verdicts: &[Verdict], machine: &[Verdict]) -> String {
+pub(super) fn in_words(verdicts: &[ClaimVerdict], machine: &[ClaimVerdict]) -> String {
     let mut text = String::new();
     if !verdicts.is_empty() {
         text.push_str(&lists(["Claims of the paper", "Checks of our own"], verdicts));
@@ -26,14 +26,14 @@ pub(super) fn in_words(verdicts: &[Verdict], machine: &[Verdict]) -> String {
 }
 
 /// What the paper says, and apart from it what we check besides; empty lists are left out.
-fn lists(titles: [&str; 2], verdicts: &[Verdict]) -> String {
-    let (papers, ours): (Vec<&Verdict>, Vec<&Verdict>) =
+fn lists(titles: [&str; 2], verdicts: &[ClaimVerdict]) -> String {
+    let (papers, ours): (Vec<&ClaimVerdict>, Vec<&ClaimVerdict>) =
         verdicts.iter().partition(|verdict| verdict.says.is_some());
     let lists = titles.into_iter().zip([papers, ours]).filter(|(_, list)| !list.is_empty());
     lists.map(|(title, verdicts)| list(title, &verdicts)).collect()
 }
 
-fn list(title: &str, verdicts: &[&Verdict]) -> String {
+fn list(title: &str, verdicts: &[&ClaimVerdict]) -> String {
     let width = |texts: &mut dyn Iterator<Item = String>| {
         texts.map(|text| text.chars().count()).max().unwrap_or(0)
     };
@@ -52,7 +52,7 @@ fn list(title: &str, verdicts: &[&Verdict]) -> String {
         for comparison in &verdict.comparisons {
             let words = agreement_in_words(comparison.statistics.iter());
             if let (false, Some(effect)) = (words.is_empty(), &comparison.effect) {
-                let Effect { name, value, low, high, .. } = effect;
+                let EffectSize { name, value, low, high, .. } = effect;
                 let range = format!("[{low:.2}, {high:.2}]");
                 text.push_str(&format!("  {:id$}  {name} {value:.2} {range}\n", ""));
                 for part in words.split(", ") {

@@ -12,7 +12,8 @@ use crate::claims::terms::{PerRun, Side, Terms, Test};
 
 form! {
     /// `less`, `greater`.
-    pub struct Comparison {
+    #[schemars(rename = "Comparison")]
+    pub struct Contrast {
         /// What is measured; several metrics are several comparisons, unless `per-run` makes one number of them.
         pub metric: Values,
         /// How the metrics of one run become one number: coverages of one run are no independent measurements.
@@ -43,35 +44,35 @@ form! {
 pub(super) trait Directed {
     const SIDE: Side;
 
-    fn comparison(&self) -> &Comparison;
+    fn contrast(&self) -> &Contrast;
 }
 
 impl<F: Directed> Form for F {
     fn terms(&self) -> Terms {
-        self.comparison().shared_terms()
+        self.contrast().shared_terms()
     }
 
     fn measured(&self) -> Vec<(String, &str)> {
-        self.comparison().metric.as_metrics()
+        self.contrast().metric.as_metrics()
     }
 
     fn selections(&self) -> Vec<(String, &Where)> {
-        let form = self.comparison();
+        let form = self.contrast();
         form.for_each.after([("/where", &form.r#where), ("/than/where", &form.than.r#where)])
     }
 
     fn pools(&self) -> Vec<Where> {
-        let form = self.comparison();
+        let form = self.contrast();
         form.for_each
             .pools(|pins| [&form.r#where, &form.than.r#where].map(|cell| cell.pinned(pins)))
     }
 
     fn ranks(&self) -> bool {
-        self.comparison().test == Some(Test::MannWhitney)
+        self.contrast().test == Some(Test::MannWhitney)
     }
 
     fn check<'a>(&'a self, faults: &mut Faults<'a>) {
-        let form = self.comparison();
+        let form = self.contrast();
         faults.each("/than/each", &form.than);
         check_per_run(form, faults);
         faults.unless(form.also_at_n.is_none_or(|n| n >= 2), "/also-at-n", || {
@@ -80,7 +81,7 @@ impl<F: Directed> Form for F {
     }
 
     fn judge(&self, bench: &Bench<'_>) -> Vec<Draft> {
-        let form = self.comparison();
+        let form = self.contrast();
         let mut drafts = Vec::new();
         for metric in Metric::of_run(&form.metric.0, form.per_run) {
             for pins in form.for_each.combinations() {
@@ -94,7 +95,7 @@ impl<F: Directed> Form for F {
     }
 }
 
-fn check_per_run(form: &Comparison, faults: &mut Faults<'_>) {
+fn check_per_run(form: &Contrast, faults: &mut Faults<'_>) {
     let Some(per_run) = form.per_run else { return };
     let share = form.metric.0.iter().find(|name| Metric::named(name).is_share());
     faults.unless(share.is_none(), "/per-run", || {
