@@ -101,7 +101,7 @@ pub fn verdicts(plan: &Plan, records: &[TrialRecord]) -> Result<Vec<ClaimVerdict
         return Ok(Vec::new());
     }
     // Read once: to read thousands of trials takes longer than to judge a claim by them.
-    let observations = Observations::read(&trials)?;
+    let observations = Observations::read(&trials).map_err(|error| error.to_string())?;
     let judged = about_the_study
         .into_iter()
         .map(|claim| claims::judge_observations(claim, &observations, &context));

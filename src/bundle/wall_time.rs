@@ -53,7 +53,7 @@ pub fn measured(
             let table = table(plan, records, times);
             files.push(("wall-times.csv".to_owned(), table.to_csv().into_bytes()));
             let judged = claims.iter().map(|claim| claims::judge(claim, &table, &context));
-            judged.collect::<Result<Vec<_>, _>>()?
+            judged.collect::<Result<Vec<_>, _>>().map_err(|error| error.to_string())?
         }
         Err(reason) => {
             claims.iter().map(|claim| claims::not_measured(claim, reason, &context)).collect()

@@ -1,5 +1,6 @@
 //! The runs of cells, and every reason why they cannot be compared.
 
+use super::cannot_test::CannotTest;
 use super::cells::Where;
 use super::context::Context;
 use super::metric::Metric;
@@ -28,13 +29,13 @@ pub(super) struct Draft {
     pub(super) cells: Vec<CellNumbers>,
     /// Conditions whose number of trials the evidence grows with; empty where it grows with something else.
     pub(super) conditions: Vec<usize>,
-    pub(super) evidence: Result<Evidence, String>,
+    pub(super) evidence: Result<Evidence, CannotTest>,
     pub(super) notes: Vec<String>,
 }
 
 impl Draft {
-    /// What cannot be tested, with no cell looked at.
-    pub(super) fn untestable(about: String, reason: String) -> Self {
+    /// Returns a comparison that cannot be tested, without a look at any cell.
+    pub(super) fn untestable(about: String, reason: CannotTest) -> Self {
         Self {
             about,
             test: "none",
@@ -69,12 +70,12 @@ pub(super) struct Group {
 pub(super) struct Gathered {
     pub(super) numbers: Vec<CellNumbers>,
     pub(super) conditions: Vec<usize>,
-    pub(super) groups: Result<Vec<Group>, String>,
+    pub(super) groups: Result<Vec<Group>, CannotTest>,
     pub(super) notes: Vec<String>,
 }
 
 impl Bench<'_> {
-    /// The runs of `cells`, or why they cannot be compared: nothing there, failed or censored runs, too few of
+    /// Returns the runs of `cells`, or why they cannot be compared: nothing there, failed or censored runs, too few of
     /// them, a condition in two cells, or noise in common.
     pub(super) fn gather(&self, cells: &[Where], metric: &Metric) -> Gathered {
         let (mut numbers, mut groups, mut conditions) = (Vec::new(), Vec::new(), Vec::new());
@@ -85,7 +86,7 @@ impl Bench<'_> {
             for &i in &group.conditions {
                 if conditions.contains(&i) {
                     let name = self.observations.name(i);
-                    reasons.push(format!("the condition {name} is in two of the cells compared"));
+                    reasons.push(CannotTest::InTwoCells(name));
                 } else {
                     conditions.push(i);
                 }
@@ -104,14 +105,14 @@ impl Bench<'_> {
         Gathered { numbers, conditions, groups, notes }
     }
 
-    /// One comparison of `cells`: `weigh` says what their runs are evidence of.
+    /// Compares `cells`: `weigh` says what their runs are evidence of.
     pub(super) fn draft(
         &self,
         about: String,
         test: &'static str,
         cells: &[Where],
         metric: &Metric,
-        weigh: impl FnOnce(&str, &[Group]) -> Result<Evidence, String>,
+        weigh: impl FnOnce(&str, &[Group]) -> Result<Evidence, CannotTest>,
     ) -> Draft {
         let gathered = self.gather(cells, metric);
         let evidence = gathered.groups.and_then(|groups| weigh(&about, &groups));
@@ -119,22 +120,19 @@ impl Bench<'_> {
         Draft { about, test, cells, conditions, evidence, notes }
     }
 
-    /// The refusal of trials that are not independent.
-    pub(super) fn shared_noise(&self, conditions: &[usize]) -> Option<String> {
+    /// Refuses trials that are not independent.
+    pub(super) fn shared_noise(&self, conditions: &[usize]) -> Option<CannotTest> {
         let (one, other) = self.observations.sharing(conditions, self.context.shared_noise)?;
-        Some(format!(
-            "trials of ({one}) and ({other}) share their noise (over {}), and this test needs independent \
-             trials; a sign-test with `pairs: trials` does not",
-            self.context.shared_noise.join(", ")
-        ))
+        let factors = self.context.shared_noise.join(", ");
+        Some(CannotTest::SharedNoise { one, other, factors })
     }
 
-    /// The runs of one cell, and what is wrong with them.
+    /// Returns the runs of one cell, and what is wrong with them.
     pub(super) fn group(
         &self,
         cell: &Where,
         metric: &Metric,
-    ) -> (Group, CellNumbers, Option<String>) {
+    ) -> (Group, CellNumbers, Option<CannotTest>) {
         let conditions = self.observations.select(cell);
         let readings = self.observations.readings(&conditions, metric);
         let trials = readings.values.len() as u64 + readings.failed;
@@ -161,25 +159,23 @@ impl Bench<'_> {
             values.resize(values.len() + censored, f64::INFINITY);
         }
         let n = values.len() as u64;
+        let (failed, minimum, name) = (readings.failed, self.terms.minimum_runs, cell.to_string());
         let fault = if trials == 0 {
-            Some(format!("no trial matches ({cell})"))
-        } else if readings.failed > 0 {
-            Some(format!("{} of {trials} trials of ({cell}) failed to run", readings.failed))
+            Some(CannotTest::NoTrial(name))
+        } else if failed > 0 {
+            Some(CannotTest::FailedTrials { failed, trials, cell: name })
         } else if censored > 0 && self.terms.censored == Censored::Refuse {
-            Some(format!(
-                "{censored} of {trials} runs of ({cell}) never reached {metric}; say with `censored` whether \
-                 those that did are compared (reached-only) or the others rank last (worst)"
-            ))
-        } else if n < self.terms.minimum_runs {
-            let minimum = self.terms.minimum_runs;
-            Some(format!("({cell}) has {n} runs to compare, fewer than the minimum of {minimum}"))
+            let metric = metric.clone();
+            Some(CannotTest::CensoredRuns { censored, trials, cell: name, metric })
+        } else if n < minimum {
+            Some(CannotTest::FewRuns { cell: name, n, minimum })
         } else {
             None
         };
         (Group { conditions, values, proportion, summary }, numbers, fault)
     }
 
-    /// Confidence of the interval that says the same as the test.
+    /// Returns the confidence of the interval that says the same as the test.
     pub(super) fn confidence(&self) -> f64 {
         match self.terms.sides {
             Sides::One => 1.0 - 2.0 * self.terms.alpha,
@@ -187,7 +183,7 @@ impl Bench<'_> {
         }
     }
 
-    /// The resampling stream of one comparison.
+    /// Returns the resampling stream of one comparison.
     pub(super) fn stream(&self, about: &str) -> Stream {
         let coordinates = vec![("claim".to_owned(), self.claim.to_owned())];
         Seeds::new(self.context.seed, coordinates).stream(&format!("claims/{about}"))
@@ -215,16 +211,13 @@ fn unequal_reach(cells: &[CellNumbers], alpha: f64) -> Vec<String> {
     vec![format!("reached by {}{differ}", listed.join(", "))]
 }
 
-/// Groups that do not vary at all were not drawn at random, and no test of means applies.
-pub(super) fn varies(groups: &[&Group]) -> Result<(), String> {
+/// Refuses groups that do not vary at all: they were not drawn at random, and no test of means applies.
+pub(super) fn varies(groups: &[&Group]) -> Result<(), CannotTest> {
     if let Some(small) = groups.iter().find(|g| g.summary.n < 2) {
-        return Err(format!("a mean of {} runs has no known spread", small.summary.n));
+        return Err(CannotTest::NoSpread(small.summary.n));
     }
     if groups.iter().all(|g| g.proportion.is_none() && g.summary.sd == 0.0) {
-        return Err(
-            "no value varies within its cell: nothing was drawn at random, so no test applies"
-                .into(),
-        );
+        return Err(CannotTest::NothingVaries);
     }
     Ok(())
 }

@@ -1,10 +1,11 @@
 //! From a claim and the trials to a verdict.
 
+use super::cannot_test::CannotTest;
 use super::claim::Claim;
 use super::context::Context;
 use super::gather::{Bench, COUNT, Draft, Evidence};
 use super::metric::WALL_TIME;
-use super::observations::Observations;
+use super::observations::{Observations, TrialsTableError};
 use super::terms::{Correction, Sides, Terms};
 use super::verdict::{CellNumbers, ClaimVerdict, ComparisonVerdict, Judgement};
 use super::words::Words;
@@ -23,7 +24,11 @@ const MOST_TRIALS: f64 = 1e6;
 ///
 /// # Errors
 /// Where the table has not the columns of the contract ([`Observations::read`]).
-pub fn judge(claim: &Claim, trials: &Table, context: &Context<'_>) -> Result<ClaimVerdict, String> {
+pub fn judge(
+    claim: &Claim,
+    trials: &Table,
+    context: &Context<'_>,
+) -> Result<ClaimVerdict, TrialsTableError> {
     Ok(judge_observations(claim, &Observations::read(trials)?, context))
 }
 
@@ -38,10 +43,7 @@ pub fn judge_observations(
     let machine = claim.expect.metrics().into_iter().find(|m| m.starts_with(WALL_TIME));
     let drafts = match machine {
         Some(metric) if !claim.circumstance => {
-            let reason = format!(
-                "`{metric}` depends on the machine: such claims are marked `circumstance: true` and judged apart \
-                 from the results"
-            );
+            let reason = CannotTest::OfTheMachine(metric.clone());
             vec![Draft::untestable(metric, reason)]
         }
         _ => claim.expect.as_form().judge(&bench),
@@ -49,13 +51,13 @@ pub fn judge_observations(
     conclude(claim, &bench, drafts)
 }
 
-/// The verdict on a claim for which nothing was measured, for this `reason`.
+/// Returns the verdict on a claim for which nothing was measured, for this `reason`.
 pub fn not_measured(claim: &Claim, reason: &str, context: &Context<'_>) -> ClaimVerdict {
     let observations = Observations::default();
     let terms = claim.expect.as_form().terms();
     let bench = Bench { claim: &claim.id, observations: &observations, context, terms };
     let about = claim.expect.metrics().join(" and ");
-    conclude(claim, &bench, vec![Draft::untestable(about, reason.to_owned())])
+    conclude(claim, &bench, vec![Draft::untestable(about, CannotTest::Stated(reason.to_owned()))])
 }
 
 fn conclude(claim: &Claim, bench: &Bench<'_>, drafts: Vec<Draft>) -> ClaimVerdict {
@@ -80,7 +82,7 @@ fn conclude(claim: &Claim, bench: &Bench<'_>, drafts: Vec<Draft>) -> ClaimVerdic
             notes.push(note);
         }
         let (judgement, reason, evidence) = match draft.evidence {
-            Err(reason) => (Judgement::CannotBeTested, Some(reason), None),
+            Err(reason) => (Judgement::CannotBeTested, Some(reason.to_string()), None),
             Ok(evidence) => {
                 let judgement = if p_for[i] <= terms.alpha {
                     Judgement::Supported
@@ -149,7 +151,7 @@ fn conclude(claim: &Claim, bench: &Bench<'_>, drafts: Vec<Draft>) -> ClaimVerdic
     }
 }
 
-/// The claim's judgement from those of its comparisons, and a sentence for it.
+/// Sums up the judgements of a claim's comparisons: the claim's own, and a sentence for it.
 fn sum_up(
     comparisons: &[ComparisonVerdict],
     required: usize,
@@ -202,7 +204,7 @@ fn sum_up(
     (judgement, reason)
 }
 
-/// Trials per condition that would have decided a comparison with 80 % power, if what was seen is the truth.
+/// Returns the trials per condition that would have decided a comparison with 80 % power, if what was seen is the truth.
 ///
 /// A test statistic grows with the root of the number of trials, so `n' = n ((z_alpha + z_power) / z_seen)²`,
 /// with alpha shared among the comparisons of the claim as Bonferroni would. `None` where nothing was seen or

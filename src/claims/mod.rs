@@ -12,6 +12,7 @@
 //! need independence; wall times belong to the circumstance half and cannot decide a result.
 
 mod assume;
+mod cannot_test;
 pub mod cells;
 mod check;
 mod claim;

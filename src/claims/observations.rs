@@ -1,9 +1,11 @@
 //! The trials table by condition, as the forms of expectation ask for it.
 
+use super::cannot_test::CannotTest;
 use super::cells::Where;
 use super::metric::{FAILED, Metric};
 use crate::table::{Table, Value};
 use std::collections::BTreeMap;
+use thiserror::Error;
 
 /// Trials grouped by condition, in the order of the table.
 #[derive(Debug, Clone, Default)]
@@ -12,7 +14,7 @@ pub struct Observations {
     pub(crate) factors: Vec<String>,
     /// One per combination of factor values that has trials.
     pub(crate) conditions: Vec<Condition>,
-    /// Names of the measures, to tell an unknown one from one that nobody reached.
+    /// Names of the measures: an unknown one is not the same as one that nobody reached.
     measures: Vec<String>,
 }
 
@@ -44,25 +46,59 @@ pub(crate) struct Readings {
     pub(crate) failed: u64,
 }
 
+/// Why a table is none of trials. A trial is named by the values of its factors.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum TrialsTableError {
+    /// A column is missing.
+    #[error("the trials table has no column `{column}` (it has {columns})")]
+    NoColumn {
+        /// Its name.
+        column: &'static str,
+        /// Those there are.
+        columns: String,
+    },
+    /// The outcome is out of its place.
+    #[error("the trials table must have `outcome` right after `trial`")]
+    OutcomeElsewhere,
+    /// A trial has no whole number or no outcome.
+    #[error(
+        "a trial of {condition} has the number `{number}` and the outcome `{outcome}`; expected a whole number and a name"
+    )]
+    NotATrial {
+        /// Its condition.
+        condition: String,
+        /// What stands there for its number.
+        number: String,
+        /// What stands there for its outcome.
+        outcome: String,
+    },
+    /// A trial is there twice.
+    #[error("trial {number} of {condition} is there twice")]
+    Twice {
+        /// Its number.
+        number: i64,
+        /// Its condition.
+        condition: String,
+    },
+}
+
 impl Observations {
     /// Reads the columns `key`, the factors, `trial`, `outcome` and the measures, in this order
     /// (`results/trials.csv`).
     ///
     /// # Errors
     /// Where a column is missing or out of its place, a trial has no number or outcome, or stands there twice.
-    pub fn read(trials: &Table) -> Result<Self, String> {
-        let place = |name: &str| {
-            trials.column(name).ok_or_else(|| {
-                format!(
-                    "the trials table has no column `{name}` (it has {})",
-                    trials.columns.join(", ")
-                )
+    pub fn read(trials: &Table) -> Result<Self, TrialsTableError> {
+        let place = |column: &'static str| {
+            trials.column(column).ok_or_else(|| {
+                let columns = trials.columns.join(", ");
+                TrialsTableError::NoColumn { column, columns }
             })
         };
         let (trial, outcome) = (place("trial")?, place("outcome")?);
         let first = usize::from(trials.columns.first().is_some_and(|c| c == "key"));
         if outcome != trial + 1 {
-            return Err("the trials table must have `outcome` right after `trial`".to_owned());
+            return Err(TrialsTableError::OutcomeElsewhere);
         }
         let factors = trials.columns[first..trial].to_vec();
         let measures = trials.columns[outcome + 1..].to_vec();
@@ -77,12 +113,11 @@ impl Observations {
             let here = &mut conditions[at];
             let (Value::Integer(number), Value::Text(outcome)) = (&row[trial], &row[outcome])
             else {
-                return Err(format!(
-                    "a trial of {} has the number `{}` and the outcome `{}`; expected a whole number and a name",
-                    values.join("/"),
-                    row[trial],
-                    row[outcome]
-                ));
+                return Err(TrialsTableError::NotATrial {
+                    condition: values.join("/"),
+                    number: row[trial].to_string(),
+                    outcome: row[outcome].to_string(),
+                });
             };
             here.numbers.push(*number);
             here.outcomes.push(outcome.clone());
@@ -93,20 +128,15 @@ impl Observations {
         for condition in &conditions {
             let mut numbers = condition.numbers.clone();
             numbers.sort_unstable();
-            if let Some(twice) =
-                numbers.windows(2).find(|pair| pair[0] == pair[1]).map(|pair| pair[0])
-            {
-                return Err(format!(
-                    "trial {} of {} is there twice",
-                    twice,
-                    condition.values.join("/")
-                ));
+            if let Some(twice) = numbers.windows(2).find(|pair| pair[0] == pair[1]) {
+                let (number, condition) = (twice[0], condition.values.join("/"));
+                return Err(TrialsTableError::Twice { number, condition });
             }
         }
         Ok(Self { factors, conditions, measures })
     }
 
-    /// Observations made up for a plan: each metric (shares as 0 and 1) by condition.
+    /// Returns observations made up for a plan: each metric (shares as 0 and 1) by condition.
     pub(crate) fn simulated(
         factors: Vec<String>,
         conditions: Vec<(Vec<String>, Measures)>,
@@ -126,13 +156,13 @@ impl Observations {
         Self { factors, conditions, measures }
     }
 
-    /// Why `metric` cannot be read at all, if it cannot.
-    pub(crate) fn lacks(&self, metric: &Metric) -> Option<String> {
+    /// Returns why `metric` cannot be read at all, if it cannot.
+    pub(super) fn lacks(&self, metric: &Metric) -> Option<CannotTest> {
         let lacking = metric.columns().into_iter().find(|name| !self.measures.contains(name));
-        lacking.map(|name| format!("the trials table has no column `{name}`"))
+        lacking.map(|name| CannotTest::NoColumn(name.clone()))
     }
 
-    /// The first `n` trials of each condition, by number.
+    /// Returns the first `n` trials of each condition, by number.
     pub(crate) fn first(&self, n: u64) -> Self {
         let mut kept = self.clone();
         for condition in &mut kept.conditions {
@@ -150,14 +180,14 @@ impl Observations {
         kept
     }
 
-    /// The conditions that `cell` selects.
+    /// Returns the conditions that `cell` selects.
     pub(crate) fn select(&self, cell: &Where) -> Vec<usize> {
         (0..self.conditions.len())
             .filter(|&i| cell.admits(|factor| self.value(i, factor)))
             .collect()
     }
 
-    /// The values of `metric` over `conditions`, in order.
+    /// Returns the values of `metric` over `conditions`, in order.
     pub(crate) fn readings(&self, conditions: &[usize], metric: &Metric) -> Readings {
         let mut readings = Readings::default();
         for &i in conditions {
@@ -192,7 +222,7 @@ impl Observations {
         None
     }
 
-    /// The factor values of a condition but for `left_out`.
+    /// Returns the factor values of a condition but for `left_out`.
     pub(crate) fn own_coordinates(&self, condition: usize, left_out: &[String]) -> Vec<&str> {
         let values = self.conditions[condition].values.iter();
         self.factors
@@ -203,26 +233,26 @@ impl Observations {
             .collect()
     }
 
-    /// The value of `factor` in a condition.
+    /// Returns the value of `factor` in a condition.
     pub(crate) fn value(&self, condition: usize, factor: &str) -> Option<&str> {
         let place = self.factors.iter().position(|f| f == factor)?;
         Some(self.conditions[condition].values[place].as_str())
     }
 
-    /// A condition in words.
+    /// Returns a condition in words.
     pub(crate) fn name(&self, condition: usize) -> String {
         let pairs = self.factors.iter().zip(&self.conditions[condition].values);
         pairs.map(|(factor, value)| format!("{factor}={value}")).collect::<Vec<_>>().join(", ")
     }
 
-    /// The largest number of trials that any of these conditions has.
+    /// Returns the largest number of trials that any of these conditions has.
     pub(crate) fn trials_per_condition(&self, conditions: &[usize]) -> u64 {
         conditions.iter().map(|&i| self.conditions[i].numbers.len() as u64).max().unwrap_or(0)
     }
 }
 
 impl Condition {
-    /// The value of `metric` in one trial: `None` where the run did not reach it.
+    /// Returns the value of `metric` in one trial: `None` where the run did not reach it.
     pub(crate) fn reading(&self, row: usize, metric: &Metric) -> Result<Option<f64>, FailedTrial> {
         let Some(outcome) = self.outcomes.get(row) else {
             let column = |name: &str| self.measures.get(name).and_then(|values| values[row]);
@@ -265,7 +295,7 @@ mod tests {
         assert_eq!(all.trials_per_condition(&[1, 0]), 2);
         assert_eq!(
             all.lacks(&Metric::named("tim-s")),
-            Some("the trials table has no column `tim-s`".to_owned())
+            Some(CannotTest::NoColumn("tim-s".to_owned()))
         );
     }
 
@@ -283,7 +313,7 @@ mod tests {
 
     #[test]
     fn a_table_of_another_shape_is_refused() {
-        let fault = |text: &str| Observations::read(&table(text)).unwrap_err();
+        let fault = |text: &str| Observations::read(&table(text)).unwrap_err().to_string();
         assert_eq!(
             fault("key,outcome\n"),
             "the trials table has no column `trial` (it has key, outcome)"

@@ -10,12 +10,13 @@ use super::context::Context;
 use super::judge::judge_observations;
 use super::metric::Metric;
 use super::observations::Observations;
-use super::published::{PublishedCell, read, selection};
+use super::published::{PublishedCell, PublishedTableError, read, selection};
 use super::verdict::{Judgement, rounded};
 use crate::rng::Seeds;
 use crate::stats::real;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
+use thiserror::Error;
 
 /// Trials per condition that are tried beside the planned number.
 const LADDER: [u64; 7] = [10, 20, 50, 100, 200, 500, 1000];
@@ -52,12 +53,12 @@ pub struct Power {
     pub planned: Chance,
     /// At 10, 20, 50, ... until one is enough.
     pub ladder: Vec<Chance>,
-    /// Fewest trials tried that decide the claim, one way or the other, in 80 % of studies.
+    /// Fewest trials tried that support or contradict the claim in 80 % of studies.
     pub enough: Option<u64>,
 }
 
 impl Power {
-    /// The line of `plan --power --format json`.
+    /// Returns the line of `plan --power --format json`.
     pub fn to_json(&self) -> Value {
         let chance = |c: &Chance| {
             json!({
@@ -75,7 +76,47 @@ impl Power {
     }
 }
 
-/// What `trials` per condition would decide about `claim`, by `replicates` made-up studies each.
+/// Why nothing can be said of a claim before trials are run.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum PowerError {
+    /// The claim does not say what to take for the truth.
+    #[error("the claim assumes no truth; add `power:` with `published` or `cells`")]
+    NoTruth,
+    /// There is no such published table.
+    #[error("there is no published table `{0}`")]
+    NoTable(String),
+    /// The published table cannot be read.
+    #[error("published table `{table}`: {error}")]
+    Table {
+        /// Its name.
+        table: String,
+        /// Why.
+        error: PublishedTableError,
+    },
+    /// A share is not between 0 and 1.
+    #[error("{metric} in ({condition}) is a share and cannot be {value}; is a scale missing?")]
+    NotAShare {
+        /// The share.
+        metric: String,
+        /// Where, in words.
+        condition: String,
+        /// What was assumed.
+        value: f64,
+    },
+    /// A measure has a mean and nothing that says how it varies.
+    #[error("no standard deviation is known for {metric} in ({condition})")]
+    NoDeviation {
+        /// The measure.
+        metric: String,
+        /// Where, in words.
+        condition: String,
+    },
+    /// Nothing that the claim compares is among what was assumed.
+    #[error("the truth assumed covers no condition of the plan")]
+    Nowhere,
+}
+
+/// Returns what `trials` per condition would decide about `claim`, by `replicates` made-up studies each.
 ///
 /// `conditions` are the factor values of every condition of the plan, all with the same factors in one order.
 ///
@@ -87,7 +128,7 @@ pub fn power(
     trials: u64,
     context: &Context<'_>,
     replicates: u32,
-) -> Result<Power, String> {
+) -> Result<Power, PowerError> {
     let truths = truths(claim, conditions, context)?;
     // Resampling within resampling: fewer suffice, the studies average them.
     let context = Context { resamples: 200, permutations: 199, ..*context };
@@ -119,20 +160,17 @@ fn truths(
     claim: &Claim,
     conditions: &[Vec<(String, String)>],
     context: &Context<'_>,
-) -> Result<Truths, String> {
-    let Some(assume) = &claim.power else {
-        return Err(
-            "the claim assumes no truth; add `power:` with `published` or `cells`".to_owned()
-        );
-    };
+) -> Result<Truths, PowerError> {
+    let Some(assume) = &claim.power else { return Err(PowerError::NoTruth) };
     let metrics = claim.expect.metrics();
     let factors: Vec<String> =
         conditions.first().map(|c| c.iter().map(|(f, _)| f.clone()).collect()).unwrap_or_default();
     let rows = match assume {
         Assume::Published { table, .. } => {
             let found = context.published.get(table);
-            let found = found.ok_or_else(|| format!("there is no published table `{table}`"))?;
-            read(found, &factors).map_err(|fault| format!("published table `{table}`: {fault}"))?
+            let found = found.ok_or_else(|| PowerError::NoTable(table.clone()))?;
+            read(found, &factors)
+                .map_err(|error| PowerError::Table { table: table.clone(), error })?
         }
         Assume::Cells(_) => Vec::new(),
     };
@@ -156,19 +194,15 @@ fn truths(
             let words =
                 || condition.iter().map(|(f, v)| format!("{f}={v}")).collect::<Vec<_>>().join(", ");
             if share && !(0.0..=1.0).contains(&value) {
-                return Err(format!(
-                    "{name} in ({}) is a share and cannot be {value}; is a scale missing?",
-                    words()
-                ));
+                let (metric, condition) = (name.clone(), words());
+                return Err(PowerError::NotAShare { metric, condition, value });
             }
             let sd = match sd {
                 Some(sd) => sd,
                 None if share => 0.0,
                 None => {
-                    return Err(format!(
-                        "no standard deviation is known for {name} in ({})",
-                        words()
-                    ));
+                    let (metric, condition) = (name.clone(), words());
+                    return Err(PowerError::NoDeviation { metric, condition });
                 }
             };
             here.insert(name.clone(), Truth { value, sd });
@@ -178,7 +212,7 @@ fn truths(
         }
     }
     if all.is_empty() {
-        return Err("the truth assumed covers no condition of the plan".to_owned());
+        return Err(PowerError::Nowhere);
     }
     Ok(all)
 }

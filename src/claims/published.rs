@@ -10,6 +10,7 @@
 use super::cells::{Values, Where};
 use crate::table::{Table, Value};
 use std::collections::BTreeMap;
+use thiserror::Error;
 
 /// One printed number.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,7 +30,7 @@ pub struct PublishedCell {
 }
 
 impl PublishedCell {
-    /// Whether the number is one of `metric`.
+    /// Returns whether the number is one of `metric`.
     pub fn speaks_of(&self, metric: &str) -> bool {
         let (quantity, coverage) = match &self.coverage {
             None => (metric, None),
@@ -43,27 +44,64 @@ impl PublishedCell {
     }
 }
 
-/// The rows of a published table over the factors `factors`.
+/// Why a published table cannot be read. Rows are counted from 1, without the header.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum PublishedTableError {
+    /// It has no column of values.
+    #[error("no column `value` (there are {0})")]
+    NoValues(String),
+    /// A number is something else.
+    #[error("row {row}: `{column}` is `{found}`, expected a number")]
+    NotANumber {
+        /// The row.
+        row: usize,
+        /// Name of the column.
+        column: String,
+        /// What stands there.
+        found: String,
+    },
+    /// A number of runs is no positive whole number.
+    #[error("row {row}: `n` is `{found}`, expected runs")]
+    NotRuns {
+        /// The row.
+        row: usize,
+        /// What stands there.
+        found: String,
+    },
+    /// Two rows are of the same cell.
+    #[error("rows {first} and {second} speak of the same cell")]
+    SameCell {
+        /// The first of them.
+        first: usize,
+        /// The second.
+        second: usize,
+    },
+}
+
+/// Reads the rows of a published table over the factors `factors`.
 ///
 /// # Errors
 /// Where there is no `value` column, a number is no number, or two rows speak of one cell.
-pub fn read(table: &Table, factors: &[String]) -> Result<Vec<PublishedCell>, String> {
+pub fn read(table: &Table, factors: &[String]) -> Result<Vec<PublishedCell>, PublishedTableError> {
     if table.column("value").is_none() {
-        return Err(format!("no column `value` (there are {})", table.columns.join(", ")));
+        return Err(PublishedTableError::NoValues(table.columns.join(", ")));
     }
     let mut cells: Vec<PublishedCell> = Vec::new();
     for (i, row) in table.rows.iter().enumerate() {
         let number = |name: &str| match table.value(row, name) {
             Value::Missing => Ok(None),
-            value => value
-                .as_f64()
-                .map(Some)
-                .ok_or_else(|| format!("row {}: `{name}` is `{value}`, expected a number", i + 1)),
+            value => value.as_f64().map(Some).ok_or_else(|| PublishedTableError::NotANumber {
+                row: i + 1,
+                column: name.to_owned(),
+                found: value.to_string(),
+            }),
         };
         let n = match table.value(row, "n") {
             Value::Missing => None,
             Value::Integer(n) if *n > 0 => Some(n.unsigned_abs()),
-            other => return Err(format!("row {}: `n` is `{other}`, expected runs", i + 1)),
+            other => {
+                return Err(PublishedTableError::NotRuns { row: i + 1, found: other.to_string() });
+            }
         };
         let metric = match table.value(row, "metric") {
             Value::Missing => None,
@@ -82,7 +120,7 @@ pub fn read(table: &Table, factors: &[String]) -> Result<Vec<PublishedCell>, Str
         let same =
             |c: &PublishedCell| c.pins == pins && c.metric == metric && c.coverage == coverage;
         if let Some(first) = cells.iter().position(same) {
-            return Err(format!("rows {} and {} speak of the same cell", first + 1, i + 1));
+            return Err(PublishedTableError::SameCell { first: first + 1, second: i + 1 });
         }
         let (value, sd) = (number("value")?, number("sd")?);
         cells.push(PublishedCell { pins, metric, coverage, value, sd, n });
@@ -90,7 +128,7 @@ pub fn read(table: &Table, factors: &[String]) -> Result<Vec<PublishedCell>, Str
     Ok(cells)
 }
 
-/// The faults of the published table `name`, for `check`: those of [`read`] and values no factor has.
+/// Returns the faults of the published table `name`, for `check`: those of [`read`] and values no factor has.
 pub fn check_table(name: &str, table: &Table, factors: &[(String, Vec<String>)]) -> Vec<String> {
     let names: Vec<String> = factors.iter().map(|(name, _)| name.clone()).collect();
     let cells = match read(table, &names) {
@@ -112,7 +150,7 @@ pub fn check_table(name: &str, table: &Table, factors: &[(String, Vec<String>)])
     problems
 }
 
-/// The selection of a row's trials.
+/// Returns the selection of a row's trials.
 pub(super) fn selection(pins: &BTreeMap<String, String>) -> Where {
     Where(pins.iter().map(|(f, v)| (f.clone(), Values::one(v.clone()))).collect())
 }

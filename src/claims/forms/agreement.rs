@@ -1,6 +1,7 @@
 //! Our cells beside the paper's: what `correlation-with-published` and `rmse-with-published` have in common.
 
 use super::pairing::{Pair, Point, log_ratios, pair_up};
+use crate::claims::cannot_test::CannotTest;
 use crate::claims::cells::{Values, Where};
 use crate::claims::faults::Faults;
 use crate::claims::gather::{Bench, Draft, Evidence};
@@ -22,7 +23,7 @@ pub(super) struct Compared<'a> {
 }
 
 impl<'a> Compared<'a> {
-    /// The selections named; which cells are compared is for the published table to say.
+    /// Returns the selections named; which cells are compared is for the published table to say.
     pub(super) fn selections(&self) -> Vec<(String, &'a Where)> {
         let base = self.ratio_to.map(|cell| ("/ratio-to".to_owned(), cell));
         [("/where".to_owned(), self.only)].into_iter().chain(base).collect()
@@ -35,13 +36,13 @@ impl<'a> Compared<'a> {
         });
     }
 
-    /// The one draft: cells, or log ratios of cells, and what `claimed` says of them by `weigh`.
+    /// Compares cells, or log ratios of cells, with the paper's: one draft, in which `weigh` judges what is `claimed` of them.
     pub(super) fn draft(
         &self,
         bench: &Bench<'_>,
         test: &'static str,
         claimed: &str,
-        weigh: impl FnOnce(&str, &[Pair], &[Point<'_>]) -> Result<Evidence, String>,
+        weigh: impl FnOnce(&str, &[Pair], &[Point<'_>]) -> Result<Evidence, CannotTest>,
     ) -> Vec<Draft> {
         let ratio = self.ratio_to.map(|base| format!(" as log ratio to ({base})"));
         let about = format!(
@@ -66,9 +67,7 @@ impl<'a> Compared<'a> {
             };
             let (cells, minimum) = (points.len(), self.minimum_n.max(FEWEST_CELLS));
             if (cells as u64) < minimum {
-                return Err(format!(
-                    "{cells} cells to compare, fewer than the minimum of {minimum}"
-                ));
+                return Err(CannotTest::FewCells { cells, minimum });
             }
             weigh(&about, &pairs, &points)
         });

@@ -19,6 +19,7 @@
 use super::bounds::{Bounds, share_level};
 use super::declare::form;
 use super::form::Form;
+use crate::claims::cannot_test::CannotTest;
 use crate::claims::cells::{ForEach, Values, Where};
 use crate::claims::faults::Faults;
 use crate::claims::gather::{Bench, Draft, Evidence, Group, varies};
@@ -83,7 +84,7 @@ impl Between {
         Bounds { low: self.low, high: self.high }
     }
 
-    /// What is held against the bounds in words, and the name of its test.
+    /// Returns what is held against the bounds in words, and the name of its test.
     fn about(&self, metric: &Metric, cell: &Where, base: Option<&Where>) -> (String, &'static str) {
         let words = self.bounds().words();
         match (base, self.statistic) {
@@ -99,7 +100,12 @@ impl Between {
         }
     }
 
-    fn weigh(&self, bench: &Bench<'_>, about: &str, groups: &[Group]) -> Result<Evidence, String> {
+    fn weigh(
+        &self,
+        bench: &Bench<'_>,
+        about: &str,
+        groups: &[Group],
+    ) -> Result<Evidence, CannotTest> {
         let bounds = self.bounds();
         match (groups, self.statistic) {
             ([a, b], _) => relative(bench, a, b, bounds),
@@ -109,7 +115,7 @@ impl Between {
             },
             ([a, ..], Statistic::Median) => Ok(quantile_level(bench, about, a, 0.5, bounds)),
             ([a, ..], Statistic::P95) => Ok(quantile_level(bench, about, a, 0.95, bounds)),
-            ([], _) => Err("there is no cell to measure".to_owned()),
+            ([], _) => Err(CannotTest::NoCell),
         }
     }
 }
@@ -171,7 +177,7 @@ impl Form for Between {
     }
 }
 
-fn mean_level(group: &Group, bounds: Bounds, confidence: f64) -> Result<Evidence, String> {
+fn mean_level(group: &Group, bounds: Bounds, confidence: f64) -> Result<Evidence, CannotTest> {
     varies(&[group])?;
     let (p_for, p_against) = bounds.hold(|bound| {
         let t = (group.summary.mean - bound) / group.summary.variance_of_mean().sqrt();
@@ -183,7 +189,7 @@ fn mean_level(group: &Group, bounds: Bounds, confidence: f64) -> Result<Evidence
     Ok(Evidence { p_for, p_against, statistics: Vec::new(), effect: Some(effect) })
 }
 
-/// Distribution-free: of n values, the number below the true q-quantile is binomial (n, q).
+/// Weighs a quantile without any distribution: of n values, the number below the true q-quantile is binomial (n, q).
 fn quantile_level(
     bench: &Bench<'_>,
     about: &str,
@@ -209,12 +215,17 @@ fn quantile_level(
     Evidence { p_for, p_against, statistics: Vec::new(), effect: Some(effect) }
 }
 
-/// Relative difference by the logarithm of the ratio and its delta-method variance: of shares (Katz et al.
+/// Weighs the relative difference by the logarithm of the ratio and its delta-method variance: of shares (Katz et al.
 /// 1978) normal, of means with Satterthwaite's degrees of freedom.
-fn relative(bench: &Bench<'_>, a: &Group, b: &Group, bounds: Bounds) -> Result<Evidence, String> {
+fn relative(
+    bench: &Bench<'_>,
+    a: &Group,
+    b: &Group,
+    bounds: Bounds,
+) -> Result<Evidence, CannotTest> {
     let (ma, mb) = (a.summary.mean, b.summary.mean);
     if !(ma > 0.0 && mb > 0.0) {
-        return Err("a relative difference needs two positive means".to_owned());
+        return Err(CannotTest::NotPositive);
     }
     let (va, vb, df) = if let Some((p, q)) = a.proportion.zip(b.proportion) {
         let va = (1.0 - p.share()) / real(p.successes);
@@ -230,7 +241,7 @@ fn relative(bench: &Bench<'_>, a: &Group, b: &Group, bounds: Bounds) -> Result<E
     };
     let (ln_ratio, se) = (ln(ma / mb), (va + vb).sqrt());
     if se == 0.0 {
-        return Err("both shares are one, so their ratio has no known spread".to_owned());
+        return Err(CannotTest::RatioOfOnes);
     }
     let tail = |z: f64| df.map_or_else(|| normal_sf(z), |df| student_t_sf(z, df));
     let (p_for, p_against) = bounds.hold(|bound| {

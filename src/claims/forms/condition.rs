@@ -1,5 +1,6 @@
 //! A condition on one trial: what `share` and `every` count by.
 
+use crate::claims::cannot_test::CannotTest;
 use crate::claims::cells::Where;
 use crate::claims::faults::Faults;
 use crate::claims::gather::{Bench, Draft, Evidence};
@@ -104,14 +105,14 @@ pub(super) fn conditioned(
     Draft { about, test, cells, conditions: gathered.conditions, evidence, notes: gathered.notes }
 }
 
-/// How many of the trials that count meet `that`. A run that never reached the measure meets nothing, and counts
+/// Counts the trials that meet `that`, of those that count. A run that never reached the measure meets nothing, and counts
 /// unless only those that did are looked at.
 fn met(
     bench: &Bench<'_>,
     that: &That,
     metric: &Metric,
     conditions: &[usize],
-) -> Result<Proportion, String> {
+) -> Result<Proportion, CannotTest> {
     let (mut met, mut counted) = (0, 0);
     for &i in conditions {
         let limit =
@@ -132,17 +133,15 @@ fn met(
     Ok(Proportion::new(met, counted))
 }
 
-/// A bound in one condition.
-fn limit(bench: &Bench<'_>, bound: &Bound, condition: usize) -> Result<f64, String> {
+/// Returns the value of a bound in one condition.
+fn limit(bench: &Bench<'_>, bound: &Bound, condition: usize) -> Result<f64, CannotTest> {
     match bound {
         Bound::Number(number) => Ok(*number),
         Bound::Factor(factor) => {
             let value = bench.observations.value(condition, factor);
-            value.and_then(|text| text.parse().ok()).ok_or_else(|| {
-                format!(
-                    "the factor `{factor}` is no number in ({})",
-                    bench.observations.name(condition)
-                )
+            value.and_then(|text| text.parse().ok()).ok_or_else(|| CannotTest::BoundIsNoNumber {
+                factor: factor.clone(),
+                condition: bench.observations.name(condition),
             })
         }
     }

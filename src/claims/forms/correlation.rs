@@ -17,6 +17,7 @@ use super::agreement::Compared;
 use super::declare::form;
 use super::form::Form;
 use super::pairing::{Point, clusters};
+use crate::claims::cannot_test::CannotTest;
 use crate::claims::cells::{Values, Where};
 use crate::claims::faults::Faults;
 use crate::claims::gather::{Bench, Draft, Evidence};
@@ -105,7 +106,7 @@ impl Form for Correlation {
     }
 }
 
-/// Evidence that the rank correlation reaches a level: its interval (Bonett and Wright 2000) above the level,
+/// Weighs whether the rank correlation reaches a level: its interval (Bonett and Wright 2000) above the level,
 /// and a permutation p-value against none at all. Cells that are measured on the same runs count as one in both:
 /// the interval has the width that independent ones of their number would give, and their mean ranks are permuted.
 fn correlated(
@@ -113,19 +114,16 @@ fn correlated(
     about: &str,
     points: &[Point<'_>],
     level: f64,
-) -> Result<Evidence, String> {
+) -> Result<Evidence, CannotTest> {
     let (x, y): (Vec<f64>, Vec<f64>) = points.iter().map(|p| (p.x, p.y)).unzip();
     let (x, y) = (&x[..], &y[..]);
     let r = spearman(x, y);
     if r.is_nan() {
-        return Err("one side is the same in every cell, so there is no correlation".to_owned());
+        return Err(CannotTest::NoCorrelation);
     }
     let clusters = clusters(points.iter().map(|p| p.runs));
     if clusters.len() < 4 {
-        return Err(format!(
-            "the cells are of {} independent conditions, fewer than the 4 that a correlation needs",
-            clusters.len()
-        ));
+        return Err(CannotTest::FewConditions(clusters.len()));
     }
     let mean_ranks = |values: &[f64]| -> Vec<f64> {
         let ranks = midranks(values);

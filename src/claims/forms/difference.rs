@@ -1,5 +1,6 @@
 //! The difference of two cells, by every test there is of one.
 
+use crate::claims::cannot_test::CannotTest;
 use crate::claims::cells::Where;
 use crate::claims::gather::{Bench, Draft, Evidence, Group, varies};
 use crate::claims::metric::Metric;
@@ -43,7 +44,7 @@ pub(super) fn compare(bench: &Bench<'_>, metric: &Metric, cells: &[Where; 2], si
     }
 }
 
-/// What the first `n` trials of each condition would have said: as many as the paper ran. Decides nothing.
+/// Returns what the first `n` trials of each condition would have said: as many as the paper ran. Decides nothing.
 fn of_the_first(
     bench: &Bench<'_>,
     metric: &Metric,
@@ -51,19 +52,19 @@ fn of_the_first(
     test: Test,
     side: Side,
     n: u64,
-) -> Result<Vec<(&'static str, f64)>, String> {
+) -> Result<Vec<(&'static str, f64)>, CannotTest> {
     let first = bench.observations.first(n);
     let terms = Terms { minimum_runs: 2, also_at_n: None, ..bench.terms };
     let bench = Bench { observations: &first, terms, ..*bench };
     let groups = bench.gather(cells, metric).groups?;
     let found = evidence(&bench, "first trials", test, &groups[0], &groups[1])?;
     let (p, _) = directed(found.tails, found.difference, side, found.sides);
-    let mut told = vec![(FIRST_N, real(n)), (FIRST_N_P, p)];
-    told.extend(found.effect.hedges_g.map(|g| (FIRST_N_HEDGES_G, g)));
-    Ok(told)
+    let mut beside = vec![(FIRST_N, real(n)), (FIRST_N_P, p)];
+    beside.extend(found.effect.hedges_g.map(|g| (FIRST_N_HEDGES_G, g)));
+    Ok(beside)
 }
 
-/// p-values for a difference on the side claimed and on the other.
+/// Returns the p-values for a difference on the side claimed and on the other.
 pub(super) fn directed(tails: Tails, difference: f64, side: Side, sides: Sides) -> (f64, f64) {
     let (less, greater) = match sides {
         Sides::One => (tails.less, tails.greater),
@@ -92,8 +93,8 @@ fn evidence(
     test: Test,
     a: &Group,
     b: &Group,
-) -> Result<Found, String> {
-    let wrong = || format!("{} does not apply to this metric", test.name());
+) -> Result<Found, CannotTest> {
+    let wrong = || CannotTest::OtherMetric(test.name());
     let both = |p: f64| Tails { less: f64::NAN, greater: f64::NAN, two_sided: p };
     let shares = || a.proportion.zip(b.proportion).ok_or_else(wrong);
     let measures = || if a.proportion.is_some() { Err(wrong()) } else { Ok(()) };
@@ -183,7 +184,7 @@ fn evidence(
     })
 }
 
-/// The runs of a cell as distances from its median.
+/// Returns the runs of a cell as distances from its median.
 fn from_median(group: &Group) -> Group {
     let centre = median(&group.values);
     let values: Vec<f64> = group.values.iter().map(|x| (x - centre).abs()).collect();

@@ -15,6 +15,7 @@
 use super::declare::form;
 use super::form::Form;
 use super::margin::{pair, test_name};
+use crate::claims::cannot_test::CannotTest;
 use crate::claims::cells::{ForEach, Values, Where};
 use crate::claims::faults::Faults;
 use crate::claims::gather::{Bench, Draft, Evidence, Group};
@@ -94,11 +95,11 @@ impl Form for Homogeneity {
     }
 }
 
-/// All pairs inside the margin is an intersection of statements: each pair must pass at alpha, and no
-/// correction is due (Berger 1982). Some pair beyond it is a union: Holm over the pairs.
-fn all_pairs(bench: &Bench<'_>, groups: &[Group], margin: f64) -> Result<Evidence, String> {
+/// Weighs whether all pairs lie inside the margin. That they do is an intersection of statements: each pair must pass at
+/// alpha, and no correction is due (Berger 1982). That some pair lies beyond it is a union: Holm over the pairs.
+fn all_pairs(bench: &Bench<'_>, groups: &[Group], margin: f64) -> Result<Evidence, CannotTest> {
     if groups.len() < 2 {
-        return Err("one cell has nothing to be alike to".to_owned());
+        return Err(CannotTest::OneCell);
     }
     let mut beyond = Vec::new();
     let mut widest: Option<(f64, EffectSize)> = None;

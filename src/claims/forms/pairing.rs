@@ -1,5 +1,6 @@
 //! Published cells, each with our runs of the same cell.
 
+use crate::claims::cannot_test::CannotTest;
 use crate::claims::cells::{Values, Where};
 use crate::claims::gather::{Bench, Group};
 use crate::claims::metric::Metric;
@@ -21,7 +22,7 @@ pub(super) struct Pair {
 
 /// Pairs in the order of the table, the numbers used, and notes on what has no counterpart.
 pub(super) struct Paired {
-    pub(super) pairs: Result<Vec<Pair>, String>,
+    pub(super) pairs: Result<Vec<Pair>, CannotTest>,
     pub(super) cells: Vec<CellNumbers>,
     pub(super) notes: Vec<String>,
 }
@@ -39,10 +40,10 @@ pub(super) fn pair_up(
         .context
         .published
         .get(published)
-        .ok_or_else(|| format!("there is no published table `{published}`"))
+        .ok_or_else(|| CannotTest::NoPublishedTable(published.to_owned()))
         .and_then(|table| {
             read(table, &bench.observations.factors)
-                .map_err(|fault| format!("published table `{published}`: {fault}"))
+                .map_err(|error| CannotTest::PublishedTable { table: published.to_owned(), error })
         });
     let rows = match rows {
         Ok(rows) => rows,
@@ -65,8 +66,7 @@ pub(super) fn pair_up(
                 for &i in &ours.conditions {
                     if conditions.contains(&(i, name)) {
                         let name = bench.observations.name(i);
-                        reason = reason
-                            .or(Some(format!("two published cells pool the condition {name}")));
+                        reason = reason.or(Some(CannotTest::InTwoPublishedCells(name)));
                     }
                     conditions.push((i, name));
                 }
@@ -96,29 +96,25 @@ pub(super) fn pair_up(
     Paired { pairs: reason.map_or(Ok(pairs), Err), cells, notes }
 }
 
-/// What keeps the metrics of a claim from being found in a table, if anything does.
-fn unclear(metrics: &Values, published: &str, rows: &[PublishedCell]) -> Option<String> {
+/// Returns what keeps the metrics of a claim from being found in a table, if anything does.
+fn unclear(metrics: &Values, published: &str, rows: &[PublishedCell]) -> Option<CannotTest> {
     if rows.iter().all(|row| row.coverage.is_none()) {
         return None;
     }
     let mut quantities: Vec<&str> = Vec::new();
     for name in &metrics.0 {
         let Some((quantity, _)) = name.rsplit_once("-at-") else {
-            return Some(format!(
-                "the published table `{published}` tells coverages, and `{name}` is at none; name metrics as \
-                 `{name}-at-80`"
-            ));
+            let (table, metric) = (published.to_owned(), name.clone());
+            return Some(CannotTest::NoCoverage { table, metric });
         };
         if !quantities.contains(&quantity) {
             quantities.push(quantity);
         }
     }
-    let told = rows.iter().all(|row| row.metric.is_some());
-    (quantities.len() > 1 && !told).then(|| {
-        format!(
-            "the published table `{published}` holds one quantity, and the claim compares it with {}",
-            quantities.join(" and ")
-        )
+    let named = rows.iter().all(|row| row.metric.is_some());
+    (quantities.len() > 1 && !named).then(|| CannotTest::OneQuantity {
+        table: published.to_owned(),
+        quantities: quantities.join(" and "),
     })
 }
 
@@ -132,13 +128,13 @@ pub(super) struct Point<'a> {
 }
 
 impl<'a> Point<'a> {
-    /// A pair as it is.
+    /// Returns a pair as it is.
     pub(super) fn of(pair: &'a Pair) -> Self {
         Self { runs: &pair.pins, x: pair.published, y: pair.ours.summary.mean, of: None }
     }
 }
 
-/// The places of equal `runs`, in the order of their first: what is measured on the same runs is not independent.
+/// Returns the places of equal `runs`, in the order of their first: what is measured on the same runs is not independent.
 pub(super) fn clusters<'a>(
     runs: impl Iterator<Item = &'a BTreeMap<String, String>>,
 ) -> Vec<Vec<usize>> {
@@ -152,7 +148,7 @@ pub(super) fn clusters<'a>(
     found.into_iter().map(|(_, places)| places).collect()
 }
 
-/// Log ratios to the base cell, published and ours, and how many cells have none.
+/// Returns the log ratios to the base cell, published and ours, and how many cells have none.
 pub(super) fn log_ratios<'a>(pairs: &'a [Pair], base: &Where) -> (Vec<Point<'a>>, usize) {
     let pins = base.combinations().into_iter().next().unwrap_or_default();
     let (mut points, mut lost) = (Vec::new(), 0);
@@ -183,7 +179,7 @@ pub(super) fn log_ratios<'a>(pairs: &'a [Pair], base: &Where) -> (Vec<Point<'a>>
     (points, lost)
 }
 
-/// What the paper prints of a cell, with the number of our runs; `None` where it prints no spread or too few runs.
+/// Returns what the paper prints of a cell, with the number of our runs; `None` where it prints no spread or too few runs.
 pub(super) fn printed(pair: &Pair) -> Option<(Summary, u64)> {
     let (sd, n) = (pair.sd?, pair.n.filter(|n| *n >= 2)?);
     Some((Summary { n, mean: pair.published, sd }, pair.ours.summary.n))

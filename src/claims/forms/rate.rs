@@ -17,6 +17,7 @@
 use super::declare::form;
 use super::difference::directed;
 use super::form::Form;
+use crate::claims::cannot_test::CannotTest;
 use crate::claims::cells::{ForEach, Where};
 use crate::claims::faults::Faults;
 use crate::claims::gather::{Bench, Draft, Evidence};
@@ -102,7 +103,7 @@ impl Form for Rate {
         }
     }
 
-    /// By resampling trials within conditions, so that what happened in one trial stays together: its maneuvers, or
+    /// Compares by resampling trials within conditions, so that what happened in one trial stays together: its maneuvers, or
     /// that a trial which ended one way did not end the other.
     fn judge(&self, bench: &Bench<'_>) -> Vec<Draft> {
         let sign = if self.direction == Side::Less { "<" } else { ">" };
@@ -127,7 +128,7 @@ struct Gathered {
     cells: Vec<CellNumbers>,
     conditions: Vec<usize>,
     /// By condition and trial.
-    parts: Result<Vec<Vec<Part>>, String>,
+    parts: Result<Vec<Vec<Part>>, CannotTest>,
 }
 
 fn gathered(bench: &Bench<'_>, cell: &Where, quantity: &Quantity) -> Gathered {
@@ -166,7 +167,7 @@ fn compared(
     form: &Rate,
     first: &[Vec<Part>],
     second: &[Vec<Part>],
-) -> Result<Evidence, String> {
+) -> Result<Evidence, CannotTest> {
     let seen: Vec<Vec<f64>> =
         first.iter().map(|trials| (0..trials.len() as u64).map(real).collect()).collect();
     let rate = |parts: &[Vec<Part>], drawn: &[Vec<f64>]| {
@@ -188,8 +189,8 @@ fn compared(
     let rates = [rate(first, &seen), rate(second, &seen)];
     for (quantity, rate) in [&form.of, &form.than].into_iter().zip(rates) {
         if !rate.is_finite() {
-            let per = quantity.per.as_deref().unwrap_or("trials");
-            return Err(format!("there are no {per}, so {quantity} is no number"));
+            let per = quantity.per.as_deref().unwrap_or("trials").to_owned();
+            return Err(CannotTest::NoRate { per, quantity: quantity.to_string() });
         }
     }
     let samples: Vec<&[f64]> = seen.iter().map(Vec::as_slice).collect();

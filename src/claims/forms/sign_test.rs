@@ -18,6 +18,7 @@
 
 use super::declare::form;
 use super::form::Form;
+use crate::claims::cannot_test::CannotTest;
 use crate::claims::cells::{ForEach, Values, Where};
 use crate::claims::faults::Faults;
 use crate::claims::gather::{Bench, Draft, Evidence};
@@ -109,10 +110,8 @@ impl Form for SignTest {
         let evidence = counted.and_then(|()| {
             let pairs = signs.below + signs.above;
             if pairs < self.minimum_n.max(1) {
-                return Err(format!(
-                    "{pairs} pairs differ, fewer than the minimum of {} ({} are tied)",
-                    self.minimum_n, signs.ties
-                ));
+                let (minimum, ties) = (self.minimum_n, signs.ties);
+                return Err(CannotTest::FewPairs { pairs, minimum, ties });
             }
             let claimed = match self.direction {
                 Side::Less => signs.below,
@@ -167,8 +166,8 @@ impl Signs {
     }
 }
 
-/// One pair per combination: noise in common is welcome within a pair and refused between pairs.
-fn by_cells(bench: &Bench<'_>, form: &SignTest, signs: &mut Signs) -> Result<(), String> {
+/// Counts one pair per combination: noise in common is welcome within a pair and refused between pairs.
+fn by_cells(bench: &Bench<'_>, form: &SignTest, signs: &mut Signs) -> Result<(), CannotTest> {
     let mut pair_of: BTreeMap<Vec<String>, usize> = BTreeMap::new();
     let mut reason = None;
     for (pair, pins) in form.for_each.combinations().iter().enumerate() {
@@ -193,12 +192,8 @@ fn by_cells(bench: &Bench<'_>, form: &SignTest, signs: &mut Signs) -> Result<(),
                     let own = bench.observations.own_coordinates(i, bench.context.shared_noise);
                     let own = own.into_iter().map(str::to_owned).collect();
                     if *pair_of.entry(own).or_insert(pair) != pair {
-                        reason = reason.or_else(|| {
-                            Some(format!(
-                                "the condition {} shares its trials or their noise with another pair",
-                                bench.observations.name(i)
-                            ))
-                        });
+                        reason = reason
+                            .or_else(|| Some(CannotTest::InTwoPairs(bench.observations.name(i))));
                     }
                 }
                 signs.conditions.extend(&group.conditions);
@@ -213,14 +208,12 @@ fn by_cells(bench: &Bench<'_>, form: &SignTest, signs: &mut Signs) -> Result<(),
 /// What two partners have in common: the factor values that are not compared, and the trial number.
 type Partner<'a> = (Vec<&'a str>, i64);
 
-/// One pair per trial number and condition, the two conditions differing in the compared factors only.
-fn by_trials(bench: &Bench<'_>, form: &SignTest, signs: &mut Signs) -> Result<(), String> {
+/// Counts one pair per trial number and condition, the two conditions differing in the compared factors only.
+fn by_trials(bench: &Bench<'_>, form: &SignTest, signs: &mut Signs) -> Result<(), CannotTest> {
     let observations = bench.observations;
     let compared: Vec<String> = form.r#where.0.keys().chain(form.than.0.keys()).cloned().collect();
     if let Some(other) = bench.context.shared_noise.iter().find(|f| !compared.contains(f)) {
-        return Err(format!(
-            "noise is shared over `{other}` too, which this test does not compare"
-        ));
+        return Err(CannotTest::NoiseOver(other.clone()));
     }
     let metrics: Vec<Metric> = form.metric.0.iter().map(|name| Metric::named(name)).collect();
     if let Some(reason) = metrics.iter().find_map(|m| observations.lacks(m)) {
@@ -243,15 +236,12 @@ fn by_trials(bench: &Bench<'_>, form: &SignTest, signs: &mut Signs) -> Result<()
                     let readings: Result<Vec<Option<f64>>, _> =
                         metrics.iter().map(|m| condition.reading(row, m)).collect();
                     let Ok(readings) = readings else {
-                        return Err(format!(
-                            "trial {number} of ({}) failed to run",
-                            observations.name(i)
-                        ));
+                        let condition = observations.name(i);
+                        return Err(CannotTest::FailedTrial { number, condition });
                     };
                     if side.insert((own.clone(), number), readings).is_some() {
-                        return Err(format!(
-                            "trial {number} of ({cell}) is there in several conditions: pin all factors compared"
-                        ));
+                        let cell = cell.to_string();
+                        return Err(CannotTest::SeveralPartners { number, cell });
                     }
                 }
             }
@@ -278,10 +268,7 @@ fn by_trials(bench: &Bench<'_>, form: &SignTest, signs: &mut Signs) -> Result<()
         signs.count(&mine.iter().zip(theirs).map(difference).collect::<Vec<_>>());
     }
     if censored > 0 && bench.terms.censored == Censored::Refuse {
-        return Err(format!(
-            "in {censored} pairs a run never reached the measure; say with `censored` whether such pairs are \
-             left out (reached-only) or rank last (worst)"
-        ));
+        return Err(CannotTest::CensoredPairs(censored));
     }
     if censored > 0 {
         signs.notes.push(format!("in {censored} pairs a run never reached the measure"));

@@ -17,6 +17,7 @@
 
 use super::declare::form;
 use super::form::Form;
+use crate::claims::cannot_test::CannotTest;
 use crate::claims::cells::{ForEach, Values, Where};
 use crate::claims::faults::Faults;
 use crate::claims::gather::{Bench, Draft, Evidence, Group, varies};
@@ -86,7 +87,7 @@ impl Form for Spread {
         self.at_most.iter().for_each(|bound| faults.margin("/at-most", *bound));
     }
 
-    /// By resampling trials within cells. A spread of noisy means is biased upwards, the more so the fewer trials;
+    /// Compares by resampling trials within cells. A spread of noisy means is biased upwards, the more so the fewer trials;
     /// between two pools of equal size the bias about cancels, against a bound it makes the test cautious.
     fn judge(&self, bench: &Bench<'_>) -> Vec<Draft> {
         let across = &self.across;
@@ -115,7 +116,7 @@ impl Form for Spread {
     }
 }
 
-/// Largest less smallest mean.
+/// Returns the largest mean less the smallest.
 fn spread_of(means: &[f64]) -> f64 {
     let most = means.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     most - means.iter().copied().fold(f64::INFINITY, f64::min)
@@ -127,9 +128,9 @@ fn resampled(
     groups: &[Group],
     first: usize,
     limit: f64,
-) -> Result<Evidence, String> {
+) -> Result<Evidence, CannotTest> {
     if first < 2 {
-        return Err("one cell has no spread".to_owned());
+        return Err(CannotTest::OneCellHasNoSpread);
     }
     varies(&groups.iter().collect::<Vec<_>>())?;
     let compared = first < groups.len();

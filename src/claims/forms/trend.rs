@@ -20,6 +20,7 @@
 use super::declare::form;
 use super::difference::{directed, share_effect};
 use super::form::Form;
+use crate::claims::cannot_test::CannotTest;
 use crate::claims::cells::{ForEach, Values, Where};
 use crate::claims::faults::Faults;
 use crate::claims::gather::{Bench, Draft, Evidence, Group};
@@ -78,7 +79,7 @@ pub enum Direction {
 }
 
 impl Trend {
-    /// The cells that it goes along, in `base`.
+    /// Returns the cells that it goes along, in `base`.
     fn steps(&self, base: &Where) -> Vec<Where> {
         self.along.iter().map(|step| base.replaced(&step.r#where)).collect()
     }
@@ -152,9 +153,9 @@ fn weigh(
     groups: &[Group],
     scores: &[f64],
     side: Side,
-) -> Result<Evidence, String> {
+) -> Result<Evidence, CannotTest> {
     if groups.len() < 2 {
-        return Err("a trend needs two steps or more".to_owned());
+        return Err(CannotTest::OneStep);
     }
     let sides = bench.terms.sides;
     let shares: Option<Vec<Proportion>> = groups.iter().map(|g| g.proportion).collect();
@@ -178,7 +179,7 @@ fn weigh(
             }
             let rho = spearman(&x, &y);
             if rho.is_nan() {
-                return Err("no value varies, so nothing can rise or fall".to_owned());
+                return Err(CannotTest::NothingRisesOrFalls);
             }
             let mut stream = bench.stream(about);
             let tails = spearman_permutation(&x, &y, bench.context.permutations, &mut stream);
@@ -187,6 +188,6 @@ fn weigh(
             let effect = EffectSize::new("spearman", rho, interval);
             Ok(Evidence { p_for, p_against, statistics: Vec::new(), effect: Some(effect) })
         }
-        _ => Err(format!("{} does not apply to this metric", test.name())),
+        _ => Err(CannotTest::OtherMetric(test.name())),
     }
 }

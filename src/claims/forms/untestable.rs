@@ -11,6 +11,7 @@
 //! ```
 
 use super::form::Form;
+use crate::claims::cannot_test::CannotTest;
 use crate::claims::cells::Where;
 use crate::claims::faults::Faults;
 use crate::claims::gather::{Bench, Draft};
@@ -54,6 +55,6 @@ impl Form for Untestable {
     }
 
     fn judge(&self, _: &Bench<'_>) -> Vec<Draft> {
-        vec![Draft::untestable("this study".to_owned(), self.because.clone())]
+        vec![Draft::untestable("this study".to_owned(), CannotTest::Stated(self.because.clone()))]
     }
 }

@@ -1,12 +1,12 @@
 //! `reenact plan --power`: what numbers of trials would decide, said before any is run.
 
-use crate::claims::power::{Chance, Power, REPLICATES, power as power_of};
+use crate::claims::power::{Chance, Power, PowerError, REPLICATES, power as power_of};
 use crate::claims::{Claim, Context};
 use crate::cli::args::Format;
 use crate::plan::Plan;
 use serde_json::{Value, json};
 
-/// The power of `plan` for every claim that assumes a truth, and why the others have none.
+/// Returns the power of `plan` for every claim that assumes a truth, and why the others have none.
 pub(super) fn power(plan: &Plan, format: Format) -> String {
     let experiment = &plan.experiment;
     let context = Context::new(&experiment.published, &experiment.shared_noise, experiment.seed);
@@ -22,7 +22,7 @@ pub(super) fn power(plan: &Plan, format: Format) -> String {
     }
     let planned = trials.into_iter().max().unwrap_or(0);
     let claims = plan.experiment.claims.iter();
-    let found: Vec<(Claim, Result<Power, String>)> = claims
+    let found: Vec<(Claim, Result<Power, PowerError>)> = claims
         .map(|claim| {
             let power = power_of(claim, &conditions, planned, &context, REPLICATES);
             (claim.clone(), power)
@@ -38,14 +38,14 @@ pub(super) fn power(plan: &Plan, format: Format) -> String {
     }
 }
 
-fn line(claim: &Claim, power: &Result<Power, String>) -> Value {
+fn line(claim: &Claim, power: &Result<Power, PowerError>) -> Value {
     match power {
         Ok(power) => power.to_json(),
-        Err(reason) => json!({"id": claim.id, "unknown": reason}),
+        Err(reason) => json!({"id": claim.id, "unknown": reason.to_string()}),
     }
 }
 
-fn in_words(planned: u64, found: &[(Claim, Result<Power, String>)]) -> String {
+fn in_words(planned: u64, found: &[(Claim, Result<Power, PowerError>)]) -> String {
     if found.is_empty() {
         return "the manifest makes no claim\n".to_owned();
     }
