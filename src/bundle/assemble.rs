@@ -10,7 +10,7 @@ use crate::studies::{Dictionary, Findings, Outcome, TableLayout, TrialRecord, co
 use crate::table::{DescribedTable, Table};
 use serde_json::{Value, json};
 
-/// The content of the bundle of `plan`, whose trials yielded `records` (in plan order).
+/// Makes the content of the bundle of `plan`, whose trials yielded `records` (in plan order).
 ///
 /// # Errors
 /// Where a claim cannot be judged at all, in words; resolution has refused such manifests before.
@@ -20,6 +20,18 @@ pub fn assemble(
     selection: &Selection,
     records: &[TrialRecord],
 ) -> Result<BundleContent, String> {
+    let verdicts = verdicts(plan, records)?;
+    Ok(assemble_judged(plan, study_yaml, selection, records, &verdicts))
+}
+
+/// Makes the content of the bundle of `plan` where its claims are judged already: `verdicts` are those of [`verdicts`].
+pub fn assemble_judged(
+    plan: &Plan,
+    study_yaml: &[u8],
+    selection: &Selection,
+    records: &[TrialRecord],
+    verdicts: &[ClaimVerdict],
+) -> BundleContent {
     let experiment = &plan.experiment;
     let mut resolved = plan.resolved_json();
     if plan.partial
@@ -44,11 +56,11 @@ pub fn assemble(
         Some(cite) => format!("{}. Re-enacts {}.", experiment.title, cite.paper),
         None => format!("{}.", experiment.title),
     };
-    let (results, mut tables) = results(plan, records)?;
+    let (results, mut tables) = results(plan, records, verdicts);
     tables.extend(described_inputs(plan));
     // What was found before what was given.
     tables.sort_by_key(|table| (table.path.starts_with(format::INPUTS), table.path.clone()));
-    Ok(BundleContent {
+    BundleContent {
         name: experiment.name.clone(),
         title: experiment.title.clone(),
         description,
@@ -78,7 +90,7 @@ pub fn assemble(
             Some(format!("{}{}", format::INPUTS, input.name))
         }),
         partial: plan.partial,
-    })
+    }
 }
 
 /// The verdicts on the claims of `plan`'s manifest about the study, as `results/claims.json` holds them: none for
@@ -148,7 +160,7 @@ fn orcid_address(written: &str) -> String {
 /// Files under `results/`: paths there, and bytes; and what the columns of their tables say.
 type Results = (Vec<(String, Vec<u8>)>, Vec<DescribedTable>);
 
-fn results(plan: &Plan, records: &[TrialRecord]) -> Result<Results, String> {
+fn results(plan: &Plan, records: &[TrialRecord], verdicts: &[ClaimVerdict]) -> Results {
     let experiment = &plan.experiment;
     let factors = factors(plan);
     let findings = findings(plan, records, &factors);
@@ -231,8 +243,8 @@ fn results(plan: &Plan, records: &[TrialRecord]) -> Result<Results, String> {
             files.push((format!("figures/{}.svg", request.id), drawn.svg.into_bytes()));
         }
     }
-    files.push(("claims.json".to_owned(), verdicts_json(&verdicts(plan, records)?)));
-    Ok((files, described))
+    files.push(("claims.json".to_owned(), verdicts_json(verdicts)));
+    (files, described)
 }
 
 /// What the marks beside the paper's numbers mean, below a table; nothing where none stands there.

@@ -6,6 +6,7 @@
 use super::terms::Correction;
 use super::words::PaperTable;
 use crate::stats::Interval;
+use schemars::JsonSchema;
 use serde::ser::SerializeMap;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::{Value, json};
@@ -20,7 +21,7 @@ pub(super) const FIRST_N_P: &str = "first-n-p";
 pub(super) const FIRST_N_HEDGES_G: &str = "first-n-hedges-g";
 
 /// The answer to a claim or to one of its comparisons.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Judgement {
     /// There is evidence for it.

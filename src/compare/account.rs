@@ -2,7 +2,7 @@
 
 use super::Settings;
 use crate::bundle::{Bundle, Fault};
-use crate::claims::ClaimVerdict;
+use crate::claims::{ClaimVerdict, Judgement};
 use crate::digest::{FileDigest, ResultsDigest, Sha256Digest, TrialKey};
 use crate::studies::TrialRecord;
 use serde::Deserialize;
@@ -33,7 +33,7 @@ pub struct Account {
     /// Everything under `results/`, by its path there.
     pub results: BTreeMap<String, ResultFile>,
     /// The verdict on each claim, by its id.
-    pub claims: BTreeMap<String, String>,
+    pub claims: BTreeMap<String, Judgement>,
 }
 
 /// A cell.
@@ -45,7 +45,7 @@ pub struct ConditionAccount {
     pub trials: usize,
     /// Digest of all its records' lines.
     pub records: Sha256Digest,
-    /// The trials this side can tell about: all of them in a bundle, trial 0 in a lock.
+    /// The trials that this side holds: all of them in a bundle, trial 0 in a lock.
     pub known: Vec<TrialAccount>,
 }
 
@@ -81,15 +81,11 @@ pub struct ResultFile {
 pub(super) const SIM_SECONDS: &str = "sim-seconds";
 
 impl TrialAccount {
-    /// The account of a record's line.
-    ///
-    /// # Errors
-    /// Where the line is no record, in words.
-    pub fn of_line(line: &str) -> Result<Self, String> {
-        let record = TrialRecord::from_line(line)?;
+    /// Returns the account of a record.
+    fn of(record: TrialRecord, line: &str) -> Self {
         let mut measures = record.measures;
         measures.insert(SIM_SECONDS.to_owned(), Some(record.sim_seconds));
-        Ok(Self {
+        Self {
             key: record.key,
             number: record.trial,
             outcome: record.outcome.name().to_owned(),
@@ -97,12 +93,12 @@ impl TrialAccount {
             measures,
             chain: record.chain,
             sha256: Sha256Digest::of(line),
-        })
+        }
     }
 }
 
 impl Account {
-    /// The account of a bundle.
+    /// Returns the account of a bundle.
     ///
     /// # Errors
     /// Every line that is no record, and `results/claims.json` where it is no list of claims.
@@ -114,8 +110,8 @@ impl Account {
             for (i, line) in bundle.record_lines(&entry.slug).enumerate() {
                 all.push_str(line);
                 all.push('\n');
-                match TrialAccount::of_line(line) {
-                    Ok(trial) => known.push(trial),
+                match TrialRecord::from_line(line) {
+                    Ok(record) => known.push(TrialAccount::of(record, line)),
                     Err(problem) => faults.push(Fault::new(
                         format!("data/trials/{}.jsonl:{}", entry.slug, i + 1),
                         "a trial record",
@@ -132,7 +128,8 @@ impl Account {
             (path.to_owned(), ResultFile { digest, text })
         });
         let results: BTreeMap<_, _> = results.collect();
-        let claims = verdicts(&results).map_err(|fault| faults.push(fault)).unwrap_or_default();
+        let verdicts = verdicts(&results).map_err(|fault| faults.push(fault)).unwrap_or_default();
+        let claims = verdicts.into_iter().map(|verdict| (verdict.id, verdict.judgement)).collect();
         if !faults.is_empty() {
             return Err(faults);
         }
@@ -155,21 +152,20 @@ impl Account {
         })
     }
 
-    /// The cell called `slug`.
+    /// Returns the cell called `slug`.
     pub fn condition(&self, slug: &str) -> Option<&ConditionAccount> {
         self.conditions.iter().find(|condition| condition.slug == slug)
     }
 }
 
-/// Id and verdict of every claim; none where the bundle holds no claims.
-fn verdicts(results: &BTreeMap<String, ResultFile>) -> Result<BTreeMap<String, String>, Fault> {
+/// Reads the verdict on every claim; none where this side holds no claims.
+pub(super) fn verdicts(results: &BTreeMap<String, ResultFile>) -> Result<Vec<ClaimVerdict>, Fault> {
     let fault = |found: String| Fault::new("data/results/claims.json", "a list of verdicts", found);
-    let Some(file) = results.get("claims.json") else { return Ok(BTreeMap::new()) };
+    let Some(file) = results.get("claims.json") else { return Ok(Vec::new()) };
     let text = file.text.as_deref().unwrap_or_default();
     let list: Vec<Value> = serde_json::from_str(text).map_err(|e| fault(e.to_string()))?;
-    let pair = |claim: &Value| {
-        let read = ClaimVerdict::deserialize(claim).map_err(|_| fault(claim.to_string()))?;
-        Ok((read.id, read.judgement.to_string()))
+    let read = |claim: &Value| {
+        ClaimVerdict::deserialize(claim).map_err(|e| fault(claim.to_string()).hint(e.to_string()))
     };
-    list.iter().map(pair).collect()
+    list.iter().map(read).collect()
 }

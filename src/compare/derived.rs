@@ -1,6 +1,8 @@
 //! What is made of trials: tables cell by cell, verdicts, and everything else by digest.
 
+use super::account::verdicts;
 use super::{Account, Change, Discrepancy, ResultFile, Tolerances};
+use crate::json::canonical_of;
 use crate::table::{Table, Value};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -17,7 +19,7 @@ pub(super) struct Derived {
 }
 
 /// Compares everything under `results/`. `trials_differ` says whether the records differ already: then the files that
-/// only list them anew are not told a second time.
+/// only list them anew are not reported a second time.
 pub(super) fn compare(
     a: &Account,
     b: &Account,
@@ -69,7 +71,7 @@ pub(super) fn compare(
     derived
 }
 
-/// The table that a file's text is.
+/// Reads the table that a file's text is.
 pub(super) fn table(file: &ResultFile) -> Option<Table> {
     Table::from_csv(file.text.as_deref()?).ok()
 }
@@ -127,8 +129,8 @@ fn in_words(row: &[Value]) -> String {
 /// Rows by their place in the order of the table that has them first, and what names them.
 type Rows<'a> = BTreeMap<(usize, String), &'a Vec<Value>>;
 
-/// The rows of both tables under common names: their leading whole numbers and words, where these tell the rows of
-/// each table apart; else their numbers.
+/// Returns the rows of both tables under common names: their leading whole numbers and words, where no two rows of a table
+/// have the same; else their numbers.
 fn rows<'a>(a: &'a Table, b: &'a Table) -> (Rows<'a>, Rows<'a>) {
     let is_name = |value: &Value| matches!(value, Value::Integer(_) | Value::Text(_));
     let leading = a
@@ -148,8 +150,8 @@ fn rows<'a>(a: &'a Table, b: &'a Table) -> (Rows<'a>, Rows<'a>) {
         table.rows.iter().map(name).collect()
     };
     let (mut x, mut y) = (names(a), names(b));
-    let tell_apart = |names: &[String]| names.iter().collect::<BTreeSet<_>>().len() == names.len();
-    if leading == 0 || !tell_apart(&x) || !tell_apart(&y) {
+    let distinct = |names: &[String]| names.iter().collect::<BTreeSet<_>>().len() == names.len();
+    if leading == 0 || !distinct(&x) || !distinct(&y) {
         let numbered = |table: &Table| (1..=table.rows.len()).map(|i| format!("row {i}")).collect();
         (x, y) = (numbered(a), numbered(b));
     }
@@ -163,18 +165,17 @@ fn rows<'a>(a: &'a Table, b: &'a Table) -> (Rows<'a>, Rows<'a>) {
     (keyed(&x, a), keyed(&y, b))
 }
 
-/// Verdicts that changed, and, where both sides hold the numbers behind them, those of unchanged verdicts.
+/// Returns the verdicts that changed, and, where both sides hold the numbers behind them, those of unchanged verdicts.
 fn claims(a: &Account, b: &Account, tolerances: &Tolerances) -> Vec<Discrepancy> {
-    let evidence = |side: &Account| -> BTreeMap<String, serde_json::Value> {
-        let text = side.results.get("claims.json").and_then(|file| file.text.as_deref());
-        let list: Vec<serde_json::Value> =
-            text.and_then(|text| serde_json::from_str(text).ok()).unwrap_or_default();
-        list.into_iter().filter_map(|c| Some((c["id"].as_str()?.to_owned(), c))).collect()
+    // As they are written: a number that is none is equal to itself there.
+    let evidence = |side: &Account| -> BTreeMap<String, String> {
+        let list = verdicts(&side.results).unwrap_or_default();
+        list.into_iter().map(|verdict| (verdict.id.clone(), canonical_of(&verdict))).collect()
     };
     let (x, y) = (evidence(a), evidence(b));
     let mut changes = Vec::new();
     for id in union(a.claims.keys(), b.claims.keys()) {
-        let (from, to) = (a.claims.get(id).cloned(), b.claims.get(id).cloned());
+        let (from, to) = (a.claims.get(id).copied(), b.claims.get(id).copied());
         let other_numbers =
             tolerances.is_none() && x.get(id).zip(y.get(id)).is_some_and(|(x, y)| x != y);
         if from != to || other_numbers {

@@ -1,5 +1,6 @@
 //! One thing that differs, as plain data.
 
+use crate::claims::Judgement;
 use crate::digest::{FileDigest, Sha256Digest, TrialKey};
 use crate::studies::CHAIN_STEP_S;
 use serde::Serialize;
@@ -15,7 +16,7 @@ pub struct Change<T> {
 }
 
 impl<T> Change<T> {
-    /// From one value to another.
+    /// Makes the change from one value to another.
     pub fn new(from: T, to: T) -> Self {
         Self { from: Some(from), to: Some(to) }
     }
@@ -87,7 +88,7 @@ pub enum Discrepancy {
         #[serde(flatten)]
         change: Change<String>,
     },
-    /// A file under `results/` that is not told by cells or claims.
+    /// A file under `results/` whose change no cell and no claim shows.
     File {
         /// Its path there.
         path: String,
@@ -101,7 +102,7 @@ pub enum Discrepancy {
         id: String,
         /// The verdict.
         #[serde(flatten)]
-        change: Change<String>,
+        change: Change<Judgement>,
     },
 }
 
@@ -138,12 +139,12 @@ pub struct MeasureChange {
 }
 
 impl TrialDifference {
-    /// Whether the same trial gave other bytes: what must never be.
+    /// Returns whether the same trial gave other bytes: what must never be.
     pub fn is_broken(&self) -> bool {
         self.key.from == self.key.to
     }
 
-    /// Where the states part, in words.
+    /// Says where the states part.
     pub fn divergence(&self) -> String {
         match self.diverges_after {
             Some(after) => format!(

@@ -1,10 +1,11 @@
 //! The lock: a small text beside a manifest that pins what its run yields.
 //!
 //! Canonical JSON in lines, so that a change reads well in a review: digests of everything, and of trial 0 of every
-//! condition enough to tell where a trial that changed left its old way.
+//! condition enough to find where a trial that changed left its old course.
 
 use super::account::TrialAccount;
 use super::{Account, ConditionAccount, ResultFile, Settings};
+use crate::claims::Judgement;
 use crate::digest::{FileDigest, ResultsDigest, Sha256Digest, TrialKey};
 use crate::document::{self, Content, Diagnostic, Source};
 use crate::json;
@@ -13,6 +14,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
+use thiserror::Error;
 
 /// Version of the lock's format that this program writes, and the newest it reads.
 pub const LOCK_FORMAT: u64 = 1;
@@ -26,6 +28,27 @@ const ABOUT: &str = "What a run of the manifest yields, written by `reenact lock
 /// What a lock says.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Lock(Account);
+
+/// Why a study cannot be locked.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum NotLockable {
+    /// Only a part of it was run.
+    #[error("expected the whole study, found a part of it: a lock pins all of it")]
+    Partial,
+    /// A trial panicked.
+    #[error("trial {condition}/{number} panicked ({cause}): a panic is no result")]
+    Panicked {
+        /// The slug of its condition.
+        condition: String,
+        /// Its number there.
+        number: u32,
+        /// How, in words.
+        cause: String,
+    },
+    /// A condition lacks its first trial.
+    #[error("expected a trial 0 in the condition `{0}`, found none")]
+    NoFirstTrial(String),
+}
 
 /// Why a lock cannot be read; every fault has its place.
 #[derive(Debug, Clone, PartialEq)]
@@ -64,7 +87,7 @@ struct LockDocument {
     #[schemars(with = "BTreeMap<String, String>")]
     results: BTreeMap<String, FileDigest>,
     /// Id to verdict.
-    claims: BTreeMap<String, String>,
+    claims: BTreeMap<String, Judgement>,
     /// Digest of the result half of the bundle.
     #[schemars(with = "String")]
     results_digest: ResultsDigest,
@@ -108,15 +131,13 @@ struct LockedTrial {
 }
 
 impl Lock {
-    /// The lock of the study that `account` tells about.
+    /// Makes the lock of the study of `account`.
     ///
     /// # Errors
-    /// Where it tells about a part of the study only, or a trial panicked.
-    pub fn of(account: &Account) -> Result<Self, String> {
+    /// Where only a part of the study was run, or a trial panicked.
+    pub fn of(account: &Account) -> Result<Self, NotLockable> {
         if account.partial {
-            return Err(
-                "expected the whole study, found a part of it: a lock pins all of it".into()
-            );
+            return Err(NotLockable::Partial);
         }
         let mut locked = account.clone();
         locked.is_lock = true;
@@ -125,14 +146,15 @@ impl Lock {
             let slug = &condition.slug;
             let panicked = Outcome::PANICKED.name();
             if let Some(trial) = condition.known.iter().find(|t| t.outcome == panicked) {
-                let (number, cause) = (trial.number, &trial.cause);
-                return Err(format!(
-                    "trial {slug}/{number} panicked ({cause}): a panic is no result"
-                ));
+                return Err(NotLockable::Panicked {
+                    condition: slug.clone(),
+                    number: trial.number,
+                    cause: trial.cause.clone(),
+                });
             }
             condition.known.retain(|trial| trial.number == 0);
             if condition.known.is_empty() {
-                return Err(format!("expected a trial 0 in the condition `{slug}`, found none"));
+                return Err(NotLockable::NoFirstTrial(slug.clone()));
             }
         }
         for file in locked.results.values_mut() {
@@ -141,12 +163,12 @@ impl Lock {
         Ok(Self(locked))
     }
 
-    /// What it says, as one side of a comparison.
+    /// Returns what it says, as one side of a comparison.
     pub fn account(&self) -> &Account {
         &self.0
     }
 
-    /// The file's text.
+    /// Returns the file's text.
     pub fn to_text(&self) -> String {
         let account = &self.0;
         let every_condition = account.settings.shared();

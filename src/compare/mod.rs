@@ -1,6 +1,6 @@
 //! What changed: two bundles, a bundle and a lock, or two locks, held against one another.
 //!
-//! Each side is told as an [`Account`], the result half by meaning: what was asked (inputs, engine, settings), what
+//! Each side is an [`Account`], the result half by meaning: what was asked (inputs, engine, settings), what
 //! came out (conditions, trials) and what was made of it (tables, figures, verdicts). [`compare`] yields a
 //! [`Comparison`], a list of [`Discrepancy`]s in the order in which one would look for a cause: cheapest first.
 //! Circumstances (dates, hosts, durations) are no part of an account, so they never count as change.
@@ -24,7 +24,7 @@ pub use account::{Account, ConditionAccount, ResultFile, TrialAccount};
 pub use advice::{Cause, drift};
 pub use comparison::{Comparison, Extent, Matching, Party, compare};
 pub use discrepancy::{Change, Discrepancy, MeasureChange, TrialDifference};
-pub use lock::{LOCK_FORMAT, Lock, LockError};
+pub use lock::{LOCK_FORMAT, Lock, LockError, NotLockable};
 pub use sections::{Row, Section};
 pub use settings::Settings;
 pub use tolerance::{Tolerance, Tolerances};

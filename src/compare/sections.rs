@@ -1,6 +1,7 @@
 //! A comparison in lines for people: what was compared, and every difference as subject, before, after and note.
 
 use super::{Change, Comparison, Discrepancy, MeasureChange, TrialDifference};
+use crate::claims::Judgement;
 use crate::json;
 
 /// One kind of thing that was compared.
@@ -32,11 +33,11 @@ pub struct Row {
 /// The section of tables that are compared cell by cell.
 const CELLS: &str = "cells of tables";
 
-/// Measures of one trial that are told; the rest are counted.
-const MEASURES_TOLD: usize = 4;
+/// Measures of one trial that are shown; the rest are counted.
+const MEASURES_SHOWN: usize = 4;
 
 impl Comparison {
-    /// Everything in the order of [`Comparison::discrepancies`].
+    /// Sorts everything into sections, in the order of [`Comparison::discrepancies`].
     pub fn sections(&self) -> Vec<Section> {
         let tally = &self.tally;
         let trials = self.matching.by_key + self.matching.by_number;
@@ -80,7 +81,7 @@ fn section(name: &'static str, compared: String, remark: String) -> Section {
     Section { name, compared, remark, rows: Vec::new() }
 }
 
-/// The section a discrepancy belongs to, and its line there.
+/// Returns the section a discrepancy belongs to, and its line there.
 fn row(discrepancy: &Discrepancy) -> (&'static str, Row) {
     let digest = |d: &crate::digest::FileDigest| format!("sha256:{}", d.short());
     match discrepancy {
@@ -123,7 +124,7 @@ fn row(discrepancy: &Discrepancy) -> (&'static str, Row) {
         Discrepancy::Claim { id, change } => {
             let numbers =
                 if change.from == change.to { "the same verdict by other numbers" } else { "" };
-            ("claims", Row { note: numbers.to_owned(), ..line(id, change, String::clone) })
+            ("claims", Row { note: numbers.to_owned(), ..line(id, change, Judgement::to_string) })
         }
     }
 }
@@ -153,9 +154,9 @@ fn trial_row(trial: &TrialDifference) -> Row {
         notes.push(format!("outcome {from} -> {to}"));
     }
     notes.push(trial.divergence());
-    notes.extend(trial.measures.iter().take(MEASURES_TOLD).map(measure));
-    if trial.measures.len() > MEASURES_TOLD {
-        let more = trial.measures.len() - MEASURES_TOLD;
+    notes.extend(trial.measures.iter().take(MEASURES_SHOWN).map(measure));
+    if trial.measures.len() > MEASURES_SHOWN {
+        let more = trial.measures.len() - MEASURES_SHOWN;
         notes.push(format!("{more} more measure{}", if more == 1 { "" } else { "s" }));
     }
     row.note = notes.join("; ");
@@ -167,7 +168,7 @@ fn measure(measure: &MeasureChange) -> String {
     match (measure.change.from, measure.change.to) {
         (Some(from), Some(to)) => {
             let (a, b) = (rounded(from), rounded(to));
-            // A change too small to be seen in six digits is told in full.
+            // A change too small to be seen in six digits is shown in full.
             if a == b {
                 format!("{name} {from} -> {to}")
             } else {
@@ -185,7 +186,7 @@ fn parenthesis(text: &str) -> String {
     if text.is_empty() { String::new() } else { format!(" ({text})") }
 }
 
-/// The relative change, signed; empty where it has none.
+/// Returns the relative change, signed; empty where it has none.
 fn delta(from: f64, to: f64) -> String {
     if from == 0.0 || !(from.is_finite() && to.is_finite()) {
         return String::new();
@@ -198,13 +199,13 @@ fn delta(from: f64, to: f64) -> String {
     }
 }
 
-/// Six significant digits, without trailing zeros.
+/// Writes a number with six significant digits, without trailing zeros.
 fn rounded(x: f64) -> String {
     let text = format!("{x:.5e}");
     text.parse::<f64>().map_or(text, |x| x.to_string())
 }
 
-/// A value of a setting may be a long list or text.
+/// Cuts a value of a setting, which may be a long list or text.
 fn short(text: &str) -> String {
     if text.chars().count() <= 60 {
         return text.to_owned();

@@ -11,7 +11,7 @@ fn account(content: &BundleContent) -> Account {
     Account::of_bundle(&bundle).unwrap()
 }
 
-/// The sample study, its conditions told in the resolved study as ours tell them.
+/// The sample study, its conditions listed in the resolved study as ours list them.
 fn content_of(conditions: &[(&str, Vec<TrialRecord>)]) -> BundleContent {
     let mut content = sample::content_of(sample::STUDY.as_bytes(), 7, conditions);
     content.resolved = resolved(8.5);
@@ -406,7 +406,7 @@ fn a_part_or_a_panic_cannot_be_locked() {
     let mut content = content_of(&sample::records());
     content.partial = true;
     assert_eq!(
-        Lock::of(&account(&content)).unwrap_err(),
+        Lock::of(&account(&content)).unwrap_err().to_string(),
         "expected the whole study, found a part of it: a lock pins all of it"
     );
     let panicked = changed(|record| {
@@ -416,7 +416,7 @@ fn a_part_or_a_panic_cannot_be_locked() {
         }
     });
     assert_eq!(
-        Lock::of(&panicked).unwrap_err(),
+        Lock::of(&panicked).unwrap_err().to_string(),
         "trial none/2 panicked (index out of bounds): a panic is no result"
     );
 }

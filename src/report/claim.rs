@@ -53,7 +53,15 @@ pub struct ComparisonRow {
     pub cells: Vec<String>,
 }
 
-/// The rows of a list of verdicts, the bytes of `path`; `claims` are the manifest's own, for their reasons.
+/// Why a file is no list of verdicts.
+#[derive(Debug, thiserror::Error)]
+#[error("{path}: {error}")]
+pub(super) struct NoVerdicts {
+    path: String,
+    error: serde_json::Error,
+}
+
+/// Returns the rows of a list of verdicts, the bytes of `path`; `claims` are the manifest's own, for their reasons.
 ///
 /// # Errors
 /// Where the bytes are no list of verdicts.
@@ -61,10 +69,10 @@ pub(super) fn rows(
     path: &str,
     bytes: Option<&[u8]>,
     claims: &[Claim],
-) -> Result<Vec<ClaimRow>, String> {
+) -> Result<Vec<ClaimRow>, NoVerdicts> {
     let Some(bytes) = bytes else { return Ok(Vec::new()) };
-    let verdicts: Vec<ClaimVerdict> =
-        serde_json::from_slice(bytes).map_err(|e| format!("{path}: {e}"))?;
+    let verdicts: Vec<ClaimVerdict> = serde_json::from_slice(bytes)
+        .map_err(|error| NoVerdicts { path: path.to_owned(), error })?;
     let why = |id: &str| {
         let claim = claims.iter().find(|claim| claim.id == id);
         claim.and_then(|claim| claim.why.clone()).unwrap_or_default()
@@ -89,7 +97,7 @@ fn row(verdict: ClaimVerdict) -> ClaimRow {
     }
 }
 
-/// Where what we find and what the paper's own table shows are at odds.
+/// Says where what we find and what the paper's own table shows are at odds.
 fn differs(verdict: Judgement, paper_table: PaperTable) -> &'static str {
     match (verdict, paper_table) {
         (Judgement::Supported, PaperTable::Contradicts) => {
@@ -123,7 +131,7 @@ fn rule(verdict: &ClaimVerdict) -> String {
     rule + "."
 }
 
-/// What decided a verdict, as one would say it.
+/// Says what decided a verdict.
 fn numbers(verdict: &ClaimVerdict) -> String {
     match &verdict.comparisons[..] {
         [] => verdict.reason.clone(),
@@ -151,7 +159,7 @@ fn numbers(verdict: &ClaimVerdict) -> String {
     }
 }
 
-/// Runs that never reached what they were compared by, in words; empty where all did.
+/// Counts in words the runs that never reached what they were compared by; empty where all did.
 fn censored(verdict: &ClaimVerdict) -> String {
     let words =
         |(censored, all)| format!("; {censored} of {all} runs compared never reached the measure");
@@ -159,16 +167,17 @@ fn censored(verdict: &ClaimVerdict) -> String {
 }
 
 fn comparison(comparison: &ComparisonVerdict) -> ComparisonRow {
+    let reason = comparison.reason.clone().filter(|reason| !reason.is_empty());
     ComparisonRow {
         about: comparison.about.clone(),
         verdict: comparison.judgement.to_string(),
-        finding: comparison.reason.clone().unwrap_or_else(|| effect(comparison)),
+        finding: reason.unwrap_or_else(|| effect(comparison)),
         test: test(comparison),
         cells: comparison.cells.iter().map(cell).collect(),
     }
 }
 
-/// `+30 percentage points (98 % interval +12 to +47)`; empty where no effect is told.
+/// Writes an effect: `+30 percentage points (98 % interval +12 to +47)`; empty where there is none.
 fn effect(comparison: &ComparisonVerdict) -> String {
     let Some(effect) = &comparison.effect else { return String::new() };
     let (value, low, high) = (effect.value, effect.low, effect.high);
@@ -217,7 +226,7 @@ fn effect(comparison: &ComparisonVerdict) -> String {
     }
 }
 
-/// `p = 0.0018 (welch)`, in the direction that was found.
+/// Writes a test: `p = 0.0018 (welch)`, in the direction that was found.
 fn test(comparison: &ComparisonVerdict) -> String {
     let name = comparison.test.replace('-', " ");
     let (of, corrected, raw) = match comparison.judgement {
@@ -235,7 +244,7 @@ fn test(comparison: &ComparisonVerdict) -> String {
     format!("{p}{of} ({name})")
 }
 
-/// `start=A, strategy=random: 96 %, 48 of 50 runs`.
+/// Writes a cell: `start=A, strategy=random: 96 %, 48 of 50 runs`.
 fn cell(cell: &CellNumbers) -> String {
     let (trials, reached) = (cell.trials, cell.reached);
     let mut parts = Vec::new();
@@ -343,7 +352,12 @@ mod tests {
     #[test]
     fn what_has_no_effect_keeps_its_reason_and_what_is_no_list_is_refused() {
         assert_eq!(one("cannot-be-tested", &[]).numbers, "for a reason");
-        assert!(rows("claims.json", Some(b"{}"), &[]).unwrap_err().starts_with("claims.json: "));
+        assert!(
+            rows("claims.json", Some(b"{}"), &[])
+                .unwrap_err()
+                .to_string()
+                .starts_with("claims.json: ")
+        );
         assert!(rows("claims.json", None, &[]).unwrap().is_empty());
     }
 }

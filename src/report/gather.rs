@@ -27,10 +27,11 @@ pub fn content_of(
     let cite = experiment.cite.as_ref();
     let machine_verdicts =
         bundle.circumstance_files().find(|(path, _)| *path == "claims.json").map(|(_, b)| b);
-    let claims =
-        claim::rows("results/claims.json", bundle.result("claims.json"), &experiment.claims)?;
-    let machine_claims =
-        claim::rows("circumstances/claims.json", machine_verdicts, &experiment.claims)?;
+    let rows = |path: &str, bytes: Option<&[u8]>| {
+        claim::rows(path, bytes, &experiment.claims).map_err(|error| error.to_string())
+    };
+    let claims = rows("results/claims.json", bundle.result("claims.json"))?;
+    let machine_claims = rows("circumstances/claims.json", machine_verdicts)?;
     let tables: Vec<ReportTable> =
         experiment.tables.iter().map(|request| tables::table(&findings, request, plan)).collect();
     let figures = figures(bundle, plan, &findings);

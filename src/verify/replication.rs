@@ -34,11 +34,11 @@ pub struct ClaimAgain {
     /// Its id.
     pub id: String,
     /// The verdict in the bundle.
-    pub sealed: String,
+    pub sealed: Judgement,
     /// The numbers behind it.
     pub sealed_numbers: String,
-    /// The verdict of the fresh run.
-    pub fresh: String,
+    /// The verdict of the fresh run; none where it does not judge the claim.
+    pub fresh: Option<Judgement>,
     /// The numbers behind that.
     pub fresh_numbers: String,
     /// The two beside each other.
@@ -62,7 +62,7 @@ pub enum VerdictStanding {
 }
 
 impl VerdictStanding {
-    /// Of a sealed verdict and the fresh one, if there is one.
+    /// Holds a fresh verdict, if there is one, against the sealed one.
     fn of(sealed: Judgement, fresh: Option<Judgement>) -> Self {
         let is_decided =
             |verdict| matches!(verdict, Judgement::Supported | Judgement::Contradicted);
@@ -77,7 +77,7 @@ impl VerdictStanding {
 }
 
 impl Replication {
-    /// What it means, in words: one line for the whole, one a claim, one for the numbers.
+    /// Says what it means: one line for the whole, one a claim, one for the numbers.
     pub fn in_words(&self) -> String {
         let count = |standing| self.claims.iter().filter(|c| c.standing == standing).count();
         let mut text = format!("run again with the experiment's seed {}: ", self.seed);
@@ -101,7 +101,11 @@ impl Replication {
         for claim in &self.claims {
             text.push_str(&format!(
                 "  {}: {} ({}), now {} ({})\n",
-                claim.id, claim.sealed, claim.sealed_numbers, claim.fresh, claim.fresh_numbers
+                claim.id,
+                claim.sealed,
+                claim.sealed_numbers,
+                word(claim.fresh),
+                claim.fresh_numbers
             ));
         }
         text + &self.closeness.in_words()
@@ -167,6 +171,11 @@ pub(super) fn check(
     (Some(replication), findings)
 }
 
+/// Names a fresh verdict.
+fn word(fresh: Option<Judgement>) -> String {
+    fresh.map_or_else(|| "no verdict".to_owned(), |judgement| judgement.to_string())
+}
+
 fn finding(claim: &ClaimAgain, path: &str) -> Option<(Severity, Fault)> {
     let ClaimAgain { id, sealed, sealed_numbers, fresh, fresh_numbers, standing } = claim;
     let (severity, hint) = match standing {
@@ -184,12 +193,13 @@ fn finding(claim: &ClaimAgain, path: &str) -> Option<(Severity, Fault)> {
     let fault = Fault::new(
         path,
         format!("`{id}` {sealed} again ({sealed_numbers})"),
-        format!("{fresh} ({fresh_numbers})"),
+        format!("{} ({fresh_numbers})", word(*fresh)),
     );
     Some((severity, fault.hint(hint)))
 }
 
-/// The claims of two `claims.json`, those of the first in its order. Level 3 has shown that the sealed one is ours.
+/// Holds the claims of two `claims.json` against each other, in the order of the first. Level 3 has shown that the sealed
+/// one is ours.
 fn judged_twice(sealed: &str, fresh: &str) -> Vec<ClaimAgain> {
     let list = |text: &str| serde_json::from_str::<Vec<ClaimVerdict>>(text).unwrap_or_default();
     let fresh = list(fresh);
@@ -198,9 +208,9 @@ fn judged_twice(sealed: &str, fresh: &str) -> Vec<ClaimAgain> {
         let judgement = fresh.map(|claim| claim.judgement);
         ClaimAgain {
             standing: VerdictStanding::of(sealed.judgement, judgement),
-            sealed: sealed.judgement.to_string(),
+            sealed: sealed.judgement,
             sealed_numbers: numbers(&sealed),
-            fresh: judgement.map(|judgement| judgement.to_string()).unwrap_or_default(),
+            fresh: judgement,
             fresh_numbers: fresh.map_or_else(|| NO_REASON.to_owned(), numbers),
             id: sealed.id,
         }
@@ -210,7 +220,7 @@ fn judged_twice(sealed: &str, fresh: &str) -> Vec<ClaimAgain> {
 
 const NO_REASON: &str = "no reason given";
 
-/// The reason of a verdict, and the size of what was found where one comparison decides it.
+/// Returns the reason of a verdict, and the size of what was found where one comparison decides it.
 fn numbers(verdict: &ClaimVerdict) -> String {
     let reason = if verdict.reason.is_empty() { NO_REASON } else { &verdict.reason };
     let effect = match &verdict.comparisons[..] {

@@ -56,8 +56,9 @@ fn run_one(
     let (plan, selection) = load::plan(loaded.experiment, &args.select)?;
     let how = if args.twice { Times::Twice } else { Times::Once };
     let Executed { records, cached, doubted, times } = execution.execute(&plan, how, terminal)?;
-    let content = assemble::assemble(&plan, loaded.source.text.as_bytes(), &selection, &records)
-        .map_err(Failure::failed)?;
+    let verdicts = assemble::verdicts(&plan, &records).map_err(Failure::failed)?;
+    let study_yaml = loaded.source.text.as_bytes();
+    let content = assemble::assemble_judged(&plan, study_yaml, &selection, &records, &verdicts);
     let times = match environment.source_date_epoch {
         None => Ok(&times),
         Some(_) => Err("wall times are not measured where SOURCE_DATE_EPOCH is set"),
@@ -79,7 +80,7 @@ fn run_one(
         .map(|lock| Held::against(lock, manifest, &sealed, locked::extent(args)))
         .transpose()?;
     let done = Done {
-        verdicts: assemble::verdicts(&plan, &records).map_err(Failure::failed)?,
+        verdicts,
         machine_verdicts: measured.verdicts,
         plan,
         records,
