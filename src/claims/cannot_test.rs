@@ -104,7 +104,7 @@ pub(super) enum CannotTest {
     /// A rate per something that never was.
     #[error("there are no {per}, so {quantity} is no number")]
     NoRate { per: String, quantity: String },
-    /// A bound is the value of a factor that is no number there.
+    /// A bound is the value of a factor, which is not a number there.
     #[error("the factor `{factor}` is no number in ({condition})")]
     BoundIsNoNumber { factor: String, condition: String },
     /// Nothing is measured.

@@ -12,14 +12,14 @@ use std::fmt;
 pub struct Values(pub Vec<String>);
 
 impl Values {
-    /// A single value.
+    /// Makes a single value.
     pub fn one(value: impl Into<String>) -> Self {
         Self(vec![value.into()])
     }
 }
 
 impl Values {
-    /// Each of these as the name of a metric, with the pointer from the form to it.
+    /// Returns each of these as the name of a metric, with the pointer from the form to it.
     pub(crate) fn as_metrics(&self) -> Vec<(String, &str)> {
         let names = self.0.iter().enumerate();
         names.map(|(i, name)| (format!("/metric/{i}"), name.as_str())).collect()
@@ -86,7 +86,7 @@ impl JsonSchema for Values {
 pub struct Where(pub BTreeMap<String, Values>);
 
 impl Where {
-    /// This selection with the factors of `pins` held at one value each.
+    /// Returns this selection with the factors of `pins` held at one value each.
     #[must_use]
     pub fn pinned(&self, pins: &BTreeMap<String, String>) -> Self {
         let mut all = self.0.clone();
@@ -96,7 +96,7 @@ impl Where {
         Self(all)
     }
 
-    /// This selection with all factors of `other` replaced by its values.
+    /// Returns this selection with all factors of `other` replaced by its values.
     #[must_use]
     pub fn replaced(&self, other: &Self) -> Self {
         let mut all = self.0.clone();
@@ -104,7 +104,7 @@ impl Where {
         Self(all)
     }
 
-    /// Every combination of one value per factor, the last factor varying fastest; one empty combination
+    /// Returns every combination of one value per factor, the last factor varying fastest; one empty combination
     /// where no factor is named.
     pub fn combinations(&self) -> Vec<BTreeMap<String, String>> {
         let mut all = vec![BTreeMap::new()];
@@ -123,12 +123,12 @@ impl Where {
         all
     }
 
-    /// How many combinations there are, counted without making them.
+    /// Counts the combinations without making them.
     pub fn count(&self) -> usize {
         self.0.values().map(|values| values.0.len()).fold(1, usize::saturating_mul)
     }
 
-    /// Whether a condition with these factor values is selected.
+    /// Returns whether a condition with these factor values is selected.
     pub fn admits<'a>(&self, value_of: impl Fn(&str) -> Option<&'a str>) -> bool {
         self.0.iter().all(|(factor, values)| {
             value_of(factor).is_some_and(|here| values.0.iter().any(|v| v == here))
@@ -154,7 +154,7 @@ impl fmt::Display for Where {
 pub struct ForEach(pub Vec<Where>);
 
 impl ForEach {
-    /// All combinations in order; one empty combination where nothing is named.
+    /// Returns all combinations in order; one empty combination where nothing is named.
     pub fn combinations(&self) -> Vec<BTreeMap<String, String>> {
         if self.0.is_empty() {
             return vec![BTreeMap::new()];
@@ -162,7 +162,7 @@ impl ForEach {
         self.0.iter().flat_map(Where::combinations).collect()
     }
 
-    /// The pools that `cells` yields, over all combinations.
+    /// Returns the pools that `cells` yields, over all combinations.
     pub(crate) fn pools<P: IntoIterator<Item = Where>>(
         &self,
         cells: impl Fn(&BTreeMap<String, String>) -> P,
@@ -170,7 +170,8 @@ impl ForEach {
         self.combinations().iter().flat_map(cells).collect()
     }
 
-    /// `named` selections of a form, and after them those that it is repeated over; each with the pointer from the form.
+    /// Returns the `named` selections of a form, and after them those that it is repeated over; each with the pointer from
+    /// the form.
     pub(crate) fn after<'a>(
         &'a self,
         named: impl IntoIterator<Item = (&'static str, &'a Where)>,
@@ -236,7 +237,7 @@ pub struct Than {
 }
 
 impl Than {
-    /// The cells to compare with, one where `each` is empty.
+    /// Returns the cells to compare with, one where `each` is empty.
     pub fn cells(&self) -> Vec<Where> {
         let listed = Where(
             self.r#where

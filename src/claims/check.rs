@@ -9,7 +9,7 @@ use super::terms::{Censored, Sides, Test};
 use crate::document::quoted;
 use std::collections::BTreeSet;
 
-/// The faults of a manifest's claims, by the claim's number: those of each ([`Claim::check`]) and ids used twice.
+/// Returns the faults of a manifest's claims, by the claim's number: those of each ([`Claim::check`]) and ids used twice.
 pub fn check_all<'a>(
     claims: &'a [Claim],
     known: Known<'a>,
@@ -24,7 +24,7 @@ pub fn check_all<'a>(
 }
 
 impl Claim {
-    /// The faults of this claim in a study where this is `known`. Empty where it can be judged.
+    /// Returns the faults of this claim in a study where this is `known`. Empty where it can be judged.
     pub fn check<'a>(&'a self, known: Known<'a>) -> Vec<ClaimFault<'a>> {
         let mut faults = Faults::new(known);
         if self.id.is_empty() {
@@ -34,7 +34,7 @@ impl Claim {
         let form = self.expect.as_form();
         faults.base = format!("/expect/{}", self.expect.form());
         self.check_circumstance(&mut faults);
-        for (path, selection) in form.selections() {
+        for (path, selection) in form.scope().selections {
             faults.selection(&path, selection);
         }
         check_names(form, &mut faults);
@@ -45,7 +45,7 @@ impl Claim {
         faults.found
     }
 
-    /// The paper's words or ours: one of them, and said.
+    /// Checks the words, the paper's or ours: one of the two, and not empty.
     fn check_words(&self, faults: &mut Faults<'_>) {
         match (&self.says, &self.ours) {
             (Some(_), Some(_)) => faults.add(
@@ -73,7 +73,7 @@ impl Claim {
     }
 
     fn check_circumstance(&self, faults: &mut Faults<'_>) {
-        for (path, metric) in self.expect.as_form().measured() {
+        for (path, metric) in self.expect.as_form().scope().measured {
             let wall = metric.starts_with(WALL_TIME);
             let metric = quoted(metric);
             if wall && !self.circumstance {
@@ -94,9 +94,10 @@ impl Claim {
     }
 }
 
-/// The metrics and the published table that a form names.
+/// Checks the metrics and the published table that a form names.
 fn check_names<'a>(form: &'a dyn Form, faults: &mut Faults<'a>) {
-    let named = form.measured();
+    let scope = form.scope();
+    let named = scope.measured;
     faults.unless(!named.is_empty() || !form.needs_metric(), "/metric", || {
         "expected a metric, found none".to_owned()
     });
@@ -110,7 +111,7 @@ fn check_names<'a>(form: &'a dyn Form, faults: &mut Faults<'a>) {
             faults.metric(&path, part);
         }
     }
-    if let Some(table) = form.published() {
+    if let Some(table) = scope.published {
         faults.table("/published", table);
     }
 }
@@ -127,7 +128,7 @@ fn check_terms(form: &dyn Form, faults: &mut Faults<'_>) {
     if let Some(test) = terms.test {
         let allowed = form.has_test(test);
         faults.unless(allowed, "/test", || format!("{} is no test of this form", test.name()));
-        let mut measured = form.measured().into_iter();
+        let mut measured = form.scope().measured.into_iter();
         let fits = measured.all(|(_, name)| Metric::named(name).is_share() == test.is_of_shares());
         faults.unless(!allowed || fits, "/test", || {
             let kind =

@@ -38,7 +38,7 @@ pub struct Claim {
 }
 
 impl Claim {
-    /// Its words: the paper's where there are any. [`Claim::check`] refuses a claim with both or neither.
+    /// Returns its words: the paper's where there are any. [`Claim::check`] refuses a claim with both or neither.
     pub fn words(&self) -> Words {
         match (&self.says, &self.ours) {
             (Some(says), _) => Words::Says(says.clone()),
@@ -46,7 +46,7 @@ impl Claim {
         }
     }
 
-    /// What the paper's own table shows of it.
+    /// Returns what the paper's own table shows of it.
     pub fn papers_table(&self) -> PaperTable {
         self.paper_table.unwrap_or(PaperTable::Silent)
     }

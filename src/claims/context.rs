@@ -19,7 +19,7 @@ pub struct Context<'a> {
 }
 
 impl<'a> Context<'a> {
-    /// The context of a study: 2000 bootstrap resamples, 9999 permutations.
+    /// Makes the context of a study: 2000 bootstrap resamples, 9999 permutations.
     pub fn new(
         published: &'a BTreeMap<String, Table>,
         shared_noise: &'a [String],

@@ -34,7 +34,7 @@ impl ClaimFault<'_> {
         Self { pointer: pointer.into(), at_key: false, message: message.into(), unknown: None }
     }
 
-    /// What may have been meant, where a name is unknown.
+    /// Returns what may have been meant, where a name is unknown.
     pub fn help(&self) -> Option<String> {
         self.unknown.as_ref().map(|(name, known)| known_or_near(name, known))
     }
@@ -63,7 +63,7 @@ impl<'a> Faults<'a> {
         }
     }
 
-    /// A name that is none of `known`.
+    /// Adds the fault of a name that is not among `known`.
     pub(super) fn unknown(
         &mut self,
         path: &str,
@@ -76,7 +76,7 @@ impl<'a> Faults<'a> {
         self.found.push(ClaimFault { unknown, ..fault });
     }
 
-    /// A factor that there is not, named by a value or by a key.
+    /// Adds the fault of a factor that does not exist, named by a value or by a key.
     pub(super) fn unknown_factor(&mut self, path: &str, name: &str, at_key: bool) {
         let known = self.known.factors.iter().map(|(factor, _)| factor.as_str()).collect();
         let unknown = Some((name.to_owned(), known));
@@ -112,7 +112,7 @@ impl<'a> Faults<'a> {
         }
     }
 
-    /// A metric that is named.
+    /// Checks a metric that is named.
     pub(super) fn metric(&mut self, path: &str, name: &str) {
         let known = self.known.metrics;
         if !known.iter().any(|metric| metric == name) {
@@ -121,7 +121,7 @@ impl<'a> Faults<'a> {
         }
     }
 
-    /// A published table that is named.
+    /// Checks a published table that is named.
     pub(super) fn table(&mut self, path: &str, name: &str) {
         let known = self.known.published;
         if !known.iter().any(|table| table == name) {
@@ -141,7 +141,7 @@ impl<'a> Faults<'a> {
         self.unless(cells >= 2, "/across", || format!("expected two cells or more, found {cells}"));
     }
 
-    /// The factors taken one by one on the other side of a comparison.
+    /// Checks the factors taken one by one on the other side of a comparison.
     pub(super) fn each(&mut self, path: &str, than: &Than) {
         for factor in &than.each {
             self.unless(than.r#where.0.contains_key(factor), path, || {

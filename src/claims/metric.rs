@@ -35,7 +35,7 @@ pub enum Metric {
 }
 
 impl Metric {
-    /// The metric of this name.
+    /// Returns the metric of this name.
     pub fn named(name: &str) -> Self {
         match name.strip_prefix("outcome:") {
             Some(outcomes) => Self::Outcome(outcomes.split('|').map(str::to_owned).collect()),
@@ -44,12 +44,12 @@ impl Metric {
         }
     }
 
-    /// Whether this is a share of trials, so that tests on proportions apply.
+    /// Returns whether this is a share of trials, so that tests on proportions apply.
     pub fn is_share(&self) -> bool {
         matches!(self, Self::Success | Self::Outcome(_))
     }
 
-    /// The metrics that a comparison of these columns is of: each on its own, or one of them all together.
+    /// Returns the metrics that a comparison of these columns is of: each on its own, or one of them all together.
     pub(crate) fn of_run(names: &[String], per_run: Option<PerRun>) -> Vec<Self> {
         match (per_run, names) {
             (Some(PerRun::MeanLog), _) => vec![Self::MeanLog(names.to_vec())],
@@ -60,7 +60,7 @@ impl Metric {
         }
     }
 
-    /// The columns that the value of a run is made of; none for shares.
+    /// Returns the columns that the value of a run is made of; none for shares.
     pub(crate) fn columns(&self) -> Vec<&String> {
         match self {
             Self::Success | Self::Outcome(_) => Vec::new(),
@@ -70,7 +70,7 @@ impl Metric {
         }
     }
 
-    /// The value of a run whose columns hold `column`; none where one of them is empty or has no logarithm.
+    /// Returns the value of a run whose columns hold `column`; none where one of them is empty or has no logarithm.
     pub(crate) fn of_columns(&self, column: impl Fn(&str) -> Option<f64>) -> Option<f64> {
         let log = |name: &String| column(name).filter(|x| *x > 0.0).map(ln);
         match self {
@@ -84,7 +84,7 @@ impl Metric {
         }
     }
 
-    /// Whether a trial of this `outcome` counts; `None` for measures.
+    /// Returns whether a trial of this `outcome` counts; `None` for measures.
     pub(crate) fn counts(&self, outcome: &str) -> Option<bool> {
         match self {
             Self::Success => Some(SUCCESS.contains(&outcome)),

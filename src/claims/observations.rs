@@ -46,7 +46,7 @@ pub(crate) struct Readings {
     pub(crate) failed: u64,
 }
 
-/// Why a table is none of trials. A trial is named by the values of its factors.
+/// Why a table cannot be read as one of trials. A condition is named by the values of its factors.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum TrialsTableError {
     /// A column is missing.

@@ -174,7 +174,7 @@ fn truths(
         }
         Assume::Cells(_) => Vec::new(),
     };
-    let (mut all, pools) = (Vec::new(), claim.expect.as_form().pools());
+    let (mut all, pools) = (Vec::new(), claim.expect.as_form().scope().pools());
     for (i, condition) in conditions.iter().enumerate() {
         let value_of = |f: &str| condition.iter().find(|(n, _)| n == f).map(|(_, v)| v.as_str());
         if !pools.iter().any(|pool| pool.admits(value_of)) {

@@ -31,12 +31,12 @@ impl Score {
 }
 
 impl Score {
-    /// All of them.
+    /// Returns the number of all claims.
     pub fn all(&self) -> usize {
         self.supported + self.contradicted + self.inconclusive + self.cannot_be_tested
     }
 
-    /// The counts in words, `what` being what is counted: `2 of 3 claims of the paper supported, ...`.
+    /// Says the counts, `what` being what is counted: `2 of 3 claims of the paper supported, ...`.
     pub fn in_words(&self, what: &str) -> String {
         format!(
             "{} of {} {what} supported, {} contradicted, {} inconclusive, {} cannot be tested",
@@ -48,7 +48,7 @@ impl Score {
         )
     }
 
-    /// What the verdicts say of the paper, and apart from it what they say of our own checks: one line each, those of
+    /// Says what the verdicts say of the paper, and apart from it what they say of our own checks: one line each, those of
     /// nothing left out.
     pub fn lines(verdicts: &[ClaimVerdict]) -> Vec<String> {
         let of = |papers: bool, what: &str| {

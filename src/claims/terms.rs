@@ -31,7 +31,7 @@ impl Test {
         matches!(self, Self::FisherExact | Self::ChiSquare | Self::CochranArmitage)
     }
 
-    /// The test's name in manifests and verdicts.
+    /// Returns the test's name in manifests and verdicts.
     pub fn name(self) -> &'static str {
         match self {
             Self::FisherExact => "fisher-exact",
@@ -113,12 +113,12 @@ pub(crate) struct Terms {
     /// Runs that each single cell needs: `minimum_n`, or one where that counts pairs or cells.
     pub(crate) minimum_runs: u64,
     pub(crate) censored: Censored,
-    /// The number of first trials of each condition that effect and p are told of as well.
+    /// The number of first trials of each condition for which effect and p are given as well.
     pub(crate) also_at_n: Option<u64>,
 }
 
 impl Default for Terms {
-    /// Those of a form that says nothing: one estimate, tested as it is.
+    /// Returns those of a form that says nothing: one estimate, tested as it is.
     fn default() -> Self {
         Self {
             alpha: five_percent(),
@@ -138,7 +138,7 @@ pub(super) fn five_percent() -> f64 {
     0.05
 }
 
-/// Trials (or pairs, or cells) without which nothing is judged.
+/// Returns the trials (or pairs, or cells) without which nothing is judged.
 pub(super) fn ten() -> u64 {
     10
 }

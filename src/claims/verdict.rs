@@ -1,7 +1,7 @@
 //! What judging a claim yields: the entries of `results/claims.json`, written and read by one type.
 //!
-//! Numbers are written to nine significant digits, one that is none as `null`, which is read as no number. What is left out is
-//! read as nothing; an entry without `id` and `verdict` is none.
+//! Numbers are written to nine significant digits; NaN and infinities as `null`, which is read as NaN. Every key may be left out
+//! but `id` and `verdict`.
 
 use super::terms::Correction;
 use super::words::PaperTable;
@@ -14,7 +14,7 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// Names of the statistics that `also-at-n` tells of the first trials: their number, their p in the claimed direction,
+/// Names of the statistics that `also-at-n` adds for the first trials: their number, their p in the claimed direction,
 /// uncorrected, and their effect.
 pub(super) const FIRST_N: &str = "first-n";
 pub(super) const FIRST_N_P: &str = "first-n-p";
@@ -54,7 +54,7 @@ impl fmt::Display for Judgement {
 /// A name that the engine gives, or that was read.
 pub type Name = Cow<'static, str>;
 
-/// A number of `claims.json`.
+/// How a number of `claims.json` is written and read.
 mod number {
     use super::{Deserialize, Deserializer, Serialize, Serializer, rounded};
 
@@ -72,7 +72,7 @@ mod number {
     }
 }
 
-/// Writes a number that is left out where there is none.
+/// Writes a number of a field that is left out where there is none.
 #[expect(clippy::ref_option, reason = "serde hands over references")]
 fn given<S: Serializer>(x: &Option<f64>, serializer: S) -> Result<S::Ok, S::Error> {
     x.map(rounded).serialize(serializer)
@@ -223,7 +223,7 @@ pub struct ComparisonVerdict {
     pub trials_to_decide: Option<u64>,
 }
 
-/// The statistics of a comparison with published numbers that a reader needs beside its effect, in words: the skill over
+/// Says the statistics of a comparison with published numbers that a reader needs beside its effect: the skill over
 /// trivial predictors above all. Empty for other comparisons.
 pub fn agreement_in_words<'a>(statistics: impl IntoIterator<Item = (&'a str, f64)>) -> String {
     const SHOWN: [(&str, &str); 7] = [
@@ -294,7 +294,7 @@ pub struct ClaimVerdict {
     pub trials_to_decide: Option<u64>,
 }
 
-/// A number rounded to nine significant digits: readable, and far finer than any verdict needs. JSON has no
+/// Rounds a number to nine significant digits: readable, and far finer than any verdict needs. JSON has no
 /// infinity and no NaN; they become `null`.
 pub fn rounded(x: f64) -> Value {
     if !x.is_finite() {
@@ -305,7 +305,7 @@ pub fn rounded(x: f64) -> Value {
 }
 
 impl ComparisonVerdict {
-    /// What `also-at-n` asked for in words: effect and p at the paper's number of runs beside those at ours.
+    /// Says what `also-at-n` asked for: effect and p at the paper's number of runs beside those at ours.
     pub fn at_both_numbers(&self) -> Option<String> {
         let (n, p) = (self.statistics.get(FIRST_N)?, self.statistics.get(FIRST_N_P)?);
         let of = |g: Option<f64>| g.map(|g| format!(", g {g:+.2}")).unwrap_or_default();
@@ -318,8 +318,8 @@ impl ComparisonVerdict {
 }
 
 impl ClaimVerdict {
-    /// Runs that never reached what they were compared by, and all runs, each cell counted once for each of its measures.
-    /// `None` where all did.
+    /// Counts the runs that never reached what they were compared by, and all runs, each cell once for each of its
+    /// measures. `None` where all did.
     pub fn censored(&self) -> Option<(u64, u64)> {
         let cells = self.comparisons.iter().flat_map(|comparison| &comparison.cells);
         let mut seen: Vec<(&str, u64, u64)> = Vec::new();

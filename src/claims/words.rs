@@ -14,7 +14,7 @@ pub enum Words {
 }
 
 impl Words {
-    /// The key under which they stand.
+    /// Returns the key under which they stand.
     pub fn key(&self) -> &'static str {
         match self {
             Self::Says(_) => "says",
@@ -22,7 +22,7 @@ impl Words {
         }
     }
 
-    /// The words themselves.
+    /// Returns the words themselves.
     pub fn text(&self) -> &str {
         match self {
             Self::Says(text) | Self::Ours(text) => text,

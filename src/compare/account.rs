@@ -101,7 +101,7 @@ impl Account {
     /// Returns the account of a bundle.
     ///
     /// # Errors
-    /// Every line that is no record, and `results/claims.json` where it is no list of claims.
+    /// Every line that is not a record, and `results/claims.json` where it is not a list of verdicts.
     pub fn of_bundle(bundle: &Bundle) -> Result<Self, Vec<Fault>> {
         let mut faults = Vec::new();
         let mut conditions = Vec::new();

@@ -22,7 +22,7 @@ pub enum Cause {
 }
 
 impl Comparison {
-    /// What could explain the differences; none where there are none.
+    /// Returns what could explain the differences; nothing where there are none.
     pub fn causes(&self) -> Vec<Cause> {
         let any = |is: fn(&Discrepancy) -> bool| self.discrepancies.iter().any(is);
         let asked = [
@@ -56,8 +56,8 @@ impl Comparison {
     }
 }
 
-/// The message about a run of `manifest` that drifted from `lock`: what changed, the cheapest cause first, and how to
-/// re-bless. `comparison` has the lock on its first side.
+/// Writes the message about a run of `manifest` that drifted from `lock`: what changed, the cheapest cause first, and how
+/// to re-bless. `comparison` has the lock on its first side.
 pub fn drift(comparison: &Comparison, manifest: &str, lock: &str) -> String {
     let mut text = match comparison.extent {
         Extent::FirstTrials => {

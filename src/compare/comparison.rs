@@ -136,12 +136,12 @@ pub fn compare(
 }
 
 impl Comparison {
-    /// Whether nothing differs by more than was admitted.
+    /// Returns whether nothing differs by more than was admitted.
     pub fn is_same(&self) -> bool {
         self.discrepancies.is_empty()
     }
 
-    /// The whole comparison, for programs.
+    /// Returns the whole comparison, for programs.
     pub fn to_json(&self) -> Value {
         serde_json::json!({
             "a": self.a,
@@ -165,7 +165,7 @@ fn party(account: &Account) -> Party {
     }
 }
 
-/// Every name that a tolerance may be declared for: measures, and columns of numbers in tables.
+/// Returns every name that a tolerance may be declared for: measures, and columns of numbers in tables.
 fn metrics<'a>(a: &'a Account, b: &'a Account) -> BTreeSet<&'a str> {
     let mut names: BTreeSet<&str> = BTreeSet::new();
     for side in [a, b] {
@@ -192,7 +192,7 @@ fn inputs(a: &Account, b: &Account, tally: &mut Tally) -> Vec<Discrepancy> {
     changed.collect()
 }
 
-/// Settings that changed: those of the whole study, then those of conditions, alike changes told once.
+/// Finds the settings that changed: those of the whole study, then those of conditions, alike changes listed once.
 fn asked(a: &Settings, b: &Settings, tally: &mut Tally) -> Vec<Discrepancy> {
     let mut found = Vec::new();
     let changes = |x: &BTreeMap<String, Value>, y: &BTreeMap<String, Value>| {
@@ -234,7 +234,7 @@ fn asked(a: &Settings, b: &Settings, tally: &mut Tally) -> Vec<Discrepancy> {
     found
 }
 
-/// Conditions that are new, gone or of another size. Of a part that was run, only the plan can tell what is gone.
+/// Finds the conditions that are new, gone or of another size. Of a part that was run, only the plan knows what is gone.
 fn conditions(a: &Account, b: &Account, extent: Extent, tally: &mut Tally) -> Vec<Discrepancy> {
     let sizes = |side: &Account| -> Vec<(String, usize)> {
         if extent == Extent::Whole || side.settings.conditions.is_empty() {
@@ -262,7 +262,7 @@ fn conditions(a: &Account, b: &Account, extent: Extent, tally: &mut Tally) -> Ve
     found
 }
 
-/// Records by their digests: all that a lock knows of most trials.
+/// Compares records by their digests: all that a lock knows of most trials.
 fn records(a: &Account, b: &Account, tally: &mut Tally) -> Vec<Discrepancy> {
     let mut found = Vec::new();
     for (x, y) in a.conditions.iter().filter_map(|x| Some((x, b.condition(&x.slug)?))) {

@@ -167,7 +167,7 @@ fn rows<'a>(a: &'a Table, b: &'a Table) -> (Rows<'a>, Rows<'a>) {
 
 /// Returns the verdicts that changed, and, where both sides hold the numbers behind them, those of unchanged verdicts.
 fn claims(a: &Account, b: &Account, tolerances: &Tolerances) -> Vec<Discrepancy> {
-    // As they are written: a number that is none is equal to itself there.
+    // As they are written: NaN is equal to itself there.
     let evidence = |side: &Account| -> BTreeMap<String, String> {
         let list = verdicts(&side.results).unwrap_or_default();
         list.into_iter().map(|verdict| (verdict.id.clone(), canonical_of(&verdict))).collect()

@@ -2,11 +2,11 @@
 
 use super::{Comparison, Row, Section};
 
-/// Differences of one kind that are told; the rest are counted.
-const ROWS_TOLD: usize = 12;
+/// Differences of one kind that are shown; the rest are counted.
+const ROWS_SHOWN: usize = 12;
 
 impl Comparison {
-    /// For people: who is compared, one line a kind of thing, the differences, and the answer last. `names` are what
+    /// Writes for people: who is compared, one line a kind of thing, the differences, and the answer last. `names` are what
     /// the sides are called.
     pub fn to_human(&self, names: [&str; 2]) -> String {
         let mut text = String::new();
@@ -28,7 +28,7 @@ impl Comparison {
         text
     }
 
-    /// The summary and the differences.
+    /// Writes the summary and the differences.
     pub(super) fn details(&self) -> String {
         let sections = self.sections();
         let mut text = String::new();
@@ -52,13 +52,13 @@ impl Comparison {
         }
         text.push('\n');
         for section in sections.iter().filter(|section| !section.rows.is_empty()) {
-            text.push_str(&told(section));
+            text.push_str(&shown(section));
             text.push('\n');
         }
         text
     }
 
-    /// How trials were paired, where that needs saying.
+    /// Says how trials were paired, where that needs saying.
     pub fn matching_in_words(&self) -> Option<String> {
         let (by_key, by_number) = (self.matching.by_key, self.matching.by_number);
         match (by_key, by_number) {
@@ -75,7 +75,7 @@ impl Comparison {
         }
     }
 
-    /// One line: what changed, counted.
+    /// Says in one line what changed, counted.
     pub fn answer(&self) -> String {
         let changed: Vec<String> = self
             .sections()
@@ -91,19 +91,19 @@ impl Comparison {
     }
 }
 
-fn told(section: &Section) -> String {
+fn shown(section: &Section) -> String {
     let mut text = format!("{}\n", section.name);
-    for row in section.rows.iter().take(ROWS_TOLD) {
+    for row in section.rows.iter().take(ROWS_SHOWN) {
         text.push_str(&format!("  {}\n", row.in_words()));
     }
-    if section.rows.len() > ROWS_TOLD {
-        text.push_str(&format!("  ... and {} more\n", section.rows.len() - ROWS_TOLD));
+    if section.rows.len() > ROWS_SHOWN {
+        text.push_str(&format!("  ... and {} more\n", section.rows.len() - ROWS_SHOWN));
     }
     text
 }
 
 impl Row {
-    /// The line as people read it.
+    /// Writes the line as people read it.
     pub fn in_words(&self) -> String {
         let Self { subject, from, to, note } = self;
         let note = if note.is_empty() { String::new() } else { format!(" ({note})") };

@@ -16,14 +16,14 @@ pub struct Settings {
     pub conditions: BTreeMap<String, BTreeMap<String, Value>>,
 }
 
-/// Told apart from settings: digests of inputs, the engine, and what only names the document.
+/// Compared apart from settings: digests of inputs, the engine, and what only names the document.
 const NOT_SETTINGS: [&str; 5] = ["reenact", "engine-version", "name", "inputs", "conditions"];
 
 /// What of the whole study moves trials, and so belongs in a lock; the rest is words, and what is made of trials.
 const OF_TRIALS: [&str; 5] = ["study", "seed", "shared-noise", "trials", "overrides"];
 
 impl Settings {
-    /// The settings of the resolved study `resolved` (`study` in `study.resolved.json`).
+    /// Reads the settings of the resolved study `resolved` (`study` in `study.resolved.json`).
     pub fn of(resolved: &Value) -> Self {
         let mut settings = Self::default();
         for (key, value) in
@@ -42,7 +42,7 @@ impl Settings {
         settings
     }
 
-    /// The same without what cannot move a trial.
+    /// Returns the same without what cannot move a trial.
     #[must_use]
     pub fn of_trials(&self) -> Self {
         let moves = |path: &String| OF_TRIALS.contains(&path.split('.').next().unwrap_or_default());
@@ -53,7 +53,7 @@ impl Settings {
         }
     }
 
-    /// What is the same in every condition.
+    /// Returns what is the same in every condition.
     pub(super) fn shared(&self) -> Values {
         let mut conditions = self.conditions.values();
         let mut shared = conditions.next().cloned().unwrap_or_default();
@@ -64,7 +64,7 @@ impl Settings {
     }
 }
 
-/// Whether two values have the same canonical text: `1` and `1.0` are one number.
+/// Returns whether two values have the same canonical text: `1` and `1.0` are one number.
 pub(super) fn same(a: &Value, b: &Value) -> bool {
     a == b || json::canonical(a) == json::canonical(b)
 }
@@ -73,7 +73,7 @@ fn entries(value: &Value) -> impl Iterator<Item = (&String, &Value)> {
     value.as_object().into_iter().flatten()
 }
 
-/// One path a leaf. Items of a list are named by what identifies them, so that one more in the middle is one change.
+/// Adds one path a leaf. Items of a list are named by what identifies them, so that one more in the middle is one change.
 fn flatten(path: &str, value: &Value, into: &mut Values) {
     match value {
         Value::Object(map) if !map.is_empty() => {

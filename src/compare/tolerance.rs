@@ -15,7 +15,7 @@ pub enum Tolerance {
 }
 
 impl Tolerance {
-    /// Whether `a` and `b` are near enough.
+    /// Returns whether `a` and `b` are near enough.
     pub fn admits(self, a: f64, b: f64) -> bool {
         let bound = match self {
             Self::Absolute(bound) => bound,
@@ -62,10 +62,10 @@ pub enum ToleranceError {
 }
 
 impl Tolerances {
-    /// Tolerances as the command line writes them.
+    /// Reads tolerances as the command line writes them.
     ///
     /// # Errors
-    /// The first that is none.
+    /// The first text that is not a tolerance.
     pub fn parse(written: &[String]) -> Result<Self, ToleranceError> {
         let mut tolerances = Self::default();
         for text in written {
@@ -81,12 +81,12 @@ impl Tolerances {
         Ok(tolerances)
     }
 
-    /// Whether none is declared: then every byte counts.
+    /// Returns whether none is declared: then every byte counts.
     pub fn is_none(&self) -> bool {
         *self == Self::default()
     }
 
-    /// The tolerance of the metric `name`: its own, else that of the metric it is a level of (`distance-m` for
+    /// Returns the tolerance of the metric `name`: its own, else that of the metric it is a level of (`distance-m` for
     /// `distance-m-at-90`), else the one for all.
     pub fn of(&self, name: &str) -> Option<Tolerance> {
         let base = name.rsplit_once("-at-").map(|(base, _)| base);
@@ -94,7 +94,7 @@ impl Tolerances {
         own.copied().or(self.every)
     }
 
-    /// Whether the change of `name` from `a` to `b` is admitted.
+    /// Returns whether the change of `name` from `a` to `b` is admitted.
     pub fn admits(&self, name: &str, a: f64, b: f64) -> bool {
         a == b || self.of(name).is_some_and(|tolerance| tolerance.admits(a, b))
     }

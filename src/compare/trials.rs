@@ -18,7 +18,7 @@ pub(super) struct Trials {
     pub(super) tolerated: usize,
 }
 
-/// Compares every trial that both sides tell about. A trial is found by its key, and where no trial of the other side
+/// Compares every trial that both sides list. A trial is found by its key, and where no trial of the other side
 /// has it, by the slug of its condition and its number.
 pub(super) fn compare(a: &Account, b: &Account, tolerances: &Tolerances) -> Trials {
     let mut trials = Trials::default();
@@ -26,8 +26,8 @@ pub(super) fn compare(a: &Account, b: &Account, tolerances: &Tolerances) -> Tria
     let by_name: BTreeMap<(&str, u32), &TrialAccount> =
         all(b).map(|(slug, trial)| ((slug, trial.number), trial)).collect();
     let mut found: BTreeSet<(&str, u32)> = BTreeSet::new();
-    let told_by = |other: &Account, slug: &str, number: u32| {
-        other.condition(slug).is_some_and(|c| tells(c, number))
+    let listed_by = |other: &Account, slug: &str, number: u32| {
+        other.condition(slug).is_some_and(|c| lists(c, number))
     };
     for (slug, trial) in all(a) {
         let same = by_key.get(&trial.key);
@@ -45,15 +45,15 @@ pub(super) fn compare(a: &Account, b: &Account, tolerances: &Tolerances) -> Tria
         };
         match other {
             Some(other) => trials.pair(slug, trial, other, tolerances),
-            // A side that does not tell about a trial has not lost it.
-            None if told_by(b, slug, trial.number) => {
+            // A side that does not list a trial has not lost it.
+            None if listed_by(b, slug, trial.number) => {
                 trials.differences.push(alone(slug, trial, true));
             }
             None => {}
         }
     }
     for (slug, trial) in all(b) {
-        if !found.contains(&(slug, trial.number)) && told_by(a, slug, trial.number) {
+        if !found.contains(&(slug, trial.number)) && listed_by(a, slug, trial.number) {
             trials.differences.push(alone(slug, trial, false));
         }
     }
@@ -64,8 +64,8 @@ fn all(account: &Account) -> impl Iterator<Item = (&str, &TrialAccount)> {
     account.conditions.iter().flat_map(|c| c.known.iter().map(|trial| (c.slug.as_str(), trial)))
 }
 
-/// Whether `condition` would tell about its trial `number` if it had it: a bundle tells all, a lock trial 0 only.
-fn tells(condition: &ConditionAccount, number: u32) -> bool {
+/// Returns whether `condition` would list its trial `number` if it had it: a bundle lists all, a lock trial 0 only.
+fn lists(condition: &ConditionAccount, number: u32) -> bool {
     condition.known.len() == condition.trials || condition.known.iter().any(|t| t.number == number)
 }
 

@@ -1,6 +1,7 @@
 //! Our cells beside the paper's: what `correlation-with-published` and `rmse-with-published` have in common.
 
 use super::pairing::{Pair, Point, log_ratios, pair_up};
+use super::scope::Scope;
 use crate::claims::cannot_test::CannotTest;
 use crate::claims::cells::{Values, Where};
 use crate::claims::faults::Faults;
@@ -22,11 +23,27 @@ pub(super) struct Compared<'a> {
     pub(super) minimum_n: u64,
 }
 
+/// Makes [`Compared`] of a form, which has the terms of the comparison among its own.
+macro_rules! compared {
+    ($form:expr) => {
+        Compared {
+            metric: &$form.metric,
+            published: &$form.published,
+            scale: $form.scale,
+            only: &$form.r#where,
+            ratio_to: $form.ratio_to.as_ref(),
+            minimum_n: $form.minimum_n,
+        }
+    };
+}
+pub(super) use compared;
+
 impl<'a> Compared<'a> {
-    /// Returns the selections named; which cells are compared is for the published table to say.
-    pub(super) fn selections(&self) -> Vec<(String, &'a Where)> {
+    /// Returns what is looked at; which cells are compared is for the published table to say.
+    pub(super) fn scope(&self) -> Scope<'a> {
         let base = self.ratio_to.map(|cell| ("/ratio-to".to_owned(), cell));
-        [("/where".to_owned(), self.only)].into_iter().chain(base).collect()
+        let selections = [("/where".to_owned(), self.only)].into_iter().chain(base).collect();
+        Scope::published(self.metric, self.published, selections)
     }
 
     pub(super) fn check(&self, faults: &mut Faults<'_>) {

@@ -19,6 +19,7 @@
 use super::bounds::{Bounds, share_level};
 use super::declare::form;
 use super::form::Form;
+use super::scope::Scope;
 use crate::claims::cannot_test::CannotTest;
 use crate::claims::cells::{ForEach, Values, Where};
 use crate::claims::faults::Faults;
@@ -125,17 +126,10 @@ impl Form for Between {
         self.shared_terms()
     }
 
-    fn measured(&self) -> Vec<(String, &str)> {
-        self.metric.as_metrics()
-    }
-
-    fn selections(&self) -> Vec<(String, &Where)> {
+    fn scope(&self) -> Scope<'_> {
         let base = self.relative_to.as_ref().map(|cell| ("/relative-to", cell));
-        self.for_each.after([("/where", &self.r#where)].into_iter().chain(base))
-    }
-
-    fn pools(&self) -> Vec<Where> {
-        self.for_each.pools(|pins| {
+        let named = [("/where", &self.r#where)].into_iter().chain(base);
+        Scope::repeated(self.metric.as_metrics(), named, &self.for_each, |pins| {
             let cells = self.relative_to.iter().chain([&self.r#where]);
             cells.map(|cell| cell.pinned(pins)).collect::<Vec<_>>()
         })

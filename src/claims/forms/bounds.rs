@@ -15,7 +15,7 @@ pub(super) struct Bounds {
 }
 
 impl Bounds {
-    /// p-values of "inside" and "outside" from those of "above" and "below" a bound.
+    /// Returns the p-values of "inside" and "outside" from those of "above" and "below" a bound.
     pub(super) fn hold(self, tails: impl Fn(f64) -> (f64, f64)) -> (f64, f64) {
         let low = self.low.map(&tails);
         let high = self.high.map(|bound| {
@@ -42,7 +42,7 @@ impl Bounds {
         }
     }
 
-    /// The faults of bounds; those of a share lie strictly between 0 and 1 (`open_unit`).
+    /// Checks the bounds; those of a share lie strictly between 0 and 1 (`open_unit`).
     pub(super) fn check(self, open_unit: bool, faults: &mut Faults<'_>) {
         let Self { low, high } = self;
         faults.unless(low.is_some() || high.is_some(), "/low", || {
@@ -62,7 +62,7 @@ impl Bounds {
     }
 }
 
-/// Score test of a share, which Wilson's interval inverts.
+/// Tests a share by its score, which Wilson's interval inverts.
 pub(super) fn share_level(share: Proportion, bounds: Bounds, confidence: f64) -> Evidence {
     let (p_for, p_against) = bounds.hold(|bound| {
         let z = (share.share() - bound) / (bound * (1.0 - bound) / real(share.trials)).sqrt();

@@ -4,6 +4,7 @@
 use super::declare::form;
 use super::difference::compare;
 use super::form::Form;
+use super::scope::Scope;
 use crate::claims::cells::{ForEach, Than, Values, Where};
 use crate::claims::faults::Faults;
 use crate::claims::gather::{Bench, Draft};
@@ -52,19 +53,10 @@ impl<F: Directed> Form for F {
         self.contrast().shared_terms()
     }
 
-    fn measured(&self) -> Vec<(String, &str)> {
-        self.contrast().metric.as_metrics()
-    }
-
-    fn selections(&self) -> Vec<(String, &Where)> {
+    fn scope(&self) -> Scope<'_> {
         let form = self.contrast();
-        form.for_each.after([("/where", &form.r#where), ("/than/where", &form.than.r#where)])
-    }
-
-    fn pools(&self) -> Vec<Where> {
-        let form = self.contrast();
-        form.for_each
-            .pools(|pins| [&form.r#where, &form.than.r#where].map(|cell| cell.pinned(pins)))
+        let named = [("/where", &form.r#where), ("/than/where", &form.than.r#where)];
+        Scope::two_cells(&form.metric, named, &form.for_each)
     }
 
     fn ranks(&self) -> bool {

@@ -13,10 +13,11 @@
 //!     at-least: 0.6
 //! ```
 
-use super::agreement::Compared;
+use super::agreement::{Compared, compared};
 use super::declare::form;
 use super::form::Form;
 use super::pairing::{Point, clusters};
+use super::scope::Scope;
 use crate::claims::cannot_test::CannotTest;
 use crate::claims::cells::{Values, Where};
 use crate::claims::faults::Faults;
@@ -55,39 +56,14 @@ form! {
     }
 }
 
-impl Correlation {
-    fn compared(&self) -> Compared<'_> {
-        Compared {
-            metric: &self.metric,
-            published: &self.published,
-            scale: self.scale,
-            only: &self.r#where,
-            ratio_to: self.ratio_to.as_ref(),
-            minimum_n: self.minimum_n,
-        }
-    }
-}
-
 impl Form for Correlation {
-    /// What is counted are published cells: one of ours needs one run.
+    /// Returns the shared terms. What is counted are published cells: one of ours needs one run.
     fn terms(&self) -> Terms {
         Terms { minimum_runs: 1, ..self.shared_terms() }
     }
 
-    fn measured(&self) -> Vec<(String, &str)> {
-        self.metric.as_metrics()
-    }
-
-    fn published(&self) -> Option<&str> {
-        Some(&self.published)
-    }
-
-    fn selections(&self) -> Vec<(String, &Where)> {
-        self.compared().selections()
-    }
-
-    fn pools(&self) -> Vec<Where> {
-        vec![Where::default()]
+    fn scope(&self) -> Scope<'_> {
+        compared!(self).scope()
     }
 
     fn check<'a>(&'a self, faults: &mut Faults<'a>) {
@@ -95,12 +71,12 @@ impl Form for Correlation {
         faults.unless(self.at_least > -1.0 && self.at_least < 1.0, "/at-least", || {
             format!("a correlation lies between -1 and 1, found {}", self.at_least)
         });
-        self.compared().check(faults);
+        compared!(self).check(faults);
     }
 
     fn judge(&self, bench: &Bench<'_>) -> Vec<Draft> {
         let claimed = format!("correlation at least {}", self.at_least);
-        self.compared().draft(bench, "spearman", &claimed, |about, _, points| {
+        compared!(self).draft(bench, "spearman", &claimed, |about, _, points| {
             correlated(bench, about, points, self.at_least)
         })
     }

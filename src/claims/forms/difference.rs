@@ -8,7 +8,7 @@ use crate::claims::terms::{Side, Sides, Terms, Test};
 use crate::claims::verdict::{EffectSize, FIRST_N, FIRST_N_HEDGES_G, FIRST_N_P};
 use crate::stats::bootstrap::bootstrap;
 use crate::stats::effect::{cliff_delta, hedges_g, risk_difference};
-use crate::stats::means::{anova, student, welch};
+use crate::stats::means::{TTest, anova, student, welch};
 use crate::stats::proportion::{Proportion, chi_square_homogeneity, fisher_exact, newcombe};
 use crate::stats::rank::mann_whitney;
 use crate::stats::summary::{Summary, median};
@@ -98,6 +98,13 @@ fn evidence(
     let both = |p: f64| Tails { less: f64::NAN, greater: f64::NAN, two_sided: p };
     let shares = || a.proportion.zip(b.proportion).ok_or_else(wrong);
     let measures = || if a.proportion.is_some() { Err(wrong()) } else { Ok(()) };
+    let of_t = |found: TTest, effect: EffectSize| Found {
+        tails: found.tails,
+        difference: found.difference,
+        sides: bench.terms.sides,
+        statistics: vec![("t", found.t), ("df", found.df)],
+        effect,
+    };
     let two_sided = 1.0 - bench.terms.alpha;
     Ok(match test {
         Test::FisherExact => {
@@ -121,13 +128,8 @@ fn evidence(
             measures()?;
             varies(&[a, b])?;
             let found = welch(a.summary, b.summary);
-            Found {
-                tails: found.tails,
-                difference: found.difference,
-                sides: bench.terms.sides,
-                statistics: vec![("t", found.t), ("df", found.df)],
-                effect: mean_effect(a, b, found.interval(bench.confidence())),
-            }
+            let effect = mean_effect(a, b, found.interval(bench.confidence()));
+            of_t(found, effect)
         }
         Test::Anova => {
             measures()?;
@@ -169,16 +171,11 @@ fn evidence(
             varies(&[a, b])?;
             let (a, b) = (from_median(a), from_median(b));
             let found = student(a.summary, b.summary);
-            Found {
-                tails: found.tails,
-                difference: found.difference,
-                sides: bench.terms.sides,
-                statistics: vec![("t", found.t), ("df", found.df)],
-                effect: EffectSize {
-                    name: "difference-of-distances-from-the-median".into(),
-                    ..mean_effect(&a, &b, found.interval(bench.confidence()))
-                },
-            }
+            let effect = EffectSize {
+                name: "difference-of-distances-from-the-median".into(),
+                ..mean_effect(&a, &b, found.interval(bench.confidence()))
+            };
+            of_t(found, effect)
         }
         Test::CochranArmitage | Test::Spearman => return Err(wrong()),
     })

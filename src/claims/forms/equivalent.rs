@@ -19,6 +19,7 @@
 use super::declare::form;
 use super::form::Form;
 use super::margin::{pair, test_name};
+use super::scope::Scope;
 use crate::claims::cells::{ForEach, Than, Values, Where};
 use crate::claims::faults::Faults;
 use crate::claims::gather::{Bench, Draft, Evidence};
@@ -53,16 +54,9 @@ impl Form for Equivalence {
         self.shared_terms()
     }
 
-    fn measured(&self) -> Vec<(String, &str)> {
-        self.metric.as_metrics()
-    }
-
-    fn selections(&self) -> Vec<(String, &Where)> {
-        self.for_each.after([("/where", &self.r#where), ("/to/where", &self.to.r#where)])
-    }
-
-    fn pools(&self) -> Vec<Where> {
-        self.for_each.pools(|pins| [&self.r#where, &self.to.r#where].map(|cell| cell.pinned(pins)))
+    fn scope(&self) -> Scope<'_> {
+        let named = [("/where", &self.r#where), ("/to/where", &self.to.r#where)];
+        Scope::two_cells(&self.metric, named, &self.for_each)
     }
 
     fn check<'a>(&'a self, faults: &mut Faults<'a>) {

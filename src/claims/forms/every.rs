@@ -11,6 +11,7 @@
 use super::condition::{That, conditioned};
 use super::declare::form;
 use super::form::Form;
+use super::scope::Scope;
 use crate::claims::cells::{ForEach, Where};
 use crate::claims::faults::Faults;
 use crate::claims::gather::{Bench, COUNT, Draft, Evidence};
@@ -37,21 +38,13 @@ form! {
 }
 
 impl Form for Every {
-    /// Nothing is estimated, so there is no level; the usual one stands for it.
+    /// Returns the shared terms. Nothing is estimated, so there is no level; the usual one stands for it.
     fn terms(&self) -> Terms {
         self.shared_terms()
     }
 
-    fn measured(&self) -> Vec<(String, &str)> {
-        self.that.measured()
-    }
-
-    fn selections(&self) -> Vec<(String, &Where)> {
-        self.for_each.after([("/where", &self.r#where)])
-    }
-
-    fn pools(&self) -> Vec<Where> {
-        self.for_each.pools(|pins| [self.r#where.pinned(pins)])
+    fn scope(&self) -> Scope<'_> {
+        Scope::cell(self.that.measured(), &self.r#where, &self.for_each)
     }
 
     fn ranks(&self) -> bool {
@@ -62,7 +55,7 @@ impl Form for Every {
         self.that.check(faults);
     }
 
-    /// Nothing is estimated: a trial that does not meet the condition is there or not.
+    /// Counts. Nothing is estimated: a trial that does not meet the condition is there or not.
     fn judge(&self, bench: &Bench<'_>) -> Vec<Draft> {
         let judged = |cell: Where| {
             let about = format!("every trial with {}: ({cell})", self.that);
@@ -72,6 +65,6 @@ impl Form for Every {
                 Evidence { p_for, p_against, statistics: Vec::new(), effect: None }
             })
         };
-        self.pools().into_iter().map(judged).collect()
+        self.scope().pools().into_iter().map(judged).collect()
     }
 }

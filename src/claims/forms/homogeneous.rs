@@ -15,6 +15,7 @@
 use super::declare::form;
 use super::form::Form;
 use super::margin::{pair, test_name};
+use super::scope::Scope;
 use crate::claims::cannot_test::CannotTest;
 use crate::claims::cells::{ForEach, Values, Where};
 use crate::claims::faults::Faults;
@@ -55,16 +56,8 @@ impl Form for Homogeneity {
         self.shared_terms()
     }
 
-    fn measured(&self) -> Vec<(String, &str)> {
-        self.metric.as_metrics()
-    }
-
-    fn selections(&self) -> Vec<(String, &Where)> {
-        self.for_each.after([("/where", &self.r#where), ("/across", &self.across)])
-    }
-
-    fn pools(&self) -> Vec<Where> {
-        self.for_each.pools(|pins| [self.r#where.pinned(pins).replaced(&self.across)])
+    fn scope(&self) -> Scope<'_> {
+        Scope::across(&self.metric, &self.r#where, &self.across, &self.for_each)
     }
 
     fn check<'a>(&'a self, faults: &mut Faults<'a>) {

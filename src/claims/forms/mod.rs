@@ -13,6 +13,7 @@ mod difference;
 mod form;
 mod margin;
 mod pairing;
+mod scope;
 
 pub mod between;
 pub mod correlation;
@@ -102,11 +103,11 @@ forms! {
 impl Expect {
     /// Returns the names of the metrics measured.
     pub fn metrics(&self) -> Vec<String> {
-        self.as_form().measured().into_iter().map(|(_, name)| name.to_owned()).collect()
+        self.as_form().scope().measured.into_iter().map(|(_, name)| name.to_owned()).collect()
     }
 
     /// Returns the name of the published table compared with, if there is one.
     pub fn published(&self) -> Option<&str> {
-        self.as_form().published()
+        self.as_form().scope().published
     }
 }

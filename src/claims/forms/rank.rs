@@ -15,6 +15,7 @@
 use super::declare::form;
 use super::difference::compare;
 use super::form::Form;
+use super::scope::Scope;
 use crate::claims::cells::{ForEach, Values, Where};
 use crate::claims::faults::Faults;
 use crate::claims::gather::{Bench, Draft};
@@ -60,7 +61,7 @@ pub enum Order {
 }
 
 impl Ranking {
-    /// The pairs of values that the order states, the higher first.
+    /// Returns the pairs of values that the order states, the higher first.
     fn pairs<'a>(&'a self, values: &'a Values) -> Vec<(&'a str, &'a str)> {
         match &self.order {
             Order::First(best) => values
@@ -87,16 +88,8 @@ impl Form for Ranking {
         self.shared_terms()
     }
 
-    fn measured(&self) -> Vec<(String, &str)> {
-        self.metric.as_metrics()
-    }
-
-    fn selections(&self) -> Vec<(String, &Where)> {
-        self.for_each.after([("/where", &self.r#where), ("/across", &self.across)])
-    }
-
-    fn pools(&self) -> Vec<Where> {
-        self.for_each.pools(|pins| [self.r#where.pinned(pins).replaced(&self.across)])
+    fn scope(&self) -> Scope<'_> {
+        Scope::across(&self.metric, &self.r#where, &self.across, &self.for_each)
     }
 
     fn ranks(&self) -> bool {

@@ -17,6 +17,7 @@
 use super::declare::form;
 use super::difference::directed;
 use super::form::Form;
+use super::scope::Scope;
 use crate::claims::cannot_test::CannotTest;
 use crate::claims::cells::{ForEach, Where};
 use crate::claims::faults::Faults;
@@ -75,7 +76,7 @@ impl Form for Rate {
         self.shared_terms()
     }
 
-    fn measured(&self) -> Vec<(String, &str)> {
+    fn scope(&self) -> Scope<'_> {
         let named = [
             ("/of/metric", Some(&self.of.metric)),
             ("/of/per", self.of.per.as_ref()),
@@ -83,15 +84,8 @@ impl Form for Rate {
             ("/than/per", self.than.per.as_ref()),
         ];
         let there = named.into_iter().filter_map(|(path, name)| Some((path, name?)));
-        there.map(|(path, name)| (path.to_owned(), name.as_str())).collect()
-    }
-
-    fn selections(&self) -> Vec<(String, &Where)> {
-        self.for_each.after([("/where", &self.r#where)])
-    }
-
-    fn pools(&self) -> Vec<Where> {
-        self.for_each.pools(|pins| [self.r#where.pinned(pins)])
+        let measured = there.map(|(path, name)| (path.to_owned(), name.as_str())).collect();
+        Scope::cell(measured, &self.r#where, &self.for_each)
     }
 
     fn check<'a>(&'a self, faults: &mut Faults<'a>) {
@@ -117,7 +111,7 @@ impl Form for Rate {
             });
             Draft { about, test: "bootstrap", cells, conditions, evidence, notes: Vec::new() }
         };
-        self.pools().into_iter().map(judged).collect()
+        self.scope().pools().into_iter().map(judged).collect()
     }
 }
 

@@ -13,10 +13,11 @@
 //!     baseline: [start, strategy]
 //! ```
 
-use super::agreement::Compared;
+use super::agreement::{Compared, compared};
 use super::declare::form;
 use super::form::Form;
 use super::pairing::{Pair, Point, clusters, printed};
+use super::scope::Scope;
 use crate::claims::cells::{Values, Where};
 use crate::claims::faults::Faults;
 use crate::claims::gather::{Bench, Draft, Evidence};
@@ -61,45 +62,20 @@ form! {
     }
 }
 
-impl Rmse {
-    fn compared(&self) -> Compared<'_> {
-        Compared {
-            metric: &self.metric,
-            published: &self.published,
-            scale: self.scale,
-            only: &self.r#where,
-            ratio_to: self.ratio_to.as_ref(),
-            minimum_n: self.minimum_n,
-        }
-    }
-}
-
 impl Form for Rmse {
-    /// What is counted are published cells: one of ours needs one run.
+    /// Returns the shared terms. What is counted are published cells: one of ours needs one run.
     fn terms(&self) -> Terms {
         Terms { minimum_runs: 1, ..self.shared_terms() }
     }
 
-    fn measured(&self) -> Vec<(String, &str)> {
-        self.metric.as_metrics()
-    }
-
-    fn published(&self) -> Option<&str> {
-        Some(&self.published)
-    }
-
-    fn selections(&self) -> Vec<(String, &Where)> {
-        self.compared().selections()
-    }
-
-    fn pools(&self) -> Vec<Where> {
-        vec![Where::default()]
+    fn scope(&self) -> Scope<'_> {
+        compared!(self).scope()
     }
 
     fn check<'a>(&'a self, faults: &mut Faults<'a>) {
         faults.margin("/scale", self.scale);
         faults.margin("/at-most", self.at_most);
-        self.compared().check(faults);
+        compared!(self).check(faults);
         faults.unless(self.ratio_to.is_none() || self.baseline.is_empty(), "/baseline", || {
             "skill over log ratios is counted over their mean; leave `baseline` out".to_owned()
         });
@@ -112,8 +88,7 @@ impl Form for Rmse {
 
     fn judge(&self, bench: &Bench<'_>) -> Vec<Draft> {
         let claimed = format!("root mean square difference at most {}", self.at_most);
-        let compared = self.compared();
-        compared.draft(bench, "bootstrap-over-cells", &claimed, |about, pairs, points| {
+        compared!(self).draft(bench, "bootstrap-over-cells", &claimed, |about, pairs, points| {
             Ok(match &self.ratio_to {
                 None => distance(bench, about, pairs, self),
                 Some(base) => distance_of_ratios(bench, about, points, base, self.at_most),
@@ -122,7 +97,7 @@ impl Form for Rmse {
     }
 }
 
-/// The root of the mean of `squares` with its interval, `clusters` of them drawn together.
+/// Returns the root of the mean of `squares` with its interval, `clusters` of them drawn together.
 fn resampled(
     bench: &Bench<'_>,
     about: &str,
@@ -150,7 +125,7 @@ fn resampled(
     )
 }
 
-/// Evidence that a root mean square difference is at most a bound, from its resamples.
+/// Weighs by its resamples whether a root mean square difference is at most a bound.
 fn bounded(found: &Bootstrapped, at_most: f64, statistics: Vec<(&'static str, f64)>) -> Evidence {
     let count =
         |holds: &dyn Fn(f64) -> bool| found.statistics.iter().filter(|&&x| holds(x)).count() as u64;
@@ -163,7 +138,7 @@ fn bounded(found: &Bootstrapped, at_most: f64, statistics: Vec<(&'static str, f6
     }
 }
 
-/// Log ratios: those with a base in common are one block, as whatever befell the base befell all of them.
+/// Weighs log ratios: those with a base in common are one block, as whatever befell the base befell all of them.
 fn distance_of_ratios(
     bench: &Bench<'_>,
     about: &str,
@@ -255,7 +230,7 @@ fn distance(bench: &Bench<'_>, about: &str, pairs: &[Pair], form: &Rmse) -> Evid
     bounded(&found, form.at_most, statistics)
 }
 
-/// For each pair the mean of `values` over the pairs that agree with it in `factors`.
+/// Returns for each pair the mean of `values` over the pairs that agree with it in `factors`.
 fn group_means(pairs: &[Pair], values: &[f64], factors: &[String]) -> Vec<f64> {
     let key = |pair: &Pair| -> Vec<Option<String>> {
         let pins = factors.iter().map(|f| pair.pins.get(f).cloned());
@@ -268,7 +243,7 @@ fn group_means(pairs: &[Pair], values: &[f64], factors: &[String]) -> Vec<f64> {
     pairs.iter().map(|pair| mean(&groups[&key(pair)])).collect()
 }
 
-/// Variance of the difference between the paper's cell and an exact replicate of it with our runs.
+/// Returns the variance of the difference between the paper's cell and an exact replicate of it with our runs.
 fn replicate_variance(pair: &Pair) -> Option<f64> {
     let variance = if pair.metric.is_share() {
         pair.published * (1.0 - pair.published)
@@ -278,7 +253,7 @@ fn replicate_variance(pair: &Pair) -> Option<f64> {
     Some(variance * (1.0 / real(pair.n?) + 1.0 / length(&pair.ours.values)))
 }
 
-/// Whether our mean lies where the paper's spread and runs put 95 % of replicates.
+/// Returns whether our mean lies where the paper's spread and runs put 95 % of replicates.
 fn predicted(pair: &Pair) -> Option<bool> {
     let n = pair.n?;
     if let Some(ours) = pair.ours.proportion {

@@ -15,6 +15,7 @@ use super::bounds::{Bounds, share_level};
 use super::condition::{That, conditioned};
 use super::declare::form;
 use super::form::Form;
+use super::scope::Scope;
 use crate::claims::cells::{ForEach, Where};
 use crate::claims::faults::Faults;
 use crate::claims::gather::{Bench, Draft};
@@ -50,21 +51,13 @@ impl Share {
 }
 
 impl Form for Share {
-    /// A run that never got there counts.
+    /// Returns the shared terms. A run that never got there counts.
     fn terms(&self) -> Terms {
         Terms { censored: Censored::Worst, ..self.shared_terms() }
     }
 
-    fn measured(&self) -> Vec<(String, &str)> {
-        self.that.measured()
-    }
-
-    fn selections(&self) -> Vec<(String, &Where)> {
-        self.for_each.after([("/where", &self.r#where)])
-    }
-
-    fn pools(&self) -> Vec<Where> {
-        self.for_each.pools(|pins| [self.r#where.pinned(pins)])
+    fn scope(&self) -> Scope<'_> {
+        Scope::cell(self.that.measured(), &self.r#where, &self.for_each)
     }
 
     fn ranks(&self) -> bool {
@@ -84,6 +77,6 @@ impl Form for Share {
                 share_level(share, bounds, bench.confidence())
             })
         };
-        self.pools().into_iter().map(judged).collect()
+        self.scope().pools().into_iter().map(judged).collect()
     }
 }

@@ -18,6 +18,7 @@
 
 use super::declare::form;
 use super::form::Form;
+use super::scope::Scope;
 use crate::claims::cannot_test::CannotTest;
 use crate::claims::cells::{ForEach, Values, Where};
 use crate::claims::faults::Faults;
@@ -71,21 +72,14 @@ pub enum Pairs {
 }
 
 impl Form for SignTest {
-    /// What is counted are pairs: a cell needs one run.
+    /// Returns the shared terms. What is counted are pairs: a cell needs one run.
     fn terms(&self) -> Terms {
         Terms { minimum_runs: 1, ..self.shared_terms() }
     }
 
-    fn measured(&self) -> Vec<(String, &str)> {
-        self.metric.as_metrics()
-    }
-
-    fn selections(&self) -> Vec<(String, &Where)> {
-        self.for_each.after([("/where", &self.r#where), ("/than", &self.than)])
-    }
-
-    fn pools(&self) -> Vec<Where> {
-        self.for_each.pools(|pins| [&self.r#where, &self.than].map(|cell| cell.pinned(pins)))
+    fn scope(&self) -> Scope<'_> {
+        let named = [("/where", &self.r#where), ("/than", &self.than)];
+        Scope::two_cells(&self.metric, named, &self.for_each)
     }
 
     fn ranks(&self) -> bool {

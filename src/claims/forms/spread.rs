@@ -17,6 +17,7 @@
 
 use super::declare::form;
 use super::form::Form;
+use super::scope::Scope;
 use crate::claims::cannot_test::CannotTest;
 use crate::claims::cells::{ForEach, Values, Where};
 use crate::claims::faults::Faults;
@@ -61,17 +62,10 @@ impl Form for Spread {
         self.shared_terms()
     }
 
-    fn measured(&self) -> Vec<(String, &str)> {
-        self.metric.as_metrics()
-    }
-
-    fn selections(&self) -> Vec<(String, &Where)> {
-        let named = [("/where", &self.r#where), ("/across", &self.across)];
-        self.for_each.after(named.into_iter().chain(self.than.as_ref().map(|cell| ("/than", cell))))
-    }
-
-    fn pools(&self) -> Vec<Where> {
-        self.for_each.pools(|pins| {
+    fn scope(&self) -> Scope<'_> {
+        let than = self.than.as_ref().map(|cell| ("/than", cell));
+        let named = [("/where", &self.r#where), ("/across", &self.across)].into_iter().chain(than);
+        Scope::repeated(self.metric.as_metrics(), named, &self.for_each, |pins| {
             let base = self.r#where.pinned(pins);
             let other = self.than.iter().map(|than| base.replaced(than));
             let pools = other.chain([base.clone()]).map(|cell| cell.replaced(&self.across));

@@ -20,6 +20,7 @@
 use super::declare::form;
 use super::difference::{directed, share_effect};
 use super::form::Form;
+use super::scope::Scope;
 use crate::claims::cannot_test::CannotTest;
 use crate::claims::cells::{ForEach, Values, Where};
 use crate::claims::faults::Faults;
@@ -90,19 +91,15 @@ impl Form for Trend {
         self.shared_terms()
     }
 
-    fn measured(&self) -> Vec<(String, &str)> {
-        self.metric.as_metrics()
-    }
-
-    fn selections(&self) -> Vec<(String, &Where)> {
+    fn scope(&self) -> Scope<'_> {
+        let first = ("/where".to_owned(), &self.r#where);
         let steps = self.along.iter().enumerate();
         let steps = steps.map(|(i, step)| (format!("/along/{i}/where"), &step.r#where));
-        let first = ("/where".to_owned(), &self.r#where);
-        [first].into_iter().chain(steps).chain(self.for_each.after([])).collect()
-    }
-
-    fn pools(&self) -> Vec<Where> {
-        self.for_each.pools(|pins| self.steps(&self.r#where.pinned(pins)))
+        let selections = [first].into_iter().chain(steps).chain(self.for_each.after([])).collect();
+        let repeated = Scope::repeated(self.metric.as_metrics(), [], &self.for_each, |pins| {
+            self.steps(&self.r#where.pinned(pins))
+        });
+        Scope { selections, ..repeated }
     }
 
     fn has_test(&self, test: Test) -> bool {

@@ -11,8 +11,8 @@
 //! ```
 
 use super::form::Form;
+use super::scope::Scope;
 use crate::claims::cannot_test::CannotTest;
-use crate::claims::cells::Where;
 use crate::claims::faults::Faults;
 use crate::claims::gather::{Bench, Draft};
 use crate::claims::terms::Terms;
@@ -32,20 +32,12 @@ impl Form for Untestable {
         Terms::default()
     }
 
-    fn measured(&self) -> Vec<(String, &str)> {
-        Vec::new()
+    fn scope(&self) -> Scope<'_> {
+        Scope::nothing()
     }
 
     fn needs_metric(&self) -> bool {
         false
-    }
-
-    fn selections(&self) -> Vec<(String, &Where)> {
-        Vec::new()
-    }
-
-    fn pools(&self) -> Vec<Where> {
-        Vec::new()
     }
 
     fn check<'a>(&'a self, faults: &mut Faults<'a>) {

@@ -40,14 +40,14 @@ impl std::fmt::Display for Run {
 }
 
 impl Run {
-    /// What `fresh` verdicts and records would have the table say of this run.
+    /// Returns this run as `fresh` verdicts and records would have the table say it.
     #[must_use]
     pub fn with(&self, fresh: &[ClaimVerdict], records: Sha256Digest) -> Self {
         let verdicts = fresh.iter().map(|verdict| (verdict.id.clone(), verdict.judgement));
         Self { verdicts: verdicts.collect(), records: Some(records), ..self.clone() }
     }
 
-    /// The first difference from what the same run gave elsewhere: what it gave there, and what this says.
+    /// Finds the first difference from what the same run gave elsewhere: what it gave there, and what this says.
     pub fn difference(&self, fresh: &Self) -> Option<(String, String)> {
         for (claim, judgement) in &self.verdicts {
             let again = fresh.verdicts.iter().find(|(id, _)| id == claim).map(|(_, j)| *j);
@@ -60,7 +60,7 @@ impl Run {
         (fresh != said).then(|| (format!("records sha256:{fresh}"), format!("sha256:{said}")))
     }
 
-    /// What `run --set` needs to do it again; `value_of` gives a setting's value as YAML by its path and its words.
+    /// Returns what `run --set` needs to do it again; `value_of` gives a setting's value as YAML by its path and its words.
     pub fn overrides(&self, value_of: &dyn Fn(&str, &str) -> String) -> Vec<String> {
         let mut set = vec!["sensitivity=null".to_owned(), format!("trials={}", self.trials)];
         if let Some((setting, tried)) = &self.moved {
@@ -125,7 +125,7 @@ impl Sensitivity {
         }
     }
 
-    /// Everything that was tried, in the order of the table.
+    /// Returns everything that was tried, in the order of the table.
     pub fn attempts(&self) -> Vec<Attempt> {
         let mut attempts: Vec<Attempt> = Vec::new();
         for row in &self.rows {
@@ -142,7 +142,7 @@ impl Sensitivity {
         attempts
     }
 
-    /// The runs that it rests on: the one at the chosen values first, then every attempt in the order of the table.
+    /// Returns the runs that it rests on: the one at the chosen values first, then every attempt in the order of the table.
     pub fn runs(&self) -> Vec<Run> {
         let mut runs: Vec<Run> = Vec::new();
         let mut add = |moved: Option<(String, String)>, row: &Row, judgement, records| {
@@ -165,7 +165,7 @@ impl Sensitivity {
         runs
     }
 
-    /// The verdicts that `attempt` changes.
+    /// Returns the verdicts that `attempt` changes.
     pub fn flips(&self, attempt: &Attempt) -> Vec<Flip> {
         let of_it = self.rows.iter().filter(|row| {
             row.setting == attempt.setting
@@ -178,7 +178,7 @@ impl Sensitivity {
             .collect()
     }
 
-    /// Ids of the claims that were judged.
+    /// Returns the ids of the claims that were judged.
     pub fn claims(&self) -> Vec<&str> {
         let mut claims: Vec<&str> = Vec::new();
         for row in &self.rows {

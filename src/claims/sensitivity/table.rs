@@ -24,7 +24,7 @@ const COLUMNS: [&str; 9] = [
 pub struct SensitivityError(String);
 
 impl Sensitivity {
-    /// One row per setting, value tried and claim.
+    /// Writes one row per setting, value tried and claim.
     pub fn to_csv(&self) -> String {
         let mut table = Table::new(COLUMNS);
         for row in &self.rows {
@@ -46,7 +46,7 @@ impl Sensitivity {
     /// Reads what [`Self::to_csv`] writes.
     ///
     /// # Errors
-    /// Where the text is no CSV, lacks a column, or a field is none of those that are written.
+    /// Where the text is no CSV, lacks a column, or a field holds what is never written there.
     pub fn from_csv(text: &str) -> Result<Self, SensitivityError> {
         let table = Table::from_csv(text).map_err(|e| SensitivityError(e.to_string()))?;
         // The first tables held no digests of runs.
@@ -102,7 +102,7 @@ impl Sensitivity {
         }
     }
 
-    /// The first row that says something else of a run than an earlier one, in words.
+    /// Finds the first row that says something else of a run than an earlier one, in words.
     fn contradiction(&self) -> Option<String> {
         let (mut records, mut verdicts) = (BTreeMap::new(), BTreeMap::new());
         for (i, row) in self.rows.iter().enumerate() {
@@ -135,7 +135,7 @@ impl Sensitivity {
 pub(super) mod tests {
     use super::*;
 
-    /// A table of three rows, with digests that begin with `a` for the chosen values.
+    /// Returns a table of three rows, with digests that begin with `a` for the chosen values.
     pub(in crate::claims) fn text() -> String {
         let digest = |first: &str| format!("{first}{}", "0".repeat(63));
         let row = |what: &str, tried: &str| format!("{what},{},{}\n", digest("a"), digest(tried));

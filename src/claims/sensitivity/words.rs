@@ -3,7 +3,7 @@
 use crate::table;
 use serde_json::Value;
 
-/// A setting's value as tables and pages write it: numbers shortest, texts without quotes.
+/// Writes a setting's value as tables and pages show it: numbers shortest, texts without quotes.
 pub fn in_words(value: &Value) -> String {
     match (value.as_f64(), value.as_str()) {
         (Some(number), _) => table::Value::from(number).to_string(),

@@ -191,7 +191,7 @@ fn trials_outside_of_a_claims_pools_cannot_matter() {
     let whole = Observations::read(&all).unwrap();
     let mut narrowed = 0;
     for claim in claims() {
-        let pools = claim.expect.as_form().pools();
+        let pools = claim.expect.as_form().scope().pools();
         let mut inside = all.clone();
         inside.rows.retain(|row| {
             let values: Vec<(&String, String)> =

@@ -3,7 +3,7 @@
 use crate::claims::verdict::{EffectSize, agreement_in_words};
 use crate::claims::{ClaimVerdict, Judgement, Score};
 
-/// The verdicts on a study's claims with their score, and those on the machine, which count for nothing; empty
+/// Lists the verdicts on a study's claims with their score, and those on the machine, which count for nothing; empty
 /// where nothing is claimed. A function of the verdicts alone: no lock changes what is printed.
 pub(super) fn in_words(verdicts: &[ClaimVerdict], machine: &[ClaimVerdict]) -> String {
     let mut text = String::new();
@@ -25,7 +25,7 @@ pub(super) fn in_words(verdicts: &[ClaimVerdict], machine: &[ClaimVerdict]) -> S
     text
 }
 
-/// What the paper says, and apart from it what we check besides; empty lists are left out.
+/// Lists what the paper says, and apart from it what we check besides; empty lists are left out.
 fn lists(titles: [&str; 2], verdicts: &[ClaimVerdict]) -> String {
     let (papers, ours): (Vec<&ClaimVerdict>, Vec<&ClaimVerdict>) =
         verdicts.iter().partition(|verdict| verdict.says.is_some());
