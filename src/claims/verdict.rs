@@ -349,4 +349,24 @@ mod tests {
         assert_eq!(told, "Pearson 0.60, skill over a constant -0.31");
         assert_eq!(agreement_in_words([("z", 2.0)]), "");
     }
+    #[test]
+    fn what_is_left_out_or_null_is_read_and_a_slip_is_refused() {
+        let read: ClaimVerdict = serde_json::from_value(json!({
+            "id": "P1", "verdict": "supported",
+            "comparisons": [{"verdict": "supported", "effect": {"name": "mean", "value": 1.5, "high": null}}],
+        }))
+        .unwrap();
+        let effect = read.comparisons[0].effect.as_ref().unwrap();
+        assert_eq!((effect.name.as_ref(), effect.value), ("mean", 1.5));
+        assert!(effect.low.is_nan() && effect.high.is_nan() && read.alpha.is_nan());
+        assert_eq!(json!(read)["comparisons"][0]["effect"]["high"], Value::Null);
+        for slip in [
+            json!({"id": "P1"}),
+            json!({"verdict": "supported"}),
+            json!({"id": "P1", "verdict": "maybe"}),
+            json!({"id": "P1", "verdict": "supported", "required": -1}),
+        ] {
+            assert!(serde_json::from_value::<ClaimVerdict>(slip.clone()).is_err(), "{slip}");
+        }
+    }
 }

@@ -14,14 +14,6 @@ pub enum Words {
 }
 
 impl Words {
-    /// Returns the key under which they stand.
-    pub fn key(&self) -> &'static str {
-        match self {
-            Self::Says(_) => "says",
-            Self::Ours(_) => "ours",
-        }
-    }
-
     /// Returns the words themselves.
     pub fn text(&self) -> &str {
         match self {

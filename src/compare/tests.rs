@@ -232,6 +232,23 @@ fn verdicts_and_rows_of_tables_are_compared_one_by_one() {
 }
 
 #[test]
+fn verdicts_that_are_none_are_refused_with_the_reason() {
+    let mut content = content_of(&sample::records());
+    let claims = content.results.iter_mut().find(|(path, _)| path == "claims.json").unwrap();
+    claims.1 = b"[{\"id\":\"P1\",\"verdict\":\"maybe\"}]\n".to_vec();
+    let sealed = seal(&content, &sample::circumstance()).unwrap();
+    let bundle = Bundle::read(&sealed.zip(Form::Bag), &Limits::default()).unwrap();
+    let faults = Account::of_bundle(&bundle).unwrap_err();
+    assert_eq!(
+        faults.iter().map(ToString::to_string).collect::<Vec<_>>(),
+        [
+            "data/results/claims.json: expected a list of verdicts, found {\"id\":\"P1\",\"verdict\":\"maybe\"} (unknown \
+          variant `maybe`, expected one of `supported`, `contradicted`, `inconclusive`, `cannot-be-tested`)"
+        ]
+    );
+}
+
+#[test]
 fn long_lists_are_capped_with_a_count() {
     let many: Vec<TrialRecord> = (0..40).map(|trial| sample::record(7, "none", trial)).collect();
     let mut later = many.clone();
