@@ -4,7 +4,7 @@ use super::inline_svg::inline_svg;
 use super::pack::base64;
 use super::template::{Template, render_in};
 use super::{ClaimRow, ReportContent, ReportTable};
-use crate::stats::compatibility::{Agreement, Closeness, Tally, rules};
+use crate::stats::compatibility::{Agreement, Band, Tally, rules};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -124,9 +124,9 @@ fn compared(cells: &[Agreement]) -> Vec<Compared> {
 /// The colour of a mark, which adds nothing to its shape.
 fn look(agreement: Agreement) -> &'static str {
     match agreement {
-        Agreement::Compatible(_) | Agreement::Near(Closeness::Within10, _) => "within",
-        Agreement::Near(Closeness::Within20, _) => "near",
-        Agreement::Apart(_) | Agreement::Near(Closeness::Farther, _) => "apart",
+        Agreement::Compatible(_) | Agreement::Near(Band::Within10, _) => "within",
+        Agreement::Near(Band::Within20, _) => "near",
+        Agreement::Apart(_) | Agreement::Near(Band::Farther, _) => "apart",
         Agreement::Silent(_) => "",
     }
 }

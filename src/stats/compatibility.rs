@@ -50,7 +50,7 @@ pub enum Method {
 
 /// The nearness of a number without spread.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Closeness {
+pub enum Band {
     /// Within 10 % of the printed value.
     Within10,
     /// Within 20 %.
@@ -90,7 +90,7 @@ pub enum Agreement {
     /// It does not.
     Apart(Evidence),
     /// No spread available: nearness, and the relative difference (percent), which a printed 0 has none of.
-    Near(Closeness, Option<f64>),
+    Near(Band, Option<f64>),
     /// Nothing to compare.
     Silent(Silence),
 }
@@ -174,9 +174,9 @@ impl Agreement {
         match self {
             Self::Compatible(_) => "\u{2713}",
             Self::Apart(_) => "\u{2260}",
-            Self::Near(Closeness::Within10, _) => "\u{2248}",
-            Self::Near(Closeness::Within20, _) => "~",
-            Self::Near(Closeness::Farther, _) => "\u{2249}",
+            Self::Near(Band::Within10, _) => "\u{2248}",
+            Self::Near(Band::Within20, _) => "~",
+            Self::Near(Band::Farther, _) => "\u{2249}",
             Self::Silent(_) => "",
         }
     }
@@ -186,9 +186,9 @@ impl Agreement {
         match self {
             Self::Compatible(_) => "compatible",
             Self::Apart(_) => "apart",
-            Self::Near(Closeness::Within10, _) => "within-10-percent",
-            Self::Near(Closeness::Within20, _) => "within-20-percent",
-            Self::Near(Closeness::Farther, _) => "farther",
+            Self::Near(Band::Within10, _) => "within-10-percent",
+            Self::Near(Band::Within20, _) => "within-20-percent",
+            Self::Near(Band::Farther, _) => "farther",
             Self::Silent(Silence::NotPrinted) => "not-printed",
             Self::Silent(Silence::NotInDesign) => "not-in-design",
             Self::Silent(Silence::NotRun) => "not-run",
@@ -214,9 +214,9 @@ impl Agreement {
         match self {
             Self::Compatible(_) => "compatible at 95 %",
             Self::Apart(_) => "not compatible at 95 %",
-            Self::Near(Closeness::Within10, _) => "within 10 % of it",
-            Self::Near(Closeness::Within20, _) => "within 20 % of it",
-            Self::Near(Closeness::Farther, _) => "farther than 20 % from it",
+            Self::Near(Band::Within10, _) => "within 10 % of it",
+            Self::Near(Band::Within20, _) => "within 20 % of it",
+            Self::Near(Band::Farther, _) => "farther than 20 % from it",
             Self::Silent(silence) => silence.words(),
         }
     }
@@ -296,11 +296,11 @@ impl Tally {
             Self {
                 method,
                 good: count(|a| {
-                    matches!(a, Agreement::Compatible(_) | Agreement::Near(Closeness::Within10, _))
+                    matches!(a, Agreement::Compatible(_) | Agreement::Near(Band::Within10, _))
                 }),
-                fair: count(|a| matches!(a, Agreement::Near(Closeness::Within20, _))),
+                fair: count(|a| matches!(a, Agreement::Near(Band::Within20, _))),
                 bad: count(|a| {
-                    matches!(a, Agreement::Apart(_) | Agreement::Near(Closeness::Farther, _))
+                    matches!(a, Agreement::Apart(_) | Agreement::Near(Band::Farther, _))
                 }),
             }
         };
@@ -345,11 +345,11 @@ fn near(ours: f64, printed: f64) -> Agreement {
     // Decimal numbers that lie exactly on a limit are within it.
     let within = |part: f64| distance <= part * printed.abs() * (1.0 + 1e-12);
     let closeness = if within(0.1) {
-        Closeness::Within10
+        Band::Within10
     } else if within(0.2) {
-        Closeness::Within20
+        Band::Within20
     } else {
-        Closeness::Farther
+        Band::Farther
     };
     let relative = (printed != 0.0).then(|| 100.0 * (ours - printed) / printed.abs());
     Agreement::Near(closeness, relative)

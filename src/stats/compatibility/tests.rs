@@ -66,16 +66,16 @@ fn numbers_without_spread_are_only_near_or_far() {
     for (sd, n) in [(None, Some(48)), (Some(2.0), None), (Some(2.0), Some(1)), (Some(0.0), Some(9))]
     {
         let near = |ours| Agreement::between(mean(ours, 12), printed(50.0, sd, n));
-        assert_eq!(near(55.0), Agreement::Near(Closeness::Within10, Some(10.0)));
-        assert_eq!(near(40.0), Agreement::Near(Closeness::Within20, Some(-20.0)));
-        assert_eq!(near(60.5), Agreement::Near(Closeness::Farther, Some(21.0)));
+        assert_eq!(near(55.0), Agreement::Near(Band::Within10, Some(10.0)));
+        assert_eq!(near(40.0), Agreement::Near(Band::Within20, Some(-20.0)));
+        assert_eq!(near(60.5), Agreement::Near(Band::Farther, Some(21.0)));
         assert_eq!(near(60.5).difference(), None);
     }
     let of_zero = |ours| Agreement::between(Ok(Ours::Bare(ours)), printed(0.0, None, None));
-    assert_eq!(of_zero(0.0), Agreement::Near(Closeness::Within10, None));
-    assert_eq!(of_zero(0.1), Agreement::Near(Closeness::Farther, None));
+    assert_eq!(of_zero(0.0), Agreement::Near(Band::Within10, None));
+    assert_eq!(of_zero(0.1), Agreement::Near(Band::Farther, None));
     let unknown = Agreement::between(share(1, 2), printed(50.0, None, None));
-    assert_eq!(unknown, Agreement::Near(Closeness::Within10, Some(0.0)));
+    assert_eq!(unknown, Agreement::Near(Band::Within10, Some(0.0)));
 }
 
 #[test]
@@ -100,9 +100,9 @@ fn every_answer_has_a_mark_a_name_and_words_of_its_own() {
     let all = [
         Agreement::Compatible(evidence),
         Agreement::Apart(evidence),
-        Agreement::Near(Closeness::Within10, None),
-        Agreement::Near(Closeness::Within20, None),
-        Agreement::Near(Closeness::Farther, None),
+        Agreement::Near(Band::Within10, None),
+        Agreement::Near(Band::Within20, None),
+        Agreement::Near(Band::Farther, None),
         Agreement::Silent(Silence::NotPrinted),
         Agreement::Silent(Silence::NotInDesign),
         Agreement::Silent(Silence::NotRun),
