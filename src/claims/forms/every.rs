@@ -55,7 +55,7 @@ impl Form for Every {
         self.that.check(faults);
     }
 
-    /// Counts. Nothing is estimated: a trial that does not meet the condition is there or not.
+    /// Counts the trials that do not meet the condition: nothing is estimated.
     fn judge(&self, bench: &Bench<'_>) -> Vec<Draft> {
         let judged = |cell: Where| {
             let about = format!("every trial with {}: ({cell})", self.that);
