@@ -4,6 +4,10 @@
 //! strings escaped as `serde_json` does. Injective: two values have the same text only if they are equal,
 //! because JSON delimits every part.
 
+mod as_written;
+
+pub use as_written::AsWritten;
+
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -21,7 +25,15 @@ pub fn canonical(value: &Value) -> String {
 /// Where `value` cannot be JSON at all (a map with non-string keys); non-finite floats become `null`,
 /// which resolution has ruled out before.
 pub fn canonical_of<T: Serialize>(value: &T) -> String {
-    canonical(&serde_json::to_value(value).expect("our own types serialise to JSON"))
+    canonical(&value_of(value))
+}
+
+/// Returns anything serialisable as plain JSON.
+///
+/// # Panics
+/// As [`canonical_of`].
+pub fn value_of<T: Serialize>(value: &T) -> Value {
+    serde_json::to_value(value).expect("our own types serialise to JSON")
 }
 
 /// Breaks canonical JSON into indented lines with a final line feed, for people and for line-wise tools; the text of
@@ -96,21 +108,35 @@ pub fn weight(text: &[u8]) -> u64 {
 /// The most memory (bytes) that a JSON document of unknown origin may take.
 const HEAVIEST: u64 = 64 << 20;
 
+/// Why a JSON document of unknown origin is not read.
+#[derive(Debug, thiserror::Error)]
+pub enum ReadError {
+    /// It would take more memory than any document that this program writes.
+    #[error(
+        "a document of {bytes} bytes that would take about {mebibytes} MiB of memory, more than the {} MiB allowed",
+        HEAVIEST >> 20
+    )]
+    TooHeavy {
+        /// Length of the text (bytes).
+        bytes: usize,
+        /// About how much memory it would take (MiB).
+        mebibytes: u64,
+    },
+    /// It is no JSON, or not of the type.
+    #[error(transparent)]
+    Other(#[from] serde_json::Error),
+}
+
 /// Reads JSON of unknown origin into a type that may hold a [`Value`].
 ///
 /// # Errors
-/// Where it is not that, or would take more memory than any document that this program writes.
-pub fn read<T: DeserializeOwned>(text: &[u8]) -> Result<T, String> {
+/// As [`ReadError`] says.
+pub fn read<T: DeserializeOwned>(text: &[u8]) -> Result<T, ReadError> {
     let weight = weight(text);
     if weight > HEAVIEST {
-        return Err(format!(
-            "a document of {} bytes that would take about {} MiB of memory, more than the {} MiB allowed",
-            text.len(),
-            weight >> 20,
-            HEAVIEST >> 20
-        ));
+        return Err(ReadError::TooHeavy { bytes: text.len(), mebibytes: weight >> 20 });
     }
-    serde_json::from_slice(text).map_err(|e| e.to_string())
+    Ok(serde_json::from_slice(text)?)
 }
 
 fn write(value: &Value, out: &mut String) {
@@ -196,11 +222,12 @@ mod tests {
         assert_eq!(weight(br#"{"a,{":[1,2,"\"{,"]}"#), 20 + 680 + 128 + 2 * 96);
         let bomb = format!("[{}0]", r#"{"":0},"#.repeat(100_000));
         assert_eq!(
-            read::<Value>(bomb.as_bytes()).unwrap_err(),
+            read::<Value>(bomb.as_bytes()).unwrap_err().to_string(),
             "a document of 700003 bytes that would take about 74 MiB of memory, more than the 64 MiB allowed"
         );
         assert_eq!(read::<Value>(b"[1]").unwrap(), json!([1]));
-        assert!(read::<Value>(b"[1").unwrap_err().starts_with("EOF while parsing a list"));
+        let torn = read::<Value>(b"[1").unwrap_err().to_string();
+        assert!(torn.starts_with("EOF while parsing a list"), "{torn}");
     }
 
     #[test]

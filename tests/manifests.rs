@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use reenact::bundle::assemble;
 use reenact::document::{Diagnostic, Source};
 use reenact::manifest::{self, Experiment, Inputs, Measured, WrittenIn};
-use reenact::plan::{ENGINE_VERSION, Plan, Selection};
+use reenact::plan::{ENGINE_VERSION, Plan, ResolvedStudy, Selection};
 use reenact::studies::{StudyKind, TrialRecord, TrialSpec};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -185,7 +185,7 @@ fn quickstart() -> Experiment {
 fn what_a_manifest_states_of_its_limits_is_sealed_and_nothing_where_it_states_none() {
     let resolved = |name| {
         let experiment = resolve_file("manifests", name).map_err(|f| told(&f)).unwrap().0;
-        experiment.resolved_json("1")
+        ResolvedStudy::of(&experiment, "1").to_json()
     };
     assert!(resolved("quickstart.yaml").get("limits").is_none());
     let limits = &resolved("prior-tables-11-12.yaml")["limits"];
@@ -209,7 +209,7 @@ fn the_quickstart_is_twenty_trials_in_two_conditions() {
     );
     let keys: std::collections::BTreeSet<_> = plan.trials.iter().map(|t| t.key).collect();
     assert_eq!(keys.len(), 20, "no two trials are the same");
-    let resolved = plan.resolved_text();
+    let resolved = plan.resolved().to_text();
     assert!(!resolved.contains(repository().to_str().unwrap()), "nothing of this machine");
 }
 
@@ -276,7 +276,7 @@ fn selections_keep_the_keys_of_what_they_keep() {
 #[test]
 fn the_resolved_study_writes_everything_out() {
     let plan = Plan::of(quickstart());
-    let resolved = plan.resolved_json();
+    let resolved = plan.resolved().to_json();
     assert_eq!(resolved["engine-version"], ENGINE_VERSION);
     assert_eq!(resolved["inputs"][1]["file"], "inputs/basic.yaml");
     assert_eq!(resolved["inputs"][1]["sha256"].as_str().map(str::len), Some(64));
@@ -352,7 +352,7 @@ fn generated_buildings_are_named_by_seeds_and_told_apart() {
     };
     assert_eq!(meanings, [own(0), own(1), own(2)]);
     let plan = Plan::of(experiment);
-    let described = &plan.resolved_json()["conditions"][2]["described"]["world"];
+    let described = &plan.resolved().to_json()["conditions"][2]["described"]["world"];
     assert_eq!(described.to_string(), r#"{"generate":{"family":"office-floor","seed":2}}"#);
 
     // A number and a factor's value are the same seed, so the building is the same.

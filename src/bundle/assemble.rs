@@ -4,6 +4,7 @@
 use super::content::{Author, BundleContent, Citation, SealedCondition, SealedInput};
 use super::{figures, format, wall_time};
 use crate::claims::{self, ClaimVerdict, Observations};
+use crate::json::AsWritten;
 use crate::manifest::{Input, InputKind};
 use crate::plan::{ENGINE_VERSION, Plan, Selection};
 use crate::studies::{Dictionary, Findings, Outcome, TableLayout, TrialRecord, coverage_tables};
@@ -33,11 +34,9 @@ pub fn assemble_judged(
     verdicts: &[ClaimVerdict],
 ) -> BundleContent {
     let experiment = &plan.experiment;
-    let mut resolved = plan.resolved_json();
-    if plan.partial
-        && let Value::Object(map) = &mut resolved
-    {
-        map.insert("selection".to_owned(), selection.to_json());
+    let mut resolved = plan.resolved();
+    if plan.partial {
+        resolved.selection = AsWritten::of(selection);
     }
     let inputs = experiment.inputs.iter().map(|input| SealedInput {
         name: input.name.clone(),

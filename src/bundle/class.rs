@@ -2,6 +2,7 @@
 //! that `docs/bundle-format.md` prints; a file in none of its rows is no bundle's.
 
 use super::{Bundle, format};
+use crate::manifest::WrittenIn;
 
 /// Whose word a file is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -32,7 +33,7 @@ enum Which {
     /// All below this folder whose name ends like that.
     Under(&'static str, &'static str),
     /// Inputs that were made by this: `written-in` of the resolved study.
-    Made(&'static str),
+    Made(WrittenIn),
     /// The other inputs.
     Inputs,
     /// The table of verdicts at other values of the assumptions.
@@ -66,11 +67,11 @@ const TABLE: &[Row] = &[
         "runs at other values of the assumptions: rows that are drawn",
     ),
     Row(
-        Which::Made("calibration"),
+        Which::Made(WrittenIn::Calibration),
         Class::Derived(5),
         "passages of the calibration; the pairs already at level 3, from the passages",
     ),
-    Row(Which::Made("previous-map"), Class::Derived(5), "earlier explorations"),
+    Row(Which::Made(WrittenIn::PreviousMap), Class::Derived(5), "earlier explorations"),
     Row(Which::Inputs, Class::Given, "robots, worlds, images, settings, published tables"),
     Row(
         Which::Under("data/trials/", ".jsonl"),
@@ -123,10 +124,10 @@ fn fits(which: &Which, bundle: &Bundle, path: &str) -> bool {
     match which {
         Which::File(name) => path == *name,
         Which::Under(folder, ending) => path.starts_with(folder) && path.ends_with(ending),
-        Which::Made(by) => input.is_some_and(|input| input["written-in"] == *by),
+        Which::Made(by) => input.is_some_and(|input| input.written_in == *by),
         Which::Robustness => {
-            let named = bundle.resolved()["sensitivity"].as_str();
-            input.is_some_and(|input| named.is_some() && input["as-written"].as_str() == named)
+            let named = bundle.resolved().sensitivity.read();
+            input.is_some_and(|input| named.is_ok_and(|named| input.as_written == named))
         }
         Which::Inputs => bundle.inputs().iter().any(|input| input.path == in_payload),
     }
@@ -140,7 +141,7 @@ pub fn table_in_markdown() -> String {
         let files = match which {
             Which::File(name) => format!("`{name}`"),
             Which::Under(folder, ending) => format!("`{folder}*{ending}`"),
-            Which::Made("calibration") => {
+            Which::Made(WrittenIn::Calibration) => {
                 "`data/inputs/*.passages.csv`, `*.maneuvers.csv`".to_owned()
             }
             Which::Made(_) => "`data/inputs/previous-map-*`".to_owned(),

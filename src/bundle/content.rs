@@ -3,6 +3,7 @@
 use super::{Moment, names};
 use crate::digest::FileDigest;
 use crate::digest::Sha256Digest;
+use crate::plan::ResolvedStudy;
 use crate::table::DescribedTable;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -28,7 +29,7 @@ pub struct BundleContent {
     /// The manifest, byte for byte.
     pub study_yaml: Vec<u8>,
     /// The manifest with every default, override and factor written out.
-    pub resolved: serde_json::Value,
+    pub resolved: ResolvedStudy,
     /// Every file the manifest names, directly or through another.
     pub inputs: Vec<SealedInput>,
     /// The records, by condition in plan order.

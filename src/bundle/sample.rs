@@ -5,6 +5,7 @@ use super::{
     bag, format, seal, seal_inputs,
 };
 use crate::digest::{Sha256Digest, TrialKey};
+use crate::plan::ResolvedStudy;
 use crate::studies::{Outcome, TrialRecord};
 use crate::table::{Column, DescribedTable, Table};
 use std::io::{Cursor, Write as _};
@@ -92,6 +93,11 @@ pub(crate) fn tables() -> Vec<DescribedTable> {
     ]
 }
 
+/// A resolved study that says no more than `document`.
+pub(crate) fn resolved(document: serde_json::Value) -> ResolvedStudy {
+    serde_json::from_value(document).unwrap()
+}
+
 /// The content that sealing the sample study with `records` (by condition) yields.
 pub(crate) fn content_of(
     study_yaml: &[u8],
@@ -117,7 +123,7 @@ pub(crate) fn content_of(
         seed,
         engine: ENGINE.into(),
         study_yaml: study_yaml.to_vec(),
-        resolved: serde_json::json!({"seed": seed, "parameters": {"range-m": 8.5}}),
+        resolved: resolved(serde_json::json!({"seed": seed, "parameters": {"range-m": 8.5}})),
         inputs: seal_inputs([
             ("../worlds/a.yaml".into(), b"walls: [1]\n".to_vec(), None),
             (

@@ -1,6 +1,7 @@
 //! What was asked, as paths and values: any study's resolved JSON, without knowing which study it is.
 
-use crate::json;
+use crate::json::{self, AsWritten};
+use crate::plan::{ResolvedStudy, StudyCondition};
 use serde_json::Value;
 use std::collections::BTreeMap;
 
@@ -16,28 +17,32 @@ pub struct Settings {
     pub conditions: BTreeMap<String, BTreeMap<String, Value>>,
 }
 
-/// Compared apart from settings: digests of inputs, the engine, and what only names the document.
-const NOT_SETTINGS: [&str; 5] = ["reenact", "engine-version", "name", "inputs", "conditions"];
-
 /// What of the whole study moves trials, and so belongs in a lock; the rest is words, and what is made of trials.
 const OF_TRIALS: [&str; 5] = ["study", "seed", "shared-noise", "trials", "overrides"];
 
 impl Settings {
     /// Reads the settings of the resolved study `resolved` (`study` in `study.resolved.json`).
-    pub fn of(resolved: &Value) -> Self {
+    pub fn of(resolved: &ResolvedStudy) -> Self {
         let mut settings = Self::default();
-        for (key, value) in
-            entries(resolved).filter(|(key, _)| !NOT_SETTINGS.contains(&key.as_str()))
-        {
-            flatten(key, value, &mut settings.study);
-        }
-        for condition in resolved["conditions"].as_array().into_iter().flatten() {
-            let Some(slug) = condition["slug"].as_str() else { continue };
-            let values = settings.conditions.entry(slug.to_owned()).or_default();
-            let own = |(key, _): &(&String, &Value)| !["slug", "condition"].contains(&key.as_str());
-            for (key, value) in entries(condition).filter(own) {
-                flatten(key, value, values);
-            }
+        // Compared apart from settings: digests of inputs, the engine, and what only names the document.
+        let rest = ResolvedStudy {
+            reenact: AsWritten::default(),
+            engine_version: AsWritten::default(),
+            name: AsWritten::default(),
+            inputs: AsWritten::default(),
+            conditions: AsWritten::default(),
+            ..resolved.clone()
+        };
+        flatten_each(&json::value_of(&rest), &mut settings.study);
+        for condition in resolved.conditions.read().unwrap_or_default() {
+            let Ok(slug) = condition.slug.read() else { continue };
+            let values = settings.conditions.entry(slug).or_default();
+            let rest = StudyCondition {
+                slug: AsWritten::default(),
+                condition: AsWritten::default(),
+                ..condition
+            };
+            flatten_each(&json::value_of(&rest), values);
         }
         settings
     }
@@ -69,8 +74,11 @@ pub(super) fn same(a: &Value, b: &Value) -> bool {
     a == b || json::canonical(a) == json::canonical(b)
 }
 
-fn entries(value: &Value) -> impl Iterator<Item = (&String, &Value)> {
-    value.as_object().into_iter().flatten()
+/// Flattens every entry of `value` under its own key.
+fn flatten_each(value: &Value, into: &mut Values) {
+    for (key, value) in value.as_object().into_iter().flatten() {
+        flatten(key, value, into);
+    }
 }
 
 /// Adds one path a leaf. Items of a list are named by what identifies them, so that one more in the middle is one change.
@@ -107,14 +115,15 @@ mod tests {
 
     #[test]
     fn a_study_is_paths_and_values_and_lists_are_named() {
-        let settings = Settings::of(&json!({
+        let document = json!({
             "engine-version": "1", "inputs": [{"as-written": "a"}], "seed": 7, "title": "T", "shared-noise": ["a", "b"],
             "claims": [{"id": "D1", "says": "x"}, {"id": "D2", "says": "y"}], "tables": [{"by": 1}, {"by": 2}],
             "conditions": [
                 {"slug": "none", "condition": {"p": "none"}, "parameters": {"range-m": 9, "n": {}}, "prior": null},
                 {"slug": "plan", "condition": {"p": "plan"}, "parameters": {"range-m": 9.0, "n": {}}, "prior": "x"},
             ],
-        }));
+        });
+        let settings = Settings::of(&serde_json::from_value(document).unwrap());
         let shown = |values: &Values| {
             values
                 .iter()

@@ -2,6 +2,8 @@ use super::*;
 use crate::bundle::{Bundle, BundleContent, Circumstance, Form, Limits, Moment, sample, seal};
 use crate::digest::Sha256Digest;
 use crate::document::Source;
+use crate::json::AsWritten;
+use crate::plan::ResolvedStudy;
 use crate::studies::TrialRecord;
 use serde_json::json;
 
@@ -18,10 +20,12 @@ fn content_of(conditions: &[(&str, Vec<TrialRecord>)]) -> BundleContent {
     content
 }
 
-fn resolved(range: f64) -> serde_json::Value {
+fn resolved(range: f64) -> ResolvedStudy {
     let condition =
         |slug: &str| json!({"slug": slug, "parameters": {"range-m": range}, "prior": slug});
-    json!({"seed": 7, "title": "T", "conditions": [condition("none"), condition("floor-plan")]})
+    sample::resolved(
+        json!({"seed": 7, "title": "T", "conditions": [condition("none"), condition("floor-plan")]}),
+    )
 }
 
 fn sample_account() -> Account {
@@ -156,8 +160,8 @@ fn another_engine_seed_and_setting_are_matched_by_number_and_told_as_causes() {
     let mut content = content_of(&other);
     content.engine = "test-2".to_owned();
     content.resolved = resolved(9.0);
-    content.resolved["seed"] = 8.into();
-    content.resolved["title"] = "U".into();
+    content.resolved.seed = AsWritten::of(&8);
+    content.resolved.title = AsWritten::of(&"U".to_owned());
     content.inputs[0].bytes = b"walls: [2]\n".to_vec();
     let comparison = whole(&sample_account(), &account(&content), &[]);
     assert_eq!(comparison.matching, Matching { by_key: 0, by_number: 6 });

@@ -5,14 +5,13 @@ use super::input::Input;
 use super::names::Factor;
 use crate::claims::{Claim, Sensitivity};
 use crate::digest::MeaningDigest;
-use crate::document::{Node, Tree};
-use crate::json;
+use crate::document::Tree;
 use crate::studies::deadline::Passages;
 use crate::studies::{Condition, Setup, StudyKind};
 use crate::studies::{FigureRequest, TableRequest};
 use crate::table::Table;
-use serde::Serialize;
-use serde_json::{Map, Value, json};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -46,7 +45,7 @@ pub struct Experiment {
     /// The paper's own numbers, by name.
     pub published: BTreeMap<String, Table>,
     /// The file each of them comes from, as written.
-    pub(super) published_files: BTreeMap<String, String>,
+    pub published_files: BTreeMap<String, String>,
     /// Tables to produce.
     pub tables: Vec<TableRequest>,
     /// Figures to produce.
@@ -77,7 +76,7 @@ pub struct ResolvedCondition {
     /// What its things mean.
     pub meanings: Meanings,
     /// What it was resolved from, for people.
-    pub(super) described: Value,
+    pub described: Value,
 }
 
 /// What `reenact vary` found, and where it is written.
@@ -101,7 +100,7 @@ pub struct CalibrationRun {
 }
 
 /// A parameter that the paper leaves open.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Assumption {
     /// Its path in the manifest (`parameters.mapping.resolution-m`).
     pub path: String,
@@ -110,12 +109,12 @@ pub struct Assumption {
     /// Why it was chosen.
     pub why: String,
     /// Other values that could as well have been chosen; empty where the manifest states none.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub range: Vec<Value>,
 }
 
 /// Digests of what a condition's things mean, whatever their files look like.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Meanings {
     /// The robot.
     pub robot: MeaningDigest,
@@ -130,86 +129,4 @@ impl Experiment {
     pub fn design(&self) -> impl Iterator<Item = (&Condition, &Setup)> + Clone {
         self.conditions.iter().map(|resolved| (&resolved.condition, &resolved.setup))
     }
-
-    /// Everything as resolved, the content of `study.resolved.json`: nothing of this machine is in it.
-    pub fn resolved_json(&self, engine_version: &str) -> Value {
-        let conditions: Vec<Value> = self
-            .conditions
-            .iter()
-            .map(|ResolvedCondition { condition, setup, meanings, described }| {
-                let start = setup.start();
-                let mut entry = json!({
-                    "condition": levels(condition),
-                    "slug": condition.slug(),
-                    "described": described,
-                    "meanings": meanings,
-                    "start": {
-                        "x-m": start.x,
-                        "y-m": start.y,
-                        "heading-rad": start.heading,
-                    },
-                    "parameters": setup.parameters(),
-                });
-                if let Value::Object(entry) = &mut entry {
-                    entry.extend(setup.further());
-                }
-                entry
-            })
-            .collect();
-        let inputs: Vec<Value> = self
-            .inputs
-            .iter()
-            .map(|input| {
-                json!({
-                    "as-written": input.as_written,
-                    "written-in": input.written_in,
-                    "file": format!("inputs/{}", input.name),
-                    "sha256": input.digest,
-                    "license": input.license,
-                })
-            })
-            .collect();
-        let mut resolved = json!({
-            "reenact": 1,
-            "engine-version": engine_version,
-            "name": self.name,
-            "title": self.title,
-            "cite": self.cite,
-            "authors": self.authors,
-            "license": self.license,
-            "study": self.kind,
-            "seed": self.seed,
-            "trials": self.trials,
-            "shared-noise": self.shared_noise,
-            "factors": self.factors,
-            "conditions": conditions,
-            "published": self.published_files,
-            "tables": self.tables,
-            "figures": self.figures,
-            "claims": self.document.node("/claims").map_or_else(|| json!([]), Node::to_json),
-            "assumptions": self.assumptions,
-            "overrides": self.overrides,
-            "inputs": inputs,
-        });
-        // Studies that state none are resolved as they were before there was this key.
-        if let (Value::Object(map), false) = (&mut resolved, self.limits.is_empty()) {
-            map.insert("limits".to_owned(), json!(self.limits));
-        }
-        if let (Value::Object(map), Some(known)) = (&mut resolved, &self.sensitivity) {
-            map.insert("sensitivity".to_owned(), json!(known.as_written));
-        }
-        resolved
-    }
-
-    /// [`Self::resolved_json`] as its one canonical text, with a final line feed.
-    pub fn resolved_text(&self, engine_version: &str) -> String {
-        let mut text = json::canonical(&self.resolved_json(engine_version));
-        text.push('\n');
-        text
-    }
-}
-
-/// A condition as a JSON object.
-pub(super) fn levels(condition: &Condition) -> Map<String, Value> {
-    condition.0.iter().map(|(name, value)| (name.clone(), Value::from(value.clone()))).collect()
 }

@@ -6,7 +6,7 @@ use crate::studies::FactorValue;
 use std::collections::BTreeSet;
 
 /// A factor with all values it takes anywhere, in the order written.
-#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Factor {
     /// Its name.
     pub name: String,

@@ -1,12 +1,12 @@
 //! The trials of an experiment, in plan order.
 
 use super::key::{ENGINE_VERSION, explain, key_content, key_of, study_digest};
+use super::resolved::ResolvedStudy;
 use super::selection::{Selection, SelectionError};
 use crate::digest::StudyDigest;
 use crate::manifest::{Experiment, ResolvedCondition};
 use crate::rng::Seeds;
 use crate::studies::{Condition, TrialSpec};
-use serde_json::Value;
 
 /// An experiment and its trials: condition by condition, trial by trial.
 #[derive(Debug, Clone)]
@@ -102,14 +102,9 @@ impl Plan {
         explain(&self.experiment, spec)
     }
 
-    /// The content of `study.resolved.json`.
-    pub fn resolved_json(&self) -> Value {
-        self.experiment.resolved_json(ENGINE_VERSION)
-    }
-
-    /// The text of `study.resolved.json`.
-    pub fn resolved_text(&self) -> String {
-        self.experiment.resolved_text(ENGINE_VERSION)
+    /// Returns the resolved study: what was asked with nothing left to guess.
+    pub fn resolved(&self) -> ResolvedStudy {
+        ResolvedStudy::of(&self.experiment, ENGINE_VERSION)
     }
 
     /// Digest of what was asked.

@@ -4,11 +4,13 @@
 //! comments, order of keys, layouts of files and the number of trials planned are not part of it: a trial that
 //! means the same has the same key, whoever planned it.
 
+use super::resolved::ResolvedStudy;
 use crate::digest::{Sha256Digest, StudyDigest, TrialKey};
 use crate::json;
 use crate::manifest::{Experiment, Meanings};
 use crate::studies::{Condition, Setup, StudyKind, TrialSpec};
 use serde_json::{Value, json};
+use std::collections::BTreeMap;
 
 /// Version of everything that turns a trial's content into its bytes. Raised whenever any trial's record
 /// changes; the golden digests in `tests/` fail when that is forgotten.
@@ -40,14 +42,12 @@ pub fn key_content(
     let start = setup.start();
     let mut shared: Vec<&String> = shared_noise.iter().collect();
     shared.sort();
-    let levels: serde_json::Map<String, Value> =
-        condition.0.iter().map(|(name, value)| (name.clone(), json!(value))).collect();
     let mut content = json!({
         "engine-version": ENGINE_VERSION,
         "study": kind.name(),
         "seed": seed,
         "shared-noise": shared,
-        "condition": levels,
+        "condition": levels(condition),
         "trial": trial,
         "robot": meanings.robot,
         "world": meanings.world,
@@ -61,6 +61,11 @@ pub fn key_content(
     content
 }
 
+/// Returns the value of every factor, by its name.
+pub(super) fn levels(condition: &Condition) -> BTreeMap<String, String> {
+    condition.0.iter().cloned().collect()
+}
+
 /// The key of that content.
 pub(super) fn key_of(content: &Value) -> TrialKey {
     TrialKey(Sha256Digest::of(json::canonical(content)))
@@ -68,7 +73,7 @@ pub(super) fn key_of(content: &Value) -> TrialKey {
 
 /// What was asked: digest of `study.resolved.json`, and so of the manifest's meaning and all input files.
 pub fn study_digest(experiment: &Experiment) -> StudyDigest {
-    StudyDigest(Sha256Digest::of(experiment.resolved_text(ENGINE_VERSION)))
+    StudyDigest(Sha256Digest::of(ResolvedStudy::of(experiment, ENGINE_VERSION).to_text()))
 }
 
 /// The content of a trial's key in lines that two people can compare.

@@ -3,9 +3,10 @@
 use crate::document::suggestion;
 use crate::manifest::Experiment;
 use crate::studies::Condition;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// A part of a plan; the default is all of it.
+/// A part of a plan; the default is all of it. A resolved study keeps it in this form.
 ///
 /// ```
 /// use reenact::plan::Selection;
@@ -16,7 +17,8 @@ use std::collections::BTreeMap;
 /// let refused = Selection::parse(&[], None, Some("5/4")).unwrap_err();
 /// assert_eq!(refused.to_string(), "`--shard 5/4` is not I/N with I from 1 to N");
 /// ```
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "Written")]
 pub struct Selection {
     /// Factor to the values that are wanted; factors that are absent are not restricted.
     pub only: BTreeMap<String, Vec<String>>,
@@ -59,6 +61,32 @@ pub enum SelectionError {
     /// Nothing is left.
     #[error("no condition has all the values of `--only`")]
     Nothing,
+}
+
+/// A selection of unknown origin.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Written {
+    only: BTreeMap<String, Vec<String>>,
+    trials: Option<u32>,
+    shard: Option<(u32, u32)>,
+}
+
+/// A shard that is none of its plan.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("no shard {0} of {1}")]
+struct NoShard(u32, u32);
+
+impl TryFrom<Written> for Selection {
+    type Error = NoShard;
+
+    fn try_from(written: Written) -> Result<Self, NoShard> {
+        let Written { only, trials, shard } = written;
+        match shard {
+            Some((i, n)) if i == 0 || i > n => Err(NoShard(i, n)),
+            _ => Ok(Self { only, trials, shard }),
+        }
+    }
 }
 
 impl Selection {
@@ -105,31 +133,6 @@ impl Selection {
         let trials = self.trials.map(|trials| ["--trials".to_owned(), trials.to_string()]);
         let shard = self.shard.map(|(i, n)| ["--shard".to_owned(), format!("{i}/{n}")]);
         only.chain(trials).chain(shard).flatten().collect()
-    }
-
-    /// The selection as a bundle keeps it.
-    pub fn to_json(&self) -> serde_json::Value {
-        serde_json::json!({"only": self.only, "trials": self.trials, "shard": self.shard})
-    }
-
-    /// Reads what [`Self::to_json`] wrote.
-    ///
-    /// # Errors
-    /// Where it is something else, in words.
-    pub fn from_json(written: &serde_json::Value) -> Result<Self, String> {
-        #[derive(serde::Deserialize)]
-        #[serde(deny_unknown_fields)]
-        struct Written {
-            only: BTreeMap<String, Vec<String>>,
-            trials: Option<u32>,
-            shard: Option<(u32, u32)>,
-        }
-        let Written { only, trials, shard } =
-            serde_json::from_value(written.clone()).map_err(|e| format!("selection: {e}"))?;
-        match shard {
-            Some((i, n)) if i == 0 || i > n => Err(format!("selection: no shard {i} of {n}")),
-            _ => Ok(Self { only, trials, shard }),
-        }
     }
 
     /// Whether anything of a plan is left out (or, with `--trials`, changed).

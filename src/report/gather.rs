@@ -80,7 +80,7 @@ fn headline(bundle: &Bundle, plan: &Plan, records: &[TrialRecord]) -> Headline {
     }
     outcomes.sort_by(|a, b| b.count.cmp(&a.count).then(a.name.cmp(&b.name)));
     Headline {
-        study: plan.resolved_json()["study"].as_str().unwrap_or_default().to_owned(),
+        study: plan.experiment.kind.name().to_owned(),
         trials: records.len() as u64,
         conditions: bundle.conditions().len() as u64,
         outcomes,

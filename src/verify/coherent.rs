@@ -53,7 +53,7 @@ pub(super) fn crate_metadata(tree: &Tree) -> Vec<Fault> {
     let graph = tree
         .get(&metadata)
         .ok_or_else(|| "no file".to_owned())
-        .and_then(|bytes| json::read::<Value>(bytes))
+        .and_then(|bytes| json::read::<Value>(bytes).map_err(|e| e.to_string()))
         .and_then(|mut document| match document.get_mut("@graph").map(Value::take) {
             Some(Value::Array(entities)) => Ok(entities),
             _ => Err("no graph".to_owned()),

@@ -69,13 +69,14 @@ fn plan_with(
     bundle: &Bundle,
     fresh: Option<(u64, &Study<'_>)>,
 ) -> Result<(Plan, Selection), String> {
-    let study = bundle.resolved();
     let (source, mut overrides) = written(bundle)?;
     // As `run --set seed=S` would have it: the last override counts.
     overrides.extend(fresh.map(|(seed, _)| format!("seed={seed}")));
-    let selection = match study.get("selection") {
-        Some(written) => Selection::from_json(written)?,
-        None => Selection::default(),
+    let written = &bundle.resolved().selection;
+    let selection = if written.is_absent() {
+        Selection::default()
+    } else {
+        written.read().map_err(|e| format!("selection: {e}"))?
     };
     let inputs: &dyn Inputs = match fresh {
         Some((seed, study)) => &Afresh::seeded(bundle, seed, study),
@@ -99,8 +100,7 @@ fn plan_with(
 
 /// The manifest in `bundle` and what was overridden in it.
 fn written(bundle: &Bundle) -> Result<(Source, Vec<String>), String> {
-    let overrides = serde_json::from_value(bundle.resolved()["overrides"].clone())
-        .map_err(|e| format!("overrides: {e}"))?;
+    let overrides = bundle.resolved().overrides.read().map_err(|e| format!("overrides: {e}"))?;
     let text = std::str::from_utf8(bundle.study_yaml())
         .map_err(|_| "study.yaml is not UTF-8 text".to_owned())?;
     Ok((Source::new("study.yaml", text), overrides))

@@ -126,7 +126,7 @@ pub(super) fn check(
             .hint("no claim is judged on a part, so there is no verdict to replicate");
         return obstacle(fault);
     }
-    if bundle.resolved()["seed"].as_u64() == Some(seed) {
+    if bundle.resolved().seed.read().ok() == Some(seed) {
         let fault =
             Fault::new(resolved, "a seed that the study was not run with", seed.to_string()).hint(
                 "the same seed gives the same trials; choose another `--sample-seed`, or none",

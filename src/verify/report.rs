@@ -4,7 +4,6 @@ use super::{Attestation, Finding, Level, Report, Severity, Verdict};
 use crate::bundle::{Departure, visible};
 use crate::figure::svg::escape;
 use crate::json;
-use crate::plan::Selection;
 use serde_json::{Value, json};
 
 impl Report {
@@ -217,7 +216,7 @@ impl Report {
     /// Which part was run, where it was a part.
     fn selection(&self) -> Option<Value> {
         let departure = self.departure.as_ref().filter(|departure| departure.partial)?;
-        departure.selection.as_ref().map(Selection::to_json)
+        departure.selection.as_ref().map(json::value_of)
     }
 
     fn attested(&self) -> Option<&Attestation> {

@@ -62,7 +62,7 @@ impl Envelope {
             return Err(fault(&expected, "more".to_owned()));
         }
         let written: Written = json::read(bytes).map_err(|problem| {
-            fault("a DSSE envelope, which `reenact verify --attest` writes", problem)
+            fault("a DSSE envelope, which `reenact verify --attest` writes", problem.to_string())
         })?;
         if written.payload_type != PAYLOAD_TYPE {
             let expected = format!("the payload type `{PAYLOAD_TYPE}`");

@@ -12,6 +12,7 @@ pub use reading::Attestation;
 
 use super::{EarlierAgain, Report, Verdict};
 use crate::bundle::{Moment, format};
+use crate::json;
 use statement::{Digests, Note, Predicate, Replicated, Rung, Sampled, Statement, Subject};
 
 /// The most bytes that an envelope may have.
@@ -62,7 +63,7 @@ impl Report {
             study: self.name.clone().unwrap_or_default(),
             partial: departure.partial,
             overrides: departure.overrides.clone(),
-            selection: departure.selection.as_ref().map(crate::plan::Selection::to_json),
+            selection: departure.selection.as_ref().map(json::value_of),
             verdict: statement::HOLDS.to_owned(),
             level: level.number(),
             level_name: level.name().to_owned(),

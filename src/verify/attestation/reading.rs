@@ -181,7 +181,7 @@ fn read(
     let not_one = |problem: String| {
         Fault::new(name, format!("a Statement of in-toto ({STATEMENT})"), problem)
     };
-    let head: Head = json::read(&envelope.payload).map_err(not_one)?;
+    let head: Head = json::read(&envelope.payload).map_err(|e| not_one(e.to_string()))?;
     if head.kind != STATEMENT {
         return Err(not_one(format!("`{}`", head.kind)));
     }
@@ -191,8 +191,9 @@ fn read(
         let fault = Fault::new(name, format!("a predicate of the type {ours}"), found);
         return Err(fault.hint("it says something else than how far a bundle was checked"));
     }
-    let statement = json::read(&envelope.payload)
-        .map_err(|problem| Fault::new(name, format!("a predicate of the type {ours}"), problem))?;
+    let statement = json::read(&envelope.payload).map_err(|problem| {
+        Fault::new(name, format!("a predicate of the type {ours}"), problem.to_string())
+    })?;
     Ok((signed, others, statement))
 }
 
