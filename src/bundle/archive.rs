@@ -13,7 +13,8 @@ use self::layout::Directory;
 use self::told::Faults;
 pub use self::told::told;
 use self::unpack::unpack;
-use super::{Fault, Tree, format, names};
+use super::path::PAYLOAD;
+use super::{BundlePath, Fault, Tree, format, in_payload, names};
 use std::collections::BTreeSet;
 use std::io::{Cursor, Write as _};
 use zip::write::SimpleFileOptions;
@@ -65,12 +66,12 @@ pub struct Archive {
 /// Fixed dates, permissions and compression, and each file compressed in one piece: equal trees give equal bytes.
 pub fn write(tree: &Tree, root: &str, form: Form) -> Vec<u8> {
     let mut order: Vec<(&String, &Vec<u8>)> = tree.iter().collect();
-    order.sort_by_key(|(path, _)| (path.starts_with(format::PAYLOAD), *path != format::BAGIT));
+    order.sort_by_key(|(path, _)| (in_payload(path).is_some(), *path != format::BAGIT));
     let named = order.into_iter().filter_map(|(path, bytes)| {
         let name = match form {
             Form::Bag => format!("{root}/{path}"),
             Form::Flat => path.clone(),
-            Form::Crate => path.strip_prefix(format::PAYLOAD)?.to_owned(),
+            Form::Crate => in_payload(path)?.to_owned(),
         };
         Some((name, bytes))
     });
@@ -252,7 +253,7 @@ fn locate(files: Vec<(String, Vec<u8>)>) -> Result<Archive, Fault> {
         tops.iter().copied().filter(|top| has(&format!("{top}/{}", format::BAGIT))).collect();
     let (form, prefix, onto) = match (has(format::BAGIT), has(format::METADATA), &bags[..]) {
         (true, false, []) => (Form::Flat, String::new(), ""),
-        (false, true, []) => (Form::Crate, String::new(), format::PAYLOAD),
+        (false, true, []) => (Form::Crate, String::new(), PAYLOAD),
         (false, false, [bag]) => (Form::Bag, format!("{bag}/"), ""),
         (flat, bare, _) => return Err(no_one_root(flat, bare, &bags)),
     };
@@ -274,8 +275,8 @@ fn locate(files: Vec<(String, Vec<u8>)>) -> Result<Archive, Fault> {
         }
     }
     // A second root inside the first: which of them is read depends on who reads.
-    let inner = format!("{}{}", format::PAYLOAD, format::BAGIT);
-    for inner in [inner.as_str(), format::METADATA] {
+    let inner = BundlePath::payload(format::BAGIT);
+    for inner in [&*inner, format::METADATA] {
         let path = format!("{prefix}{inner}");
         if form != Form::Crate && has(&path) {
             let expected =

@@ -1,7 +1,7 @@
 //! What each file of a bundle is: given by the author, derived from other files, or a circumstance of the run. The one table
 //! that `docs/bundle-format.md` prints; a file in none of its rows is no bundle's.
 
-use super::{Bundle, format};
+use super::{Bundle, BundlePath, format, in_payload};
 use crate::manifest::WrittenIn;
 
 /// Whose word a file is.
@@ -28,9 +28,11 @@ impl Class {
 
 /// Which files a row of the table is about.
 enum Which {
-    /// The one of this path.
+    /// The tag file of this name.
+    Tag(&'static str),
+    /// The file of this path within the payload.
     File(&'static str),
-    /// All below this folder whose name ends like that.
+    /// All below this folder of the payload whose name ends like that.
     Under(&'static str, &'static str),
     /// Inputs that were made by this: `written-in` of the resolved study.
     Made(WrittenIn),
@@ -43,24 +45,24 @@ enum Which {
 /// A row: which files, what they are, and by what they are derived.
 struct Row(Which, Class, &'static str);
 
-/// The table. The first row that fits counts; paths are relative to the bag's root.
+/// The table. The first row that fits counts.
 const TABLE: &[Row] = &[
-    Row(Which::File(format::BAGIT), Class::Derived(1), "the standard's own words"),
+    Row(Which::Tag(format::BAGIT), Class::Derived(1), "the standard's own words"),
     Row(
-        Which::File(format::BAG_INFO),
+        Which::Tag(format::BAG_INFO),
         Class::Circumstance,
         "times and host as the run tells them; every other label follows from the payload (level 2), and the labels are a closed list",
     ),
-    Row(Which::File(format::MANIFEST), Class::Derived(1), "the payload"),
-    Row(Which::File(format::TAG_MANIFEST), Class::Derived(1), "the other tag files"),
+    Row(Which::Tag(format::MANIFEST), Class::Derived(1), "the payload"),
+    Row(Which::Tag(format::TAG_MANIFEST), Class::Derived(1), "the other tag files"),
     Row(
-        Which::File(format::SIGNATURES[0]),
+        Which::Tag(format::SIGNATURES[0]),
         Class::Given,
         "who vouches for the bundle; `verify --trust` checks it",
     ),
-    Row(Which::File(format::SIGNATURES[1]), Class::Given, "the same, by minisign"),
-    Row(Which::File("data/study.yaml"), Class::Given, "the manifest"),
-    Row(Which::File("data/study.resolved.json"), Class::Derived(3), "manifest and inputs"),
+    Row(Which::Tag(format::SIGNATURES[1]), Class::Given, "the same, by minisign"),
+    Row(Which::File(format::STUDY), Class::Given, "the manifest"),
+    Row(Which::File(format::RESOLVED), Class::Derived(3), "manifest and inputs"),
     Row(
         Which::Robustness,
         Class::Derived(5),
@@ -74,37 +76,37 @@ const TABLE: &[Row] = &[
     Row(Which::Made(WrittenIn::PreviousMap), Class::Derived(5), "earlier explorations"),
     Row(Which::Inputs, Class::Given, "robots, worlds, images, settings, published tables"),
     Row(
-        Which::Under("data/trials/", ".jsonl"),
+        Which::Under(format::TRIALS, ".jsonl"),
         Class::Derived(5),
         "the trials; a sample of them at level 4",
     ),
-    Row(Which::Under("data/results/", ""), Class::Derived(3), "manifest, inputs and records"),
+    Row(Which::Under(format::RESULTS, ""), Class::Derived(3), "manifest, inputs and records"),
     Row(
-        Which::Under("data/circumstances/", ""),
+        Which::Under(format::CIRCUMSTANCES, ""),
         Class::Circumstance,
         "wall times on the machine of the run, and verdicts on them",
     ),
     Row(
-        Which::Under("data/engine/", ".zip"),
+        Which::Under(format::ENGINE, ".zip"),
         Class::Derived(3),
         "this program's own source, where it is of the same version",
     ),
     Row(
-        Which::File("data/README.md"),
+        Which::File(format::README),
         Class::Derived(3),
         "manifest, inputs, records and circumstances",
     ),
-    Row(Which::File("data/LICENSE.txt"), Class::Derived(3), "the manifest"),
-    Row(Which::File("data/datapackage.json"), Class::Derived(3), "manifest and records"),
-    Row(Which::File("data/data-dictionary.md"), Class::Derived(3), "manifest and records"),
-    Row(Which::File("data/CITATION.cff"), Class::Derived(3), "manifest, results and circumstances"),
-    Row(Which::File("data/.zenodo.json"), Class::Derived(3), "manifest and results"),
+    Row(Which::File(format::LICENSE), Class::Derived(3), "the manifest"),
+    Row(Which::File(format::DATA_PACKAGE), Class::Derived(3), "manifest and records"),
+    Row(Which::File(format::DICTIONARY), Class::Derived(3), "manifest and records"),
+    Row(Which::File(format::CITATION), Class::Derived(3), "manifest, results and circumstances"),
+    Row(Which::File(format::ZENODO), Class::Derived(3), "manifest and results"),
     Row(
-        Which::File("data/ro-crate-metadata.json"),
+        Which::File(format::METADATA),
         Class::Derived(3),
         "everything else in the payload, and circumstances",
     ),
-    Row(Which::File("data/ro-crate-preview.html"), Class::Derived(3), "the same"),
+    Row(Which::File(format::PREVIEW), Class::Derived(3), "the same"),
 ];
 
 /// The class of the file `path` of `bundle`; `None` where it has none and so does not belong there.
@@ -114,22 +116,23 @@ pub fn class_of(bundle: &Bundle, path: &str) -> Option<Class> {
 
 /// The class of a tag file, which needs no bundle to be told.
 pub fn is_tag_file(path: &str) -> bool {
-    let is_it = |Row(which, ..): &Row| matches!(which, Which::File(name) if *name == path);
-    !path.starts_with(format::PAYLOAD) && TABLE.iter().any(is_it)
+    let is_it = |Row(which, ..): &Row| matches!(which, Which::Tag(name) if *name == path);
+    TABLE.iter().any(is_it)
 }
 
 fn fits(which: &Which, bundle: &Bundle, path: &str) -> bool {
-    let in_payload = path.strip_prefix(format::PAYLOAD).unwrap_or_default();
-    let input = bundle.resolved_input(in_payload);
+    let within = in_payload(path).unwrap_or_default();
+    let input = bundle.resolved_input(within);
     match which {
-        Which::File(name) => path == *name,
-        Which::Under(folder, ending) => path.starts_with(folder) && path.ends_with(ending),
+        Which::Tag(name) => path == *name,
+        Which::File(name) => within == *name,
+        Which::Under(folder, ending) => within.starts_with(folder) && within.ends_with(ending),
         Which::Made(by) => input.is_some_and(|input| input.written_in == *by),
         Which::Robustness => {
             let named = bundle.resolved().sensitivity.read();
             input.is_some_and(|input| named.is_ok_and(|named| input.as_written == named))
         }
-        Which::Inputs => bundle.inputs().iter().any(|input| input.path == in_payload),
+        Which::Inputs => bundle.inputs().iter().any(|input| input.path == within),
     }
 }
 
@@ -139,8 +142,9 @@ pub fn table_in_markdown() -> String {
         "| file | class | level | from, or what it is |\n| --- | --- | --- | --- |\n".to_owned();
     for Row(which, class, from) in TABLE {
         let files = match which {
-            Which::File(name) => format!("`{name}`"),
-            Which::Under(folder, ending) => format!("`{folder}*{ending}`"),
+            Which::Tag(name) => format!("`{name}`"),
+            Which::File(name) => format!("`{}`", BundlePath::payload(name)),
+            Which::Under(folder, ending) => format!("`{}*{ending}`", BundlePath::payload(folder)),
             Which::Made(WrittenIn::Calibration) => {
                 "`data/inputs/*.passages.csv`, `*.maneuvers.csv`".to_owned()
             }

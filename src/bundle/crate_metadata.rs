@@ -7,7 +7,7 @@
 use super::crate_entities::Entity;
 use super::crate_people::People;
 use super::readme::license_address;
-use super::{BundleContent, Circumstance, Tree, bag, format};
+use super::{BundleContent, Circumstance, Tree, bag, format, in_payload};
 use crate::digest::{ResultsDigest, Sha256Digest, StudyDigest};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
@@ -31,7 +31,7 @@ pub(super) fn document(
 ) -> Vec<u8> {
     let files: BTreeMap<&str, &[u8]> = payload
         .iter()
-        .filter_map(|(path, bytes)| Some((path.strip_prefix(format::PAYLOAD)?, bytes.as_slice())))
+        .filter_map(|(path, bytes)| Some((in_payload(path)?, bytes.as_slice())))
         .collect();
     let graph = Graph { content, circumstance, files, people: People::of(content) };
     let entities: Vec<Value> = std::iter::empty()

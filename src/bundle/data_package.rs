@@ -2,7 +2,7 @@
 //! `data-dictionary.md` for people, both made of the same descriptions.
 
 use super::readme::license_address;
-use super::{BundleContent, Tree, format};
+use super::{BundleContent, BundlePath, Tree, format};
 use crate::digest::{ResultsDigest, Sha256Digest};
 use crate::table::{Column, DescribedTable, Kind};
 use serde_json::{Map, Value, json};
@@ -17,8 +17,8 @@ pub(super) fn package(
     let resources: Vec<Value> = tables
         .iter()
         .map(|table| {
-            let path = format!("{}{}", format::PAYLOAD, table.path);
-            resource(table, payload.get(&path).map_or(&[][..], Vec::as_slice))
+            let path = BundlePath::payload(&table.path);
+            resource(table, payload.get(&*path).map_or(&[][..], Vec::as_slice))
         })
         .collect();
     let mut package = json!({

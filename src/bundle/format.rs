@@ -16,9 +16,6 @@ pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// Where the program can be found; the root of the identifiers in the crate's metadata.
 pub const HOME: &str = "https://crates.io/crates/reenact";
 
-/// The payload folder, which is the RO-Crate's root.
-pub const PAYLOAD: &str = "data/";
-
 /// The bag's declaration.
 pub const BAGIT: &str = "bagit.txt";
 /// Facts about the bag: format version, digests and the circumstances of the run.
@@ -33,7 +30,7 @@ pub const SIGNATURES: [&str; 2] = ["tagmanifest-sha256.txt.sig", "tagmanifest-sh
 /// Name of the fact of a run's environment that says how many trials it executed itself; the others came from a store.
 pub const SIMULATED_TRIALS: &str = "trials-simulated";
 
-/// The crate's metadata. This and what follows is relative to [`PAYLOAD`].
+/// The crate's metadata. This and what follows is relative to the payload, where [`super::BundlePath`] leads.
 pub const METADATA: &str = "ro-crate-metadata.json";
 /// The crate's page for people.
 pub const PREVIEW: &str = "ro-crate-preview.html";
@@ -74,7 +71,7 @@ pub fn install_words(version: &str) -> String {
     format!("in a checkout of the source of reenact {version}, `{INSTALL}`")
 }
 
-/// Path of a condition's records, relative to [`PAYLOAD`].
+/// Returns the path of a condition's records, relative to the payload.
 pub fn records_path(slug: &str) -> String {
     format!("{TRIALS}{slug}.jsonl")
 }

@@ -25,6 +25,7 @@ pub mod figures;
 pub mod format;
 mod moment;
 pub mod names;
+mod path;
 mod preview;
 mod reader;
 mod readme;
@@ -45,6 +46,7 @@ pub use content::{
 pub use departure::{Departure, shell_word};
 pub use fault::{Fault, visible};
 pub use moment::Moment;
+pub use path::{BundlePath, in_payload};
 pub use reader::{Bundle, OpenError};
 pub use resolved::{ConditionEntry, InputEntry, Resolved};
 pub use told::is_version;
@@ -68,7 +70,7 @@ pub fn in_result_half(path: &str) -> bool {
 pub fn results_digest(tree: &Tree) -> ResultsDigest {
     let mut lines: Vec<String> = tree
         .iter()
-        .filter_map(|(path, bytes)| Some((path.strip_prefix(format::PAYLOAD)?, bytes)))
+        .filter_map(|(path, bytes)| Some((in_payload(path)?, bytes)))
         .filter(|(path, _)| in_result_half(path))
         .map(|(path, bytes)| format!("{}  {path}\n", Sha256Digest::of(bytes)))
         .collect();

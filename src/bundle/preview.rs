@@ -1,6 +1,6 @@
 //! `ro-crate-preview.html`: the page that archives show for a crate. No script, nothing from the network.
 
-use super::{BundleContent, Circumstance, Tree, format};
+use super::{BundleContent, Circumstance, Tree, format, in_payload};
 use crate::digest::ResultsDigest;
 use crate::figure::svg::escape;
 
@@ -43,7 +43,7 @@ pub(super) fn page(
 
     let (mut figures, mut files) = (String::new(), String::new());
     for (path, bytes) in payload {
-        let path = escape(path.strip_prefix(format::PAYLOAD).unwrap_or(path));
+        let path = escape(in_payload(path).unwrap_or(path));
         if format::media_type(&path) == "image/svg+xml" && path.starts_with(format::RESULTS) {
             figures.push_str(&format!(
                 "<figure><img src=\"{path}\" alt=\"{path}\"><figcaption>{path}</figcaption></figure>\n"

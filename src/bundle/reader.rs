@@ -1,8 +1,8 @@
 //! A bundle by meaning: what an opened archive says, with every reference inside it resolved.
 
 use super::{
-    Archive, Circumstance, ConditionEntry, Fault, Form, InputEntry, Limits, Resolved, Tree,
-    archive, bag, format, results_digest, told,
+    Archive, BundlePath, Circumstance, ConditionEntry, Fault, Form, InputEntry, Limits, Resolved,
+    Tree, archive, bag, format, in_payload, results_digest, told,
 };
 use crate::digest::{BundleId, ResultsDigest, Sha256Digest, StudyDigest};
 use crate::plan::{ResolvedStudy, StudyInput};
@@ -67,9 +67,8 @@ impl Bundle {
     pub fn open(archive: Archive) -> Result<Self, OpenError> {
         let Archive { form, tree } = archive;
         check_version(&tree).map_err(OpenError::Newer)?;
-        let missing =
-            |path: &str, of: &str| Fault::new(format!("{}{path}", format::PAYLOAD), of, "no file");
-        let payload = |path: &str| tree.get(&format!("{}{path}", format::PAYLOAD));
+        let missing = |path: &str, of: &str| Fault::new(BundlePath::payload(path), of, "no file");
+        let payload = |path: &str| tree.get(&*BundlePath::payload(path));
         let mut faults = Vec::new();
         if payload(format::STUDY).is_none() {
             faults.push(missing(format::STUDY, "the manifest"));
@@ -89,11 +88,9 @@ impl Bundle {
             let path = format::records_path(&condition.slug);
             match payload(&path).map(|bytes| std::str::from_utf8(bytes)) {
                 Some(Ok(_)) => {}
-                Some(Err(_)) => faults.push(Fault::new(
-                    format!("{}{path}", format::PAYLOAD),
-                    "UTF-8 text",
-                    "other bytes",
-                )),
+                Some(Err(_)) => {
+                    faults.push(Fault::new(BundlePath::payload(&path), "UTF-8 text", "other bytes"))
+                }
                 None => faults.push(missing(&path, "the condition's records")),
             }
         }
@@ -190,7 +187,7 @@ impl Bundle {
                         weight += record.weight();
                         records.push(record);
                         if weight > HEAVIEST_RECORDS {
-                            let path = format!("{}{}", format::PAYLOAD, format::TRIALS);
+                            let path = BundlePath::payload(format::TRIALS);
                             let expected = format!(
                                 "records that take at most {} MiB of memory",
                                 HEAVIEST_RECORDS >> 20
@@ -199,8 +196,7 @@ impl Bundle {
                         }
                     }
                     Err(problem) => {
-                        let path = format::records_path(&condition.slug);
-                        let place = format!("{}{path}:{}", format::PAYLOAD, i + 1);
+                        let place = BundlePath::records(&condition.slug).line(i + 1);
                         faults.push(Fault::new(place, "a trial record", problem));
                     }
                 }
@@ -221,7 +217,7 @@ impl Bundle {
 
     fn under(&self, folder: &'static str) -> impl Iterator<Item = (&str, &[u8])> {
         self.tree.iter().filter_map(move |(path, bytes)| {
-            let path = path.strip_prefix(format::PAYLOAD)?.strip_prefix(folder)?;
+            let path = in_payload(path)?.strip_prefix(folder)?;
             Some((path, bytes.as_slice()))
         })
     }
@@ -256,12 +252,12 @@ impl Bundle {
 
     /// The first file where the engine's own source lies, by its path in the bag. It is data, never to be run.
     pub fn capsule(&self) -> Option<&str> {
-        let folder = format!("{}{}", format::PAYLOAD, format::ENGINE);
-        self.tree.keys().find(|path| path.starts_with(&folder)).map(String::as_str)
+        let folder = BundlePath::payload(format::ENGINE);
+        self.tree.keys().find(|path| path.starts_with(&*folder)).map(String::as_str)
     }
 
     fn payload(&self, path: &str) -> Option<&[u8]> {
-        self.tree.get(&format!("{}{path}", format::PAYLOAD)).map(Vec::as_slice)
+        self.tree.get(&*BundlePath::payload(path)).map(Vec::as_slice)
     }
 }
 
@@ -272,13 +268,13 @@ pub(crate) fn check_version(tree: &Tree) -> Result<(), Fault> {
     struct Version {
         bundle_format: u64,
     }
-    let resolved_path = format!("{}{}", format::PAYLOAD, format::RESOLVED);
+    let resolved_path = BundlePath::payload(format::RESOLVED);
     let info = tree.get(format::BAG_INFO).map(|bytes| bag::BagInfo::parse(bytes));
     let stated = [
         (format::BAG_INFO, info.as_ref().and_then(|info| info.get("Bundle-Format")?.parse().ok())),
         (
-            resolved_path.as_str(),
-            tree.get(&resolved_path)
+            &*resolved_path,
+            tree.get(&*resolved_path)
                 .and_then(|bytes| serde_json::from_slice::<Version>(bytes).ok())
                 .map(|version| version.bundle_format),
         ),

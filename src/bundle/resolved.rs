@@ -1,6 +1,6 @@
 //! `study.resolved.json`: what the bundle is made of, and the study with nothing left to guess.
 
-use super::{BundleContent, Fault, format, names};
+use super::{BundleContent, BundlePath, Fault, format, names};
 use crate::digest::{FileDigest, Sha256Digest};
 use crate::json;
 use crate::plan::ResolvedStudy;
@@ -90,7 +90,7 @@ impl Resolved {
         struct Version {
             bundle_format: u64,
         }
-        let path = format!("{}{}", format::PAYLOAD, format::RESOLVED);
+        let path = BundlePath::payload(format::RESOLVED);
         let fault = |problem: String| {
             Fault::new(&path, "a resolved study (docs/bundle-format.md)", problem)
         };

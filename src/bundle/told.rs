@@ -1,14 +1,14 @@
 //! The circumstances of a run as the crate's metadata tells them: what `crate_metadata` wrote, read back, so that whoever
 //! doubts a description can derive it again with or without the bag's own facts.
 
-use super::{Circumstance, Moment, Tree, format};
+use super::{BundlePath, Circumstance, Moment, Tree, format};
 use crate::json;
 use serde_json::Value;
 
 /// The circumstances that the metadata in `tree` tells, without the files that were measured; `None` where it does not
 /// tell them as this program writes them.
 pub(super) fn circumstance(tree: &Tree) -> Option<Circumstance> {
-    let bytes = tree.get(&format!("{}{}", format::PAYLOAD, format::METADATA))?;
+    let bytes = tree.get(&*BundlePath::payload(format::METADATA))?;
     let document = json::read::<Value>(bytes).ok()?;
     let graph = document.get("@graph")?.as_array()?;
     let entity = |id: &str| graph.iter().find(|entity| entity["@id"] == id);

@@ -1,8 +1,10 @@
 //! Sealing: content and circumstances become a tree of files whose every byte something vouches for.
 
+use super::path::PAYLOAD;
 use super::{
-    Bundle, BundleContent, Capsule, Circumstance, Form, Limits, Resolved, Tree, archive, bag,
-    citation, crate_metadata, data_package, format, names, preview, readme, results_digest,
+    Bundle, BundleContent, BundlePath, Capsule, Circumstance, Form, Limits, Resolved, Tree,
+    archive, bag, citation, crate_metadata, data_package, format, in_payload, names, preview,
+    readme, results_digest,
 };
 use crate::digest::{BundleId, ResultsDigest, Sha256Digest, StudyDigest};
 use thiserror::Error;
@@ -137,7 +139,7 @@ pub fn seal_with(
     if let Some(capsule) = additions.source {
         payload.add(&capsule.path, capsule.bytes.clone())?;
     }
-    let there = |path: &String| payload.tree.contains_key(&format!("{}{path}", format::PAYLOAD));
+    let there = |path: &String| payload.tree.contains_key(&*BundlePath::payload(path));
     let tables: Vec<_> =
         content.tables.iter().filter(|table| there(&table.path)).cloned().collect();
     let package = data_package::package(content, &tables, &payload.tree, results_digest);
@@ -174,7 +176,7 @@ struct Payload {
 impl Payload {
     fn add(&mut self, path: &str, bytes: Vec<u8>) -> Result<(), SealError> {
         check_name(path)?;
-        let path = format!("{}{path}", format::PAYLOAD);
+        let path = String::from(BundlePath::payload(path));
         if let Some(other) = self.names.enter(&path) {
             return Err(SealError::Clash { path, other });
         }
@@ -184,7 +186,7 @@ impl Payload {
 
     /// Adds a file that may be there already, if its bytes are the same.
     fn add_shared(&mut self, path: &str, bytes: &[u8]) -> Result<(), SealError> {
-        match self.tree.get(&format!("{}{path}", format::PAYLOAD)) {
+        match self.tree.get(&*BundlePath::payload(path)) {
             Some(known) if known == bytes => Ok(()),
             _ => self.add(path, bytes.to_vec()),
         }
@@ -196,7 +198,7 @@ fn check_name(path: &str) -> Result<(), SealError> {
         Some(hazard) => hazard.to_owned(),
         None if !names::is_portable(path) => format!("`{}`", path.escape_default()),
         // roc-validator resolves payload paths that hold `data/` against the wrong folder.
-        None if path.contains(format::PAYLOAD) => "a folder whose name ends in `data`".to_owned(),
+        None if path.contains(PAYLOAD) => "a folder whose name ends in `data`".to_owned(),
         None => return Ok(()),
     };
     Err(SealError::Name { path: path.to_owned(), found })
@@ -207,7 +209,7 @@ pub fn in_bag(bundle: &Bundle) -> Tree {
     if bundle.form() != Form::Crate {
         return bundle.tree().clone();
     }
-    let payload = bundle.tree().iter().filter(|(path, _)| path.starts_with(format::PAYLOAD));
+    let payload = bundle.tree().iter().filter(|(path, _)| in_payload(path).is_some());
     let payload = payload.map(|(path, bytes)| (path.clone(), bytes.clone())).collect();
     let digests = (bundle.results_digest(), bundle.study_digest());
     bagged(payload, None, digests, bundle.is_partial()).0
@@ -215,7 +217,7 @@ pub fn in_bag(bundle: &Bundle) -> Tree {
 
 /// What `bag-info.txt` says of `bundle`, with the circumstances of its run or without any.
 pub fn in_bag_info(bundle: &Bundle, circumstance: Option<&Circumstance>) -> bag::BagInfo {
-    let payload = bundle.tree().iter().filter(|(path, _)| path.starts_with(format::PAYLOAD));
+    let payload = bundle.tree().iter().filter(|(path, _)| in_payload(path).is_some());
     let payload: Tree = payload.map(|(path, bytes)| (path.clone(), bytes.clone())).collect();
     let digests = (bundle.results_digest(), bundle.study_digest());
     info_of(&payload, circumstance, digests, bundle.is_partial())

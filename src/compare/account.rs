@@ -1,7 +1,7 @@
 //! What one side says, by meaning: the half of a bundle, or the part of it that a lock keeps.
 
 use super::Settings;
-use crate::bundle::{Bundle, Fault};
+use crate::bundle::{Bundle, BundlePath, Fault};
 use crate::claims::{ClaimVerdict, Judgement};
 use crate::digest::{FileDigest, ResultsDigest, Sha256Digest, TrialKey};
 use crate::studies::TrialRecord;
@@ -113,7 +113,7 @@ impl Account {
                 match TrialRecord::from_line(line) {
                     Ok(record) => known.push(TrialAccount::of(record, line)),
                     Err(problem) => faults.push(Fault::new(
-                        format!("data/trials/{}.jsonl:{}", entry.slug, i + 1),
+                        BundlePath::records(&entry.slug).line(i + 1),
                         "a trial record",
                         problem,
                     )),
@@ -160,7 +160,8 @@ impl Account {
 
 /// Reads the verdict on every claim; none where this side holds no claims.
 pub(super) fn verdicts(results: &BTreeMap<String, ResultFile>) -> Result<Vec<ClaimVerdict>, Fault> {
-    let fault = |found: String| Fault::new("data/results/claims.json", "a list of verdicts", found);
+    let fault =
+        |found: String| Fault::new(BundlePath::result("claims.json"), "a list of verdicts", found);
     let Some(file) = results.get("claims.json") else { return Ok(Vec::new()) };
     let text = file.text.as_deref().unwrap_or_default();
     let list: Vec<Value> = serde_json::from_str(text).map_err(|e| fault(e.to_string()))?;

@@ -1,7 +1,8 @@
 //! Level 2: the crate's metadata, the bag's facts, the resolved study, the inputs and the records agree.
 
 use crate::bundle::{
-    Bundle, Fault, Tree, bag, class_of, format, in_bag_info as in_bag, is_version, results_digest,
+    Bundle, BundlePath, Fault, Tree, bag, class_of, format, in_bag_info as in_bag, in_payload,
+    is_version, results_digest,
 };
 use crate::digest::{FileDigest, Sha256Digest, TrialKey};
 use crate::json;
@@ -49,9 +50,9 @@ fn is_agent(text: &str) -> bool {
 
 /// Digests and sizes in the crate's metadata against the files, in both directions.
 pub(super) fn crate_metadata(tree: &Tree) -> Vec<Fault> {
-    let metadata = payload_path(format::METADATA);
+    let metadata = BundlePath::payload(format::METADATA);
     let graph = tree
-        .get(&metadata)
+        .get(&*metadata)
         .ok_or_else(|| "no file".to_owned())
         .and_then(|bytes| json::read::<Value>(bytes).map_err(|e| e.to_string()))
         .and_then(|mut document| match document.get_mut("@graph").map(Value::take) {
@@ -84,13 +85,9 @@ pub(super) fn crate_metadata(tree: &Tree) -> Vec<Fault> {
         if !is_file {
             continue;
         }
-        described.insert(payload_path(id));
-        match tree.get(&payload_path(id)) {
-            None => faults.push(Fault::new(
-                payload_path(id),
-                "a file, as the crate describes it",
-                "none",
-            )),
+        let path = BundlePath::payload(id);
+        match tree.get(&*path) {
+            None => faults.push(Fault::new(&path, "a file, as the crate describes it", "none")),
             Some(bytes) => {
                 let (digest, size) = (Sha256Digest::of(bytes).hex(), bytes.len().to_string());
                 for (key, truth) in [("sha256", digest), ("contentSize", size)] {
@@ -102,10 +99,13 @@ pub(super) fn crate_metadata(tree: &Tree) -> Vec<Fault> {
                 }
             }
         }
+        described.insert(path);
     }
-    for path in tree.keys().filter(|path| path.starts_with(format::PAYLOAD)) {
-        let own = [payload_path(format::METADATA), payload_path(format::PREVIEW)].contains(path);
-        if !own && !described.contains(path) {
+    let described: BTreeSet<&str> = described.iter().map(|path| &**path).collect();
+    for path in tree.keys() {
+        let Some(within) = in_payload(path) else { continue };
+        let own = [format::METADATA, format::PREVIEW].contains(&within);
+        if !own && !described.contains(&**path) {
             faults.push(Fault::new(
                 path,
                 "a file that the crate describes",
@@ -121,12 +121,11 @@ pub(super) fn contents(bundle: &Bundle) -> Vec<Fault> {
     let mut faults = Vec::new();
     let mut known = BTreeSet::new();
     for input in bundle.inputs() {
-        known.insert(payload_path(&input.path));
-        let digest =
-            bundle.tree().get(&payload_path(&input.path)).map(|b| FileDigest(Sha256Digest::of(b)));
+        let path = BundlePath::payload(&input.path);
+        let digest = bundle.tree().get(&*path).map(|b| FileDigest(Sha256Digest::of(b)));
         if digest != Some(input.sha256) {
             faults.push(Fault::new(
-                payload_path(&input.path),
+                &path,
                 format!(
                     "sha256:{}, as the resolved study says of `{}`",
                     input.sha256, input.as_written
@@ -134,13 +133,14 @@ pub(super) fn contents(bundle: &Bundle) -> Vec<Fault> {
                 digest.map_or("no file".to_owned(), |digest| format!("sha256:{digest}")),
             ));
         }
+        known.insert(String::from(path));
     }
     let mut keys = BTreeMap::new();
     for condition in bundle.conditions() {
-        let path = payload_path(&format::records_path(&condition.slug));
-        if !known.insert(path.clone()) {
+        let path = BundlePath::records(&condition.slug);
+        if !known.insert(String::from(&path)) {
             faults.push(Fault::new(
-                payload_path(format::RESOLVED),
+                BundlePath::payload(format::RESOLVED),
                 "every condition once",
                 format!("`{}` again", condition.slug),
             ));
@@ -151,7 +151,7 @@ pub(super) fn contents(bundle: &Bundle) -> Vec<Fault> {
             let expected = format!("{} records, as the resolved study says", condition.trials);
             faults.push(Fault::new(&path, expected, count.to_string()));
         }
-        let whole = bundle.tree().get(&path).is_none_or(|b| b.is_empty() || b.ends_with(b"\n"));
+        let whole = bundle.tree().get(&*path).is_none_or(|b| b.is_empty() || b.ends_with(b"\n"));
         if !whole {
             let hint = "the file may have been cut short";
             faults.push(Fault::new(&path, "a line feed at its end", "none").hint(hint));
@@ -159,15 +159,17 @@ pub(super) fn contents(bundle: &Bundle) -> Vec<Fault> {
         faults.extend(records(bundle, &condition.slug, &path, &mut keys));
     }
     for path in bundle.tree().keys() {
-        let claimed =
-            [format::INPUTS, format::TRIALS].iter().any(|d| path.starts_with(&payload_path(d)));
+        let within = in_payload(path);
+        let claimed = within.is_some_and(|within| {
+            [format::INPUTS, format::TRIALS].iter().any(|folder| within.starts_with(folder))
+        });
         if claimed && !known.contains(path) {
             faults.push(Fault::new(
                 path,
                 "a file that the resolved study names",
                 "one that it does not",
             ));
-        } else if path.starts_with(format::PAYLOAD) && class_of(bundle, path).is_none() {
+        } else if within.is_some() && class_of(bundle, path).is_none() {
             let hint =
                 "docs/bundle-format.md lists what a bundle holds; it is data, so run nothing of it";
             let fault = Fault::new(path, "a file of a bundle", "one of no class");
@@ -184,7 +186,7 @@ const MOST_FAULTS: usize = 100;
 fn records(
     bundle: &Bundle,
     slug: &str,
-    path: &str,
+    path: &BundlePath,
     keys: &mut BTreeMap<TrialKey, String>,
 ) -> Vec<Fault> {
     let mut faults = Vec::new();
@@ -194,7 +196,7 @@ fn records(
             faults.push(Fault::new(path, "records", "too many faults to tell them all"));
             break;
         }
-        let place = format!("{path}:{}", i + 1);
+        let place = path.line(i + 1);
         let record = match TrialRecord::from_line(line) {
             Ok(record) => record,
             Err(problem) => {
@@ -230,8 +232,4 @@ fn records(
         }
     }
     faults
-}
-
-fn payload_path(path: &str) -> String {
-    format!("{}{path}", format::PAYLOAD)
 }

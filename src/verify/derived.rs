@@ -2,8 +2,8 @@
 
 use super::{PlannedTrial, Replanned, difference};
 use crate::bundle::{
-    Additions, Bundle, Circumstance, Fault, Moment, Tree, bag, capsule, format, in_bag_info,
-    in_result_half, seal_with,
+    Additions, Bundle, BundlePath, Circumstance, Fault, Moment, Tree, bag, capsule, format,
+    in_bag_info, in_payload, in_result_half, seal_with,
 };
 use crate::digest::{Sha256Digest, TrialKey};
 use crate::studies::TrialRecord;
@@ -31,7 +31,7 @@ pub(super) fn check(bundle: &Bundle, replanned: &dyn Replanned) -> Derived {
         // Records of other trials need not make results.
         Err(_) if !found.faults.is_empty() => return found,
         Err(problem) => {
-            let path = format!("{}{}", format::PAYLOAD, format::TRIALS);
+            let path = BundlePath::payload(format::TRIALS);
             found.faults.push(Fault::new(path, "records that make results", problem));
             return found;
         }
@@ -40,7 +40,7 @@ pub(super) fn check(bundle: &Bundle, replanned: &dyn Replanned) -> Derived {
     // bundle: engine and format say how, whatever version of the program was at work.
     let told = bundle.circumstance();
     if told.is_none() {
-        let metadata = format!("{}{}", format::PAYLOAD, format::METADATA);
+        let metadata = BundlePath::payload(format::METADATA);
         let expected =
             "the run's version, begin, end and environment, as a crate of this format tells them";
         found.faults.push(Fault::new(metadata, expected, "none that can be read"));
@@ -51,7 +51,7 @@ pub(super) fn check(bundle: &Bundle, replanned: &dyn Replanned) -> Derived {
         Ok(sealed) => sealed.tree,
         Err(problem) => {
             let expected = "content that can be sealed";
-            found.faults.push(Fault::new(format::PAYLOAD, expected, problem.to_string()));
+            found.faults.push(Fault::new(BundlePath::payload(""), expected, problem.to_string()));
             return found;
         }
     };
@@ -84,7 +84,7 @@ pub(super) fn check(bundle: &Bundle, replanned: &dyn Replanned) -> Derived {
     }
     found.faults.extend(differing);
     if bundle.circumstance_files().next().is_some() {
-        let path = format!("{}{}", format::PAYLOAD, format::CIRCUMSTANCES);
+        let path = BundlePath::payload(format::CIRCUMSTANCES);
         let fault = Fault::new(
             path,
             "what follows from the records",
@@ -134,14 +134,14 @@ fn trials(bundle: &Bundle, planned: &[PlannedTrial]) -> Vec<Fault> {
     let sealed: Vec<&str> = bundle.conditions().iter().map(|c| c.slug.as_str()).collect();
     if slugs != sealed {
         faults.push(Fault::new(
-            format!("{}{}", format::PAYLOAD, format::RESOLVED),
+            BundlePath::payload(format::RESOLVED),
             format!("the conditions that the manifest plans: {}", slugs.join(", ")),
             sealed.join(", "),
         ));
     }
     for slug in sealed {
         let planned: Vec<_> = planned.iter().filter(|trial| trial.slug == slug).collect();
-        let path = format!("{}{}", format::PAYLOAD, format::records_path(slug));
+        let path = BundlePath::records(slug);
         let count = bundle.record_lines(slug).count();
         if planned.len() != count {
             let expected = format!("{} trials, as the manifest plans", planned.len());
@@ -168,7 +168,7 @@ fn trials(bundle: &Bundle, planned: &[PlannedTrial]) -> Vec<Fault> {
             let expected =
                 format!("{}, as the manifest plans", named((planned.key, planned.trial)));
             let hint = "the manifest, an input, the seed or the record was changed after the run";
-            let place = format!("{path}:{}", i + 1);
+            let place = path.line(i + 1);
             faults.push(Fault::new(place, expected, format!("{found}{more}")).hint(hint));
         }
     }
@@ -177,10 +177,10 @@ fn trials(bundle: &Bundle, planned: &[PlannedTrial]) -> Vec<Fault> {
 
 /// The engine's source, where the bundle holds it, against that of this very version.
 fn source(found: &Tree, derived: &Tree) -> Vec<Fault> {
-    let folder = format!("{}{}", format::PAYLOAD, format::ENGINE);
+    let folder = BundlePath::payload(format::ENGINE);
     found
         .iter()
-        .filter(|(path, bytes)| path.starts_with(&folder) && derived.get(*path) != Some(bytes))
+        .filter(|(path, bytes)| path.starts_with(&*folder) && derived.get(*path) != Some(bytes))
         .map(|(path, bytes)| {
             let expected = format!("the source that reenact {} was built from", format::VERSION);
             Fault::new(path, expected, format!("sha256:{}", Sha256Digest::of(bytes)))
@@ -191,7 +191,7 @@ fn source(found: &Tree, derived: &Tree) -> Vec<Fault> {
 
 /// Payload files of `found` that differ from those of `derived`, among those whose path within the payload `counts`.
 fn files(found: &Tree, derived: &Tree, counts: impl Fn(&str) -> bool) -> Vec<Fault> {
-    let counts = |path: &str| path.strip_prefix(format::PAYLOAD).is_some_and(&counts);
+    let counts = |path: &str| in_payload(path).is_some_and(&counts);
     let mut faults = Vec::new();
     for (path, expected) in derived.iter().filter(|(path, _)| counts(path)) {
         match found.get(path) {

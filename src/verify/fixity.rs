@@ -1,7 +1,7 @@
 //! Level 1: every listed file is there unchanged, and nothing else is.
 
 use super::signature;
-use crate::bundle::{Archive, Fault, Form, bag, format, is_tag_file};
+use crate::bundle::{Archive, Fault, Form, bag, format, in_payload, is_tag_file};
 use crate::digest::Sha256Digest;
 use std::collections::BTreeMap;
 
@@ -33,7 +33,7 @@ pub(super) fn check(archive: &Archive) -> Vec<Fault> {
         match bag::parse_manifest(file, bytes) {
             Ok(entries) => {
                 for (path, digest) in entries {
-                    let payload = path.starts_with(format::PAYLOAD);
+                    let payload = in_payload(&path).is_some();
                     if payload == (file == format::MANIFEST) {
                         listed.insert(path, (digest, file));
                     } else {
@@ -62,8 +62,7 @@ pub(super) fn check(archive: &Archive) -> Vec<Fault> {
     }
     for path in tree.keys() {
         let exempt = path == format::TAG_MANIFEST || format::SIGNATURES.contains(&path.as_str());
-        let list =
-            if path.starts_with(format::PAYLOAD) { format::MANIFEST } else { format::TAG_MANIFEST };
+        let list = if in_payload(path).is_some() { format::MANIFEST } else { format::TAG_MANIFEST };
         if !exempt && !unread.contains(&list) && !listed.contains_key(path) {
             let expected = format!("only files that {list} lists");
             faults.push(Fault::new(path, expected, "an unlisted file"));
@@ -77,7 +76,7 @@ pub(super) fn check(archive: &Archive) -> Vec<Fault> {
         ));
     }
     // Those that no list names have been told.
-    for path in listed.keys().filter(|path| !path.starts_with(format::PAYLOAD)) {
+    for path in listed.keys().filter(|path| in_payload(path).is_none()) {
         if !is_tag_file(path) && path != "fetch.txt" {
             let expected = "only the tag files that docs/bundle-format.md lists";
             let hint = "a bundle is data: whatever it holds beside them, do not run it";

@@ -5,7 +5,7 @@ use super::reexecution::{self, Sample};
 use super::replication::{self, Replication};
 use super::signature::{self, Signed, Vouching};
 use super::{Attestation, Finding, Level, Pipeline, Severity, coherent, derived, fixity, support};
-use crate::bundle::{Archive, Bundle, Departure, Fault, Moment, OpenError, format};
+use crate::bundle::{Archive, Bundle, BundlePath, Departure, Fault, Moment, OpenError, format};
 use crate::digest::{BundleId, ResultsDigest, StudyDigest};
 use serde::Serialize;
 
@@ -354,7 +354,7 @@ impl Climb<'_> {
         let replanned = match pipeline.replan(bundle) {
             Ok(replanned) => replanned,
             Err(problem) => {
-                let path = format!("{}{}", format::PAYLOAD, format::STUDY);
+                let path = BundlePath::payload(format::STUDY);
                 let fault = Fault::new(path, "a manifest that can be planned again", problem);
                 self.report.note(Level::Derived, Severity::Error, [fault]);
                 return;

@@ -1,7 +1,7 @@
 //! Levels 4 and 5: trials executed again, by whoever doubts.
 
 use super::{PlannedTrial, Replanned, difference};
-use crate::bundle::{Bundle, Fault, format};
+use crate::bundle::{Bundle, BundlePath, Fault, format};
 use crate::digest::Sha256Digest;
 use crate::math;
 use crate::rng::Seeds;
@@ -90,12 +90,12 @@ pub(super) fn check(
         .conditions()
         .iter()
         .flat_map(|condition| {
-            let path = format!("{}{}", format::PAYLOAD, format::records_path(&condition.slug));
+            let path = BundlePath::records(&condition.slug);
             let lines = bundle.record_lines(&condition.slug).enumerate();
-            lines.map(move |(i, line)| (format!("{path}:{}", i + 1), line))
+            lines.map(move |(i, line)| (path.line(i + 1), line))
         })
         .collect();
-    let trials = format!("{}{}", format::PAYLOAD, format::TRIALS);
+    let trials = BundlePath::payload(format::TRIALS);
     let failed = |found: String| {
         let expected = format!("{} trials executed again", indices.len());
         Fault::new(&trials, expected, found).hint("this is a bug in reenact, or too little memory")
@@ -123,7 +123,7 @@ pub(super) fn check(
 
 /// What stands in the way of a level that executed nothing: it has shown nothing.
 pub(super) fn nothing_executed(of: usize) -> Fault {
-    let path = format!("{}{}", format::PAYLOAD, format::TRIALS);
+    let path = BundlePath::payload(format::TRIALS);
     let fault = Fault::new(path, "trials to execute again", "none");
     fault.hint(if of == 0 {
         "the bundle holds no trial, so there is none to execute"

@@ -1,7 +1,7 @@
 //! The pipeline that `run` goes, gone again from a bundle: manifest, plan, trials, results.
 
 use super::{Earlier, Made, Pipeline, PlannedTrial, Replanned};
-use crate::bundle::{Bundle, BundleContent, Fault, assemble, format};
+use crate::bundle::{Bundle, BundleContent, BundlePath, Fault, assemble, format};
 use crate::claims::sensitivity::{Run, in_words};
 use crate::digest::Sha256Digest;
 use crate::document::{MOST_FAULTS, Source, reports};
@@ -198,7 +198,7 @@ impl Inputs for Afresh<'_> {
                     let digest =
                         |bytes: &[u8]| format!("sha256:{}", Sha256Digest::of(bytes).short());
                     // These names are flat and safe, and so what they are in the bundle.
-                    let path = format!("{}{}{name}", format::PAYLOAD, format::INPUTS);
+                    let path = BundlePath::input(name);
                     let expected = format!("{} as explored again", digest(again));
                     let fault = Fault::new(path, expected, digest(&sealed));
                     let hint = "the previous map that the study starts from is not what that exploration gives";
@@ -229,7 +229,7 @@ impl Study<'_> {
     fn drive_again(&self, indices: &[usize]) -> Result<Vec<Option<Fault>>, String> {
         let run = self.plan.experiment.calibration.as_deref().ok_or("there is no calibration")?;
         let sealed = run.passages.as_ref().ok_or("the calibration holds no passages")?;
-        let path = format!("{}{}{}", format::PAYLOAD, format::INPUTS, file_name(&run.sealed_as));
+        let path = BundlePath::input(file_name(&run.sealed_as));
         let plan = Plan::of(run.experiment.clone());
         let spec = |&i: &usize| plan.trials.get(i).cloned().ok_or(format!("no passage {i}"));
         let trials = indices.iter().map(spec).collect::<Result<Vec<TrialSpec>, _>>()?;
@@ -239,7 +239,7 @@ impl Study<'_> {
             let found = sealed.told(index).ok_or(format!("no passage {index}"))?;
             let fault = Fault::new(
                 // Below the header.
-                format!("{path}:{}", index + 2),
+                path.line(index + 2),
                 format!("`{expected}`, as the passage gives when it is driven again"),
                 format!("`{found}`"),
             );
@@ -252,7 +252,7 @@ impl Study<'_> {
     /// Runs the rows at `indices` of the robustness table again.
     fn vary_again(&self, indices: &[usize]) -> Result<Vec<Option<Fault>>, String> {
         let known = self.plan.experiment.sensitivity.as_ref().ok_or("there is no such table")?;
-        let path = format!("{}{}{}", format::PAYLOAD, format::INPUTS, file_name(&known.as_written));
+        let path = BundlePath::input(file_name(&known.as_written));
         let runs = known.table.runs();
         let compared = indices.iter().map(|&index| {
             let run = runs.get(index).ok_or(format!("no row {index}"))?;
@@ -325,18 +325,17 @@ impl Replanned for Study<'_> {
             .and_then(|(source, overrides)| resolve(&source, &overrides, &afresh));
         let mut faults = afresh.other.into_inner();
         if let (Err(problem), true) = (told, faults.is_empty()) {
-            let path = format!("{}{}", format::PAYLOAD, format::STUDY);
+            let path = BundlePath::payload(format::STUDY);
             faults.push(Fault::new(path, "earlier explorations that can be run again", problem));
         }
         faults
     }
 
     fn earlier(&self) -> Vec<Earlier> {
-        let in_bag = |name: &str| format!("{}{}{name}", format::PAYLOAD, format::INPUTS);
         let inputs = &self.plan.experiment.inputs;
         let path = |as_written: &str| {
             let input = inputs.iter().find(|input| input.as_written == as_written);
-            in_bag(input.map_or(as_written, |input| &input.name))
+            BundlePath::input(input.map_or(as_written, |input| &input.name)).into()
         };
         let passages = self.plan.experiment.calibration.iter().filter_map(|run| {
             let units = vec![1; run.passages.as_ref()?.len()];

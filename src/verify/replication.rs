@@ -7,7 +7,7 @@
 
 use super::closeness::{self, Closeness};
 use super::{Replanned, Severity};
-use crate::bundle::{Bundle, BundleContent, Fault, format};
+use crate::bundle::{Bundle, BundleContent, BundlePath, Fault, format};
 use crate::claims::verdict::EffectSize;
 use crate::claims::{ClaimVerdict, Judgement};
 use serde::Serialize;
@@ -118,8 +118,8 @@ pub(super) fn check(
     replanned: &dyn Replanned,
     seed: u64,
 ) -> (Option<Replication>, Vec<(Severity, Fault)>) {
-    let resolved = format!("{}{}", format::PAYLOAD, format::RESOLVED);
-    let claims = format!("{}{}{CLAIMS}", format::PAYLOAD, format::RESULTS);
+    let resolved = BundlePath::payload(format::RESOLVED);
+    let claims = BundlePath::result(CLAIMS);
     let obstacle = |fault: Fault| (None, vec![(Severity::Obstacle, fault)]);
     if bundle.is_partial() {
         let fault = Fault::new(resolved, "a whole study", "part of one")
@@ -137,11 +137,7 @@ pub(super) fn check(
         Ok(fresh) => fresh,
         Err(problem) => {
             let expected = "a study that can be run with another seed";
-            return obstacle(Fault::new(
-                format!("{}{}", format::PAYLOAD, format::STUDY),
-                expected,
-                problem,
-            ));
+            return obstacle(Fault::new(BundlePath::payload(format::STUDY), expected, problem));
         }
     };
     let pair = |path: &str| (text(bundle.result(path)), text(result_of(&fresh, path)));

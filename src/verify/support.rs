@@ -1,10 +1,10 @@
 //! What to do about a bundle that another engine ran: which levels can be climbed here, and how to climb the rest.
 
-use crate::bundle::{Bundle, Fault, format};
+use crate::bundle::{Bundle, BundlePath, Fault, format};
 
 /// The obstacle at level 3 of a bundle of an older format.
 pub(super) fn other_format(bundle: &Bundle) -> Fault {
-    let path = format!("{}{}", format::PAYLOAD, format::RESOLVED);
+    let path = BundlePath::payload(format::RESOLVED);
     let (ours, found) = (format::FORMAT, bundle.format());
     Fault::new(path, format!("bundle format {ours}"), format!("bundle format {found}")).hint(
         "levels 0 to 2 can be judged here; tables and descriptions followed from the records in another way then, so the rest \
@@ -14,7 +14,7 @@ pub(super) fn other_format(bundle: &Bundle) -> Fault {
 
 /// The obstacle at level 3, with the way around it.
 pub(super) fn other_engine(bundle: &Bundle, ours: &str) -> Fault {
-    let path = format!("{}{}", format::PAYLOAD, format::RESOLVED);
+    let path = BundlePath::payload(format::RESOLVED);
     let fault = Fault::new(path, format!("engine {ours}"), format!("engine {}", bundle.engine()));
     let mut hint =
         "levels 0 to 2 can be judged here; the rest only by the engine that ran the study: "
