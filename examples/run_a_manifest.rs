@@ -5,7 +5,7 @@
 #![expect(clippy::print_stdout, reason = "an example shows what it found")]
 
 use reenact::document::{Source, reports};
-use reenact::manifest::{self, Inputs, WrittenIn};
+use reenact::manifest::{self, InputError, Inputs, WrittenIn};
 use reenact::plan::{Plan, Selection};
 use reenact::runner::{Scheduler, Silent};
 use reenact::studies;
@@ -16,8 +16,8 @@ use std::path::Path;
 struct Beside<'a>(&'a Path);
 
 impl Inputs for Beside<'_> {
-    fn read(&self, as_written: &str, _: WrittenIn) -> Result<Vec<u8>, String> {
-        std::fs::read(self.0.join(as_written)).map_err(|e| e.to_string())
+    fn read(&self, as_written: &str, _: WrittenIn) -> Result<Vec<u8>, InputError> {
+        std::fs::read(self.0.join(as_written)).map_err(InputError::other)
     }
 }
 

@@ -10,7 +10,7 @@ use reenact::bundle::{
     Archive, Bundle, Class, Form, Limits, Tree, archive, class_of, results_digest,
 };
 use reenact::document::Source;
-use reenact::manifest::{self, Experiment, Inputs, Measured, WrittenIn};
+use reenact::manifest::{self, Experiment, InputError, Inputs, Measured, WrittenIn};
 use reenact::studies::TrialSpec;
 use reenact::verify::{
     Finding, Level, Options, Reenactment, Report, Rows, Severity, climb, plan_of,
@@ -88,16 +88,20 @@ fn copy(from: &Path, to: &Path) {
 struct Beside(PathBuf);
 
 impl Inputs for Beside {
-    fn read(&self, as_written: &str, _: WrittenIn) -> Result<Vec<u8>, String> {
-        fs::read(self.0.join(as_written)).map_err(|e| e.to_string())
+    fn read(&self, as_written: &str, _: WrittenIn) -> Result<Vec<u8>, InputError> {
+        fs::read(self.0.join(as_written)).map_err(InputError::other)
     }
 
-    fn calibrate(&self, _: &Experiment, _: &str) -> Result<Measured, String> {
+    fn calibrate(&self, _: &Experiment, _: &str) -> Result<Measured, InputError> {
         Ok(Measured::StandIn)
     }
 
-    fn explore(&self, spec: &TrialSpec, sealed_as: &[String; 2]) -> Result<[Vec<u8>; 2], String> {
-        manifest::unexplored(spec, sealed_as)
+    fn explore(
+        &self,
+        spec: &TrialSpec,
+        sealed_as: &[String; 2],
+    ) -> Result<[Vec<u8>; 2], InputError> {
+        Ok(manifest::unexplored(spec, sealed_as)?)
     }
 }
 

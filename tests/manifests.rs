@@ -4,7 +4,7 @@ use crate::sandbox::repository;
 use proptest::prelude::*;
 use reenact::bundle::assemble;
 use reenact::document::{Diagnostic, Source};
-use reenact::manifest::{self, Experiment, Inputs, Measured, WrittenIn};
+use reenact::manifest::{self, Experiment, InputError, Inputs, Measured, WrittenIn};
 use reenact::plan::{ENGINE_VERSION, Plan, ResolvedStudy, Selection};
 use reenact::studies::{StudyKind, TrialRecord, TrialSpec};
 use std::collections::BTreeMap;
@@ -14,25 +14,29 @@ use std::path::{Path, PathBuf};
 struct Beside(PathBuf);
 
 impl Inputs for Beside {
-    fn read(&self, as_written: &str, written_in: WrittenIn) -> Result<Vec<u8>, String> {
+    fn read(&self, as_written: &str, written_in: WrittenIn) -> Result<Vec<u8>, InputError> {
         match written_in {
             WrittenIn::CommandLine | WrittenIn::Calibration | WrittenIn::PreviousMap => {
-                Err("no such file".to_owned())
+                Err(InputError::NoFile)
             }
             WrittenIn::Manifest => {
-                std::fs::read(self.0.join(as_written)).map_err(|_| "no such file".to_owned())
+                std::fs::read(self.0.join(as_written)).map_err(|_| InputError::NoFile)
             }
         }
     }
 
     /// Numbers that stand in for a run.
-    fn calibrate(&self, _: &Experiment, _: &str) -> Result<Measured, String> {
+    fn calibrate(&self, _: &Experiment, _: &str) -> Result<Measured, InputError> {
         Ok(Measured::StandIn)
     }
 
     /// Floor plans that stand in for explorations.
-    fn explore(&self, spec: &TrialSpec, sealed_as: &[String; 2]) -> Result<[Vec<u8>; 2], String> {
-        manifest::unexplored(spec, sealed_as)
+    fn explore(
+        &self,
+        spec: &TrialSpec,
+        sealed_as: &[String; 2],
+    ) -> Result<[Vec<u8>; 2], InputError> {
+        Ok(manifest::unexplored(spec, sealed_as)?)
     }
 }
 
@@ -40,9 +44,9 @@ impl Inputs for Beside {
 struct InMemory(BTreeMap<&'static str, String>);
 
 impl Inputs for InMemory {
-    fn read(&self, as_written: &str, _: WrittenIn) -> Result<Vec<u8>, String> {
+    fn read(&self, as_written: &str, _: WrittenIn) -> Result<Vec<u8>, InputError> {
         let name = as_written.rsplit('/').next().unwrap_or_default();
-        self.0.get(name).map(|text| text.clone().into_bytes()).ok_or("no such file".to_owned())
+        self.0.get(name).map(|text| text.clone().into_bytes()).ok_or(InputError::NoFile)
     }
 }
 

@@ -4,7 +4,7 @@
 
 use crate::sandbox::repository;
 use reenact::document::Source;
-use reenact::manifest::{self, Inputs, WrittenIn};
+use reenact::manifest::{self, InputError, Inputs, WrittenIn};
 use reenact::plan::{Plan, Selection};
 use reenact::provenance::Environment;
 use reenact::studies::{self, Outcome};
@@ -13,14 +13,16 @@ use std::path::PathBuf;
 struct Disk(PathBuf);
 
 impl Inputs for Disk {
-    fn read(&self, as_written: &str, written_in: WrittenIn) -> Result<Vec<u8>, String> {
+    fn read(&self, as_written: &str, written_in: WrittenIn) -> Result<Vec<u8>, InputError> {
         let path = match written_in {
             WrittenIn::Manifest => self.0.join(as_written),
             WrittenIn::CommandLine | WrittenIn::Calibration | WrittenIn::PreviousMap => {
                 PathBuf::from(as_written)
             }
         };
-        std::fs::read(&path).map_err(|e| format!("{}: {e}", path.display()))
+        std::fs::read(&path).map_err(|e| {
+            InputError::other(std::io::Error::new(e.kind(), format!("{}: {e}", path.display())))
+        })
     }
 }
 

@@ -1,6 +1,6 @@
 //! Plans of shipped manifests: the same worlds, robots and parameters for every benchmark.
 
-use reenact::manifest::{self, Inputs, WrittenIn};
+use reenact::manifest::{self, InputError, Inputs, WrittenIn};
 use reenact::plan::Plan;
 use std::path::{Path, PathBuf};
 
@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 struct Files(PathBuf);
 
 impl Inputs for Files {
-    fn read(&self, as_written: &str, _: WrittenIn) -> Result<Vec<u8>, String> {
-        std::fs::read(self.0.join(as_written)).map_err(|error| error.to_string())
+    fn read(&self, as_written: &str, _: WrittenIn) -> Result<Vec<u8>, InputError> {
+        std::fs::read(self.0.join(as_written)).map_err(InputError::other)
     }
 }
 

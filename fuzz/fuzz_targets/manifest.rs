@@ -3,16 +3,16 @@
 
 use libfuzzer_sys::fuzz_target;
 use reenact::document::{MOST_FAULTS, Source, reports};
-use reenact::manifest::{self, Inputs, WrittenIn};
+use reenact::manifest::{self, InputError, Inputs, WrittenIn};
 
 struct Shipped;
 
 impl Inputs for Shipped {
-    fn read(&self, as_written: &str, _: WrittenIn) -> Result<Vec<u8>, String> {
+    fn read(&self, as_written: &str, _: WrittenIn) -> Result<Vec<u8>, InputError> {
         match as_written.rsplit('/').next() {
             Some("kobuki.urdf") => Ok(include_bytes!("../../robots/kobuki.urdf").to_vec()),
             Some("basic.yaml") => Ok(include_bytes!("../../worlds/basic.yaml").to_vec()),
-            _ => Err("no such file".to_owned()),
+            _ => Err(InputError::NoFile),
         }
     }
 }

@@ -152,7 +152,7 @@ fn contents(bytes: &[u8], limits: &Limits) -> Result<Vec<(String, Vec<u8>)>, Fau
             Ok(content) => contents.push((path.to_owned(), content)),
             Err(found) => {
                 let expected = "an entry that unpacks to its declared size and checksum";
-                faults.push(Fault::new(path, expected, found));
+                faults.push(Fault::new(path, expected, found.to_string()));
             }
         }
     }

@@ -12,14 +12,20 @@ pub(super) struct Arguments {
     pub(super) command: Command,
 }
 
-/// How many rows `--robustness` asks for.
-fn rows(text: &str) -> Result<Rows, String> {
+/// A value that its option does not take.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+enum ValueError {
+    #[error("expected a number of rows or `all`")]
+    Rows,
+    #[error("expected a number above 0")]
+    Rate,
+}
+
+/// Reads how many rows `--robustness` asks for.
+fn rows(text: &str) -> Result<Rows, ValueError> {
     match text {
         "all" => Ok(Rows::All),
-        number => number
-            .parse()
-            .map(Rows::Drawn)
-            .map_err(|_| "expected a number of rows or `all`".to_owned()),
+        number => number.parse().map(Rows::Drawn).map_err(|_| ValueError::Rows),
     }
 }
 
@@ -347,10 +353,10 @@ pub(super) struct ReplayArgs {
     pub(super) unchecked: bool,
 }
 
-/// A rate in Hz.
-fn rate(text: &str) -> Result<f64, String> {
+/// Reads a rate in Hz.
+fn rate(text: &str) -> Result<f64, ValueError> {
     let rate = text.parse().ok().filter(|rate: &f64| rate.is_finite() && *rate > 0.0);
-    rate.ok_or_else(|| "expected a number above 0".to_owned())
+    rate.ok_or(ValueError::Rate)
 }
 
 #[derive(Debug, Args)]

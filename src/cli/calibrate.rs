@@ -3,12 +3,25 @@
 
 use super::progress::Progress;
 use super::terminal::Terminal;
-use crate::manifest::{self, Experiment, Measured};
+use crate::manifest::{self, Experiment, ExploreError, Measured};
 use crate::plan::Plan;
-use crate::runner::{Scheduler, TrialStore};
+use crate::runner::{RunError, Scheduler, StoreError, TrialStore};
 use crate::store::DirectoryStore;
-use crate::studies::deadline::PlannedPassages;
+use crate::studies::deadline::{CalibrationError, PlannedPassages};
 use crate::studies::{self, TrialRecord, TrialSpec};
+
+/// Why there are no passages.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum Unmeasured {
+    #[error(transparent)]
+    Run(#[from] RunError),
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    #[error(transparent)]
+    Unfit(#[from] CalibrationError),
+    #[error("{left} of its {of} passages have not run yet: `reenact run {manifest}` runs them")]
+    NotRun { left: usize, of: usize, manifest: String },
+}
 
 /// How a calibration is had.
 #[derive(Clone, Copy)]
@@ -32,7 +45,7 @@ impl Calibrator<'_> {
         self,
         calibration: &Experiment,
         terminal: Terminal,
-    ) -> Result<Measured, String> {
+    ) -> Result<Measured, Unmeasured> {
         if matches!(self, Self::StandIn) {
             return Ok(Measured::StandIn);
         }
@@ -46,14 +59,12 @@ impl Calibrator<'_> {
                 let store = store.map(|store| store as &dyn TrialStore);
                 let records = scheduler.run(&plan.trials, &studies::execute, store, &progress);
                 progress.finish();
-                records.map_err(|e| e.to_string())?
+                records?
             }
         };
         let planned = PlannedPassages::of(plan.experiment.design(), plan.experiment.trials);
-        let showed = planned.and_then(|planned| planned.showed(&records));
-        showed
-            .map(|passages| Measured::Passages(passages.to_csv().into_bytes()))
-            .map_err(|e| e.to_string())
+        let passages = planned.and_then(|planned| planned.showed(&records))?;
+        Ok(Measured::Passages(passages.to_csv().into_bytes()))
     }
 
     /// The map that the robot of `spec` ends with, as a descriptor and an image. One exploration takes about a second, so
@@ -62,7 +73,7 @@ impl Calibrator<'_> {
         self,
         spec: &TrialSpec,
         sealed_as: &[String; 2],
-    ) -> Result<[Vec<u8>; 2], String> {
+    ) -> Result<[Vec<u8>; 2], ExploreError> {
         match self {
             Self::StandIn => manifest::unexplored(spec, sealed_as),
             Self::Stored(_) | Self::Run { .. } => manifest::explored(spec, sealed_as),
@@ -70,18 +81,18 @@ impl Calibrator<'_> {
     }
 }
 
-fn stored(plan: &Plan, store: &DirectoryStore) -> Result<Vec<TrialRecord>, String> {
+fn stored(plan: &Plan, store: &DirectoryStore) -> Result<Vec<TrialRecord>, Unmeasured> {
     let mut records = Vec::new();
     for spec in &plan.trials {
-        records.extend(store.get(&spec.key).map_err(|e| e.to_string())?);
+        records.extend(store.get(&spec.key)?);
     }
     if records.len() == plan.trials.len() {
         return Ok(records);
     }
-    let manifest = plan.experiment.document.sources.first().map_or("", |source| &source.name);
-    Err(format!(
-        "{} of its {} passages have not run yet: `reenact run {manifest}` runs them",
-        plan.trials.len() - records.len(),
-        plan.trials.len(),
-    ))
+    let source = plan.experiment.document.sources.first();
+    Err(Unmeasured::NotRun {
+        left: plan.trials.len() - records.len(),
+        of: plan.trials.len(),
+        manifest: source.map_or_else(String::new, |source| source.name.to_string()),
+    })
 }

@@ -7,7 +7,7 @@ use super::terminal::Terminal;
 use crate::bundle::archive::{Archive, Limits};
 use crate::bundle::{Resolved, format, names};
 use crate::document::{Severity, Source};
-use crate::manifest::{self, Experiment, Inputs, Measured, WrittenIn};
+use crate::manifest::{self, Experiment, InputError, Inputs, Measured, WrittenIn};
 use crate::plan::{Plan, Selection};
 use crate::store::{self, reason};
 use crate::studies::TrialSpec;
@@ -165,6 +165,15 @@ fn sealed_beside(manifest: &Path, folder: &Path) -> Result<BTreeMap<String, Path
     sealed.collect()
 }
 
+/// Why a file that a manifest names cannot be read.
+#[derive(Debug, thiserror::Error)]
+enum Unread {
+    #[error("{}", reason(.0))]
+    Beside(std::io::Error),
+    #[error("{}, neither here nor beside the manifest", reason(.0))]
+    Anywhere(std::io::Error),
+}
+
 /// Inputs of a manifest in this folder.
 struct Folder<'a> {
     path: PathBuf,
@@ -175,27 +184,30 @@ struct Folder<'a> {
 }
 
 impl Inputs for Folder<'_> {
-    fn read(&self, as_written: &str, written_in: WrittenIn) -> Result<Vec<u8>, String> {
+    fn read(&self, as_written: &str, written_in: WrittenIn) -> Result<Vec<u8>, InputError> {
         let beside = self.path.join(as_written);
         let beside = self.sealed.get(as_written).unwrap_or(&beside);
         let read = |path: &Path| store::read(path, MOST_INPUT);
         match written_in {
             WrittenIn::Manifest | WrittenIn::Calibration | WrittenIn::PreviousMap => {
-                read(beside).map_err(|e| reason(&e))
+                read(beside).map_err(Unread::Beside)
             }
             // Given on the command line: from here, as a shell completes it, or else from the manifest.
-            WrittenIn::CommandLine => read(Path::new(as_written)).or_else(|here| {
-                read(beside)
-                    .map_err(|_| format!("{}, neither here nor beside the manifest", reason(&here)))
-            }),
+            WrittenIn::CommandLine => read(Path::new(as_written))
+                .or_else(|here| read(beside).map_err(|_| Unread::Anywhere(here))),
         }
+        .map_err(InputError::other)
     }
 
-    fn calibrate(&self, calibration: &Experiment, _: &str) -> Result<Measured, String> {
-        self.calibrator.passages(calibration, self.terminal)
+    fn calibrate(&self, calibration: &Experiment, _: &str) -> Result<Measured, InputError> {
+        self.calibrator.passages(calibration, self.terminal).map_err(InputError::other)
     }
 
-    fn explore(&self, spec: &TrialSpec, sealed_as: &[String; 2]) -> Result<[Vec<u8>; 2], String> {
-        self.calibrator.map(spec, sealed_as)
+    fn explore(
+        &self,
+        spec: &TrialSpec,
+        sealed_as: &[String; 2],
+    ) -> Result<[Vec<u8>; 2], InputError> {
+        Ok(self.calibrator.map(spec, sealed_as)?)
     }
 }

@@ -78,20 +78,20 @@ pub fn read(text: &str) -> Result<Cmdp, DocumentError> {
 
     for (i, value) in list(&root, "", "absorbing")?.iter().enumerate() {
         let place = || format!("absorbing[{i}]");
-        let state = index(value, "a state index").map_err(|fault| malformed(place(), fault))?;
+        let state = index(value, "a state index").map_err(|fault| unfit(place(), &fault))?;
         builder.absorb(state).map_err(|error| entry(place(), &error))?;
     }
     for (i, value) in list(&root, "", "initial")?.iter().enumerate() {
         let place = || format!("initial[{i}]");
         let ([state], probability) =
-            row(value, "[state, probability]").map_err(|fault| malformed(place(), fault))?;
+            row(value, "[state, probability]").map_err(|fault| unfit(place(), &fault))?;
         builder.initial(state, probability).map_err(|error| entry(place(), &error))?;
     }
     for (i, value) in list(&root, "", "transitions")?.iter().enumerate() {
         let place = || format!("transitions[{i}]");
         let ([state, action, successor], probability) =
             row(value, "[state, action, successor, probability]")
-                .map_err(|fault| malformed(place(), fault))?;
+                .map_err(|fault| unfit(place(), &fault))?;
         builder
             .transition(state, action, successor, probability)
             .map_err(|error| entry(place(), &error))?;
@@ -99,7 +99,7 @@ pub fn read(text: &str) -> Result<Cmdp, DocumentError> {
     for (i, value) in list(&root, "", "primary")?.iter().enumerate() {
         let place = || format!("primary[{i}]");
         let ([state, action], cost) =
-            row(value, "[state, action, cost]").map_err(|fault| malformed(place(), fault))?;
+            row(value, "[state, action, cost]").map_err(|fault| unfit(place(), &fault))?;
         builder.primary(state, action, cost).map_err(|error| entry(place(), &error))?;
     }
     for (k, value) in list(&root, "", "secondary")?.iter().enumerate() {
@@ -127,13 +127,13 @@ fn secondary(builder: &mut CmdpBuilder, k: usize, value: &Value) -> Result<(), D
         }
     };
     let bound = number(member(item, &place, "bound", "a number >= 0")?)
-        .map_err(|fault| malformed(format!("{place}.bound"), fault))?;
+        .map_err(|fault| unfit(format!("{place}.bound"), &fault))?;
     let declared =
         builder.secondary(name, bound).map_err(|error| entry(format!("{place}.bound"), &error))?;
     for (i, value) in list(item, &place, "costs")?.iter().enumerate() {
         let place = || format!("{place}.costs[{i}]");
         let ([state, action], cost) =
-            row(value, "[state, action, cost]").map_err(|fault| malformed(place(), fault))?;
+            row(value, "[state, action, cost]").map_err(|fault| unfit(place(), &fault))?;
         builder
             .secondary_cost(declared, state, action, cost)
             .map_err(|error| entry(place(), &error))?;
@@ -201,6 +201,10 @@ fn malformed(place: impl Into<String>, fault: impl Into<String>) -> DocumentErro
     DocumentError::Malformed { place: place.into(), fault: fault.into() }
 }
 
+fn unfit(place: String, fault: &Unfit) -> DocumentError {
+    malformed(place, fault.to_string())
+}
+
 fn entry(place: String, error: &EntryError) -> DocumentError {
     malformed(place, error.to_string())
 }
@@ -256,27 +260,39 @@ fn names(root: &Map<String, Value>, key: &str) -> Result<usize, DocumentError> {
     Ok(items.len())
 }
 
-fn index(value: &Value, expected: &str) -> Result<usize, String> {
-    value
-        .as_u64()
-        .and_then(|i| usize::try_from(i).ok())
-        .ok_or_else(|| format!("expected {expected}, found {}", kind(value)))
+/// A value of another kind than its place takes.
+#[derive(Debug, thiserror::Error)]
+#[error("expected {expected}, found {found}")]
+struct Unfit {
+    expected: String,
+    found: String,
 }
 
-fn number(value: &Value) -> Result<f64, String> {
-    value.as_f64().ok_or_else(|| format!("expected a number, found {}", kind(value)))
+impl Unfit {
+    fn new(expected: &str, value: &Value) -> Self {
+        Self { expected: expected.to_owned(), found: kind(value) }
+    }
+}
+
+fn index(value: &Value, expected: &str) -> Result<usize, Unfit> {
+    let index = value.as_u64().and_then(|i| usize::try_from(i).ok());
+    index.ok_or_else(|| Unfit::new(expected, value))
+}
+
+fn number(value: &Value) -> Result<f64, Unfit> {
+    value.as_f64().ok_or_else(|| Unfit::new("a number", value))
 }
 
 /// A row of N indices and a number; `shape` names its elements.
-fn row<const N: usize>(value: &Value, shape: &str) -> Result<([usize; N], f64), String> {
+fn row<const N: usize>(value: &Value, shape: &str) -> Result<([usize; N], f64), Unfit> {
     let Value::Array(items) = value else {
-        return Err(format!("expected {shape}, found {}", kind(value)));
+        return Err(Unfit::new(shape, value));
     };
     let [indices @ .., last] = items.as_slice() else {
-        return Err(format!("expected {shape}, found {}", kind(value)));
+        return Err(Unfit::new(shape, value));
     };
     let Ok(indices) = <&[Value; N]>::try_from(indices) else {
-        return Err(format!("expected {shape}, found {}", kind(value)));
+        return Err(Unfit::new(shape, value));
     };
     let mut read = [0; N];
     for ((slot, item), what) in read.iter_mut().zip(indices).zip(["state", "action", "successor"]) {

@@ -2,11 +2,12 @@
 
 use super::experiment::{CalibrationRun, Experiment};
 use super::input::{Input, InputKind, WrittenIn};
-use super::library::{Inputs, Library, Measured, joined, normalised};
+use super::library::{InputError, Inputs, Library, Measured, joined, normalised};
 use super::resolve::resolve;
 use super::resolver::Resolver;
-use crate::studies::deadline::{Calibration, PlannedPassages};
+use crate::studies::deadline::{Calibration, CalibrationError, PlannedPassages};
 use std::cell::RefCell;
+use std::string::FromUtf8Error;
 use std::sync::Arc;
 
 impl Resolver<'_> {
@@ -51,7 +52,7 @@ impl Resolver<'_> {
             }
             Err(problem) => {
                 let message = format!("`{path}` gives no calibration");
-                let fault = self.faults.fault(pointer, message).label(problem);
+                let fault = self.faults.fault(pointer, message).label(problem.to_string());
                 self.faults
                     .push(fault.help(format!("`reenact check {path}` tells its own faults")));
                 None
@@ -82,27 +83,40 @@ impl Resolver<'_> {
         }
     }
 
-    /// What the passages of `experiment` show.
+    /// Returns what the passages of `experiment` show.
     fn measured(
         &mut self,
         experiment: Experiment,
         sealed_as: String,
-    ) -> Result<(CalibrationRun, Calibration), String> {
-        let passages = PlannedPassages::of(experiment.design(), experiment.trials)
-            .map_err(|e| e.to_string())?;
+    ) -> Result<(CalibrationRun, Calibration), Unmeasured> {
+        let passages = PlannedPassages::of(experiment.design(), experiment.trials)?;
         let measured = match self.library.files.calibrate(&experiment, &sealed_as)? {
             Measured::StandIn => None,
             Measured::Passages(bytes) => {
-                let text = String::from_utf8(bytes).map_err(|e| e.to_string())?;
-                Some(passages.read(&text).map_err(|e| format!("`{sealed_as}`: {e}"))?)
+                let text = String::from_utf8(bytes)?;
+                let read = passages.read(&text);
+                Some(read.map_err(|error| Unmeasured::Unread(sealed_as.clone(), error))?)
             }
         };
         let calibration = match &measured {
-            Some(passages) => passages.calibration().map_err(|e| e.to_string())?,
+            Some(passages) => passages.calibration()?,
             None => Calibration::stand_in(),
         };
         Ok((CalibrationRun { experiment, passages: measured, sealed_as }, calibration))
     }
+}
+
+/// Why a calibration's experiment shows nothing.
+#[derive(Debug, thiserror::Error)]
+enum Unmeasured {
+    #[error(transparent)]
+    Input(#[from] InputError),
+    #[error(transparent)]
+    NotText(#[from] FromUtf8Error),
+    #[error("`{0}`: {1}")]
+    Unread(String, CalibrationError),
+    #[error(transparent)]
+    Unfit(#[from] CalibrationError),
 }
 
 /// The files of the calibration manifest `manifest`, which are inputs of the manifest that names it, too.
@@ -120,7 +134,7 @@ impl<'f, 'a> OfCalibration<'f, 'a> {
 }
 
 impl Inputs for OfCalibration<'_, '_> {
-    fn read(&self, as_written: &str, _: WrittenIn) -> Result<Vec<u8>, String> {
+    fn read(&self, as_written: &str, _: WrittenIn) -> Result<Vec<u8>, InputError> {
         let path = joined(&self.manifest, as_written);
         let files = &mut self.library.borrow_mut().files;
         files.read(&path, self.written_in, InputKind::Calibration).map(|bytes| bytes.to_vec())

@@ -59,11 +59,11 @@ pub use experiment::{
     Assumption, CalibrationRun, Experiment, Meanings, ResolvedCondition, Robustness,
 };
 pub use input::{Input, InputKind, WrittenIn};
-pub use library::{Inputs, Measured};
+pub use library::{InputError, Inputs, Measured};
 pub use names::Factor;
 pub use parameters::ParametersDoc;
 pub use pinned::{PinnedDoc, PinnedFileDoc};
-pub use previous::{explored, unexplored};
+pub use previous::{ExploreError, explored, unexplored};
 pub use resolve::resolve;
 pub use schema::schema;
 

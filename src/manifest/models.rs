@@ -6,7 +6,7 @@ use super::faults::step;
 use super::input::{InputKind, WrittenIn};
 use super::library::{Library, Unread, joined, normalised};
 use super::resolver::Resolver;
-use crate::world::sdf::{Found, Models, Place, place_of};
+use crate::world::sdf::{Found, Models, Place, Unplaced, place_of};
 use crate::world::{Solid, document, mesh};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -27,7 +27,7 @@ pub(super) struct Shelf<'r, 'a> {
 
 impl Shelf<'_, '_> {
     /// The path of the file that `uri` names.
-    fn path_of(&self, uri: &str) -> Result<(String, WrittenIn), String> {
+    fn path_of(&self, uri: &str) -> Result<(String, WrittenIn), Unplaced> {
         Ok(match place_of(uri, &self.doc.models)? {
             Place::Model(path) => (normalised(&path), self.folders),
             Place::Beside(path) => (joined(&self.world.0, &path), self.world.1),
@@ -40,7 +40,7 @@ impl Shelf<'_, '_> {
         }
         let (path, written_in) = match self.path_of(uri) {
             Ok(found) => found,
-            Err(why) => return Found::Missing(why),
+            Err(why) => return Found::Missing(why.to_string()),
         };
         let bytes = match self.library.read(&path, written_in, InputKind::World) {
             Ok(bytes) => bytes,

@@ -8,12 +8,12 @@ use super::document::{ManifestDoc, PreviousMapDoc, PriorDoc, UnknownAs};
 use super::experiment::{Assumption, Meanings};
 use super::faults::step;
 use super::knowledge::{Exploration, Knowledge, Told, UsedPrior, read_as};
-use super::library::{Known, normalised};
+use super::library::{InputError, Known, normalised};
 use super::lint;
 use super::readers;
 use super::resolver::Resolver;
 use crate::digest::{Sha256Digest, TrialKey};
-use crate::document::{Source, reports};
+use crate::document::{Diagnostic, Source, reports};
 use crate::grid::OccupancyGrid;
 use crate::json;
 use crate::rng::Seeds;
@@ -22,33 +22,55 @@ use crate::studies::{Condition, Setup, Study, TrialSpec};
 use crate::world::floor_plan::{self, Plan};
 use crate::world::map_server;
 use serde_json::json;
+use std::string::FromUtf8Error;
 use std::sync::Arc;
 
-/// The map that the robot of `spec` ends with, as the descriptor and the image `named`: runs the exploration.
+/// Why an exploration gives no map.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ExploreError {
+    /// The trial is of another study.
+    #[error("the study makes no maps")]
+    NoMaps,
+    /// It cannot run, or maps nothing.
+    #[error("{0}")]
+    Unmapped(String),
+    /// Nothing can stand in for its map.
+    #[error(transparent)]
+    NoPlan(#[from] floor_plan::PlanError),
+}
+
+impl From<ExploreError> for InputError {
+    fn from(error: ExploreError) -> Self {
+        Self::other(error)
+    }
+}
+
+/// Returns the map that the robot of `spec` ends with, as the descriptor and the image `named`: runs the exploration.
 ///
 /// # Errors
-/// Where it cannot run or maps nothing, in words.
-pub fn explored(spec: &TrialSpec, named: &[String; 2]) -> Result<[Vec<u8>; 2], String> {
-    let map = prior_map::explored_map(spec, setup_of(spec)?)?;
+/// Where it cannot run or maps nothing.
+pub fn explored(spec: &TrialSpec, named: &[String; 2]) -> Result<[Vec<u8>; 2], ExploreError> {
+    let map = prior_map::explored_map(spec, setup_of(spec)?)
+        .map_err(|problem| ExploreError::Unmapped(problem.to_string()))?;
     Ok(map_server::write(&map, &image_beside(named)))
 }
 
-/// What stands in for that map where nothing is simulated, with its name and frame but for its size: the floor plan of the
+/// Returns what stands in for that map where nothing is simulated, with its name and frame but for its size: the floor plan of the
 /// world that is explored. It enters no result.
 ///
 /// # Errors
-/// Where there is nothing to draw, in words.
-pub fn unexplored(spec: &TrialSpec, named: &[String; 2]) -> Result<[Vec<u8>; 2], String> {
+/// Where there is nothing to draw.
+pub fn unexplored(spec: &TrialSpec, named: &[String; 2]) -> Result<[Vec<u8>; 2], ExploreError> {
     let setup = setup_of(spec)?;
     let height = setup.robot.lidar.as_ref().map_or(0.0, |lidar| lidar.height);
     let resolution = setup.parameters.mapping.resolution_m;
     let plan = Plan { height, resolution, layers: None };
-    let map = floor_plan::floor_plan(&setup.world, plan).map_err(|e| e.to_string())?;
+    let map = floor_plan::floor_plan(&setup.world, plan)?;
     Ok(map_server::write(&map, &image_beside(named)))
 }
 
-fn setup_of(spec: &TrialSpec) -> Result<&prior_map::Setup, String> {
-    spec.setup.of().ok_or_else(|| "the study makes no maps".to_owned())
+fn setup_of(spec: &TrialSpec) -> Result<&prior_map::Setup, ExploreError> {
+    spec.setup.of().ok_or(ExploreError::NoMaps)
 }
 
 fn image_beside([_, image]: &[String; 2]) -> String {
@@ -179,21 +201,36 @@ impl<'a> Resolver<'a> {
     ) -> Known<OccupancyGrid> {
         let sealed_as = ["yaml", "pgm"]
             .map(|ending| normalised(&format!("previous-map-{}.{ending}", spec.key.short())));
-        let read = self.library.files.explore(spec, &sealed_as).and_then(|[descriptor, image]| {
-            let text = String::from_utf8(descriptor.to_vec()).map_err(|e| e.to_string())?;
-            let source = Source::new(sealed_as[0].clone(), text);
-            readers::explored(&source, &sealed_as[1], &image)
-                .map_err(|faults| reports(&faults, false).concat())
-        });
-        match read {
+        match self.map_of(spec, &sealed_as) {
             Ok(grid) => Some(read_as(&grid, *grid.frame(), unknown)),
             Err(problem) => {
                 let fault = self.faults.fault(pointer, "this exploration gives no map");
-                self.faults.push(fault.label(problem));
+                self.faults.push(fault.label(problem.to_string()));
                 None
             }
         }
     }
+
+    fn map_of(
+        &mut self,
+        spec: &TrialSpec,
+        sealed_as: &[String; 2],
+    ) -> Result<OccupancyGrid, NoMap> {
+        let [descriptor, image] = self.library.files.explore(spec, sealed_as)?;
+        let source = Source::new(sealed_as[0].clone(), String::from_utf8(descriptor.to_vec())?);
+        readers::explored(&source, &sealed_as[1], &image).map_err(NoMap::Faulty)
+    }
+}
+
+/// Why an exploration's map cannot be read.
+#[derive(Debug, thiserror::Error)]
+enum NoMap {
+    #[error(transparent)]
+    Input(#[from] InputError),
+    #[error(transparent)]
+    NotText(#[from] FromUtf8Error),
+    #[error("{}", reports(.0, false).concat())]
+    Faulty(Vec<Diagnostic>),
 }
 
 /// The trial. Its identity holds what a trial's does but for the condition and the engine, and its random streams are no

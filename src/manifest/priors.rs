@@ -154,7 +154,8 @@ impl<'a> Resolver<'a> {
                     Some((Arc::new(grid), meaning))
                 }
                 Err(problem) => {
-                    let fault = this.faults.fault(&pointer, problem).label("derived here");
+                    let fault =
+                        this.faults.fault(&pointer, problem.to_string()).label("derived here");
                     this.faults.push(fault);
                     None
                 }

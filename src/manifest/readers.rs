@@ -4,7 +4,7 @@ use super::document::Alpha;
 use crate::document::{Diagnostic, Source};
 use crate::grid::OccupancyGrid;
 use crate::studies::prior_map::tour::{self, TopoMetricMap};
-use crate::world::floor_plan::{self, Plan};
+use crate::world::floor_plan::{self, Plan, PlanError};
 use crate::world::{World, document, map_server, sdf};
 
 /// What is derived from a world as prior knowledge.
@@ -31,14 +31,13 @@ impl Derived {
     /// Draws it from `world`.
     ///
     /// # Errors
-    /// Nothing to draw or too much, in words.
-    pub(super) fn draw(self, world: &World, plan: Plan<'_>) -> Result<OccupancyGrid, String> {
+    /// Nothing to draw or too much.
+    pub(super) fn draw(self, world: &World, plan: Plan<'_>) -> Result<OccupancyGrid, PlanError> {
         match self {
             Self::FloorPlan => floor_plan::floor_plan(world, plan),
             Self::Footprint => floor_plan::footprint(world, plan),
             Self::BoundingBox => floor_plan::bounding_box(world, plan),
         }
-        .map_err(|error| error.to_string())
     }
 }
 

@@ -93,7 +93,7 @@ impl<'a> Resolver<'a> {
                     ),
                     None => relative_to(written_in).to_owned(),
                 };
-                (format!("cannot read `{path}`"), reason, help)
+                (format!("cannot read `{path}`"), reason.to_string(), help)
             }
         };
         let fault = self.faults.fault(pointer, message).label(label).help(help);

@@ -47,7 +47,7 @@ pub(super) fn underlay(
     let found = library.files.read(&normalised(&path), written_in, InputKind::Settings);
     let bytes = found.map_err(|reason| {
         let fault = fault(format!("cannot read `{path}`"));
-        vec![fault.label(reason).help(relative_to(written_in))]
+        vec![fault.label(reason.to_string()).help(relative_to(written_in))]
     })?;
     let text = std::str::from_utf8(&bytes).map_err(|_| {
         vec![fault(format!("`{path}` is not UTF-8 text")).label("expected a text file")]

@@ -13,7 +13,7 @@ use std::path::PathBuf;
 fn with_settings(overrides: &[&str]) -> (prior_map::Parameters, Experiment) {
     struct Shared;
     impl Inputs for Shared {
-        fn read(&self, as_written: &str, _: WrittenIn) -> Result<Vec<u8>, String> {
+        fn read(&self, as_written: &str, _: WrittenIn) -> Result<Vec<u8>, InputError> {
             let root = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
             match as_written {
                 "shared.yaml" => Ok(b"reenact-settings: 1\nstudy: prior-map\nparameters:\n  sensing:\n    \
@@ -21,7 +21,7 @@ fn with_settings(overrides: &[&str]) -> (prior_map::Parameters, Experiment) {
                     mapping: {resolution-m: {value: 0.2, why: coarse}}\n"
                     .to_vec()),
                 "other.yaml" => Ok(b"reenact-settings: 1\nstudy: prior-map\nparameters: {sensing: {range-m: 7}}\n".to_vec()),
-                _ => std::fs::read(root.join(as_written)).map_err(|e| e.to_string()),
+                _ => std::fs::read(root.join(as_written)).map_err(InputError::other),
             }
         }
     }
@@ -59,12 +59,12 @@ fn the_command_line_goes_over_both_and_can_name_other_settings() {
 struct Folder(PathBuf);
 
 impl Inputs for Folder {
-    fn read(&self, as_written: &str, _: WrittenIn) -> Result<Vec<u8>, String> {
+    fn read(&self, as_written: &str, _: WrittenIn) -> Result<Vec<u8>, InputError> {
         let path = match as_written.strip_prefix("robots/") {
             Some(robot) => PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("robots").join(robot),
             None => self.0.join(as_written),
         };
-        std::fs::read(path).map_err(|e| e.to_string())
+        std::fs::read(path).map_err(InputError::other)
     }
 }
 
@@ -114,13 +114,17 @@ struct Workshop {
 }
 
 impl Inputs for Workshop {
-    fn read(&self, as_written: &str, _: WrittenIn) -> Result<Vec<u8>, String> {
-        self.files.get(as_written).cloned().ok_or_else(|| "no such file".to_owned())
+    fn read(&self, as_written: &str, _: WrittenIn) -> Result<Vec<u8>, InputError> {
+        self.files.get(as_written).cloned().ok_or(InputError::NoFile)
     }
 
-    fn explore(&self, spec: &TrialSpec, sealed_as: &[String; 2]) -> Result<[Vec<u8>; 2], String> {
+    fn explore(
+        &self,
+        spec: &TrialSpec,
+        sealed_as: &[String; 2],
+    ) -> Result<[Vec<u8>; 2], InputError> {
         self.explored.borrow_mut().push(sealed_as.clone());
-        explored(spec, sealed_as)
+        Ok(explored(spec, sealed_as)?)
     }
 }
 

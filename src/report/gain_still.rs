@@ -32,23 +32,54 @@ pub struct GainView {
     pub known_obstacles_occlude: bool,
 }
 
-/// Draws the map at a choice with the candidate; the cells that count without prior knowledge; and where the trial had
-/// a prior, the prior over the map, and the cells that count with it (the paper's definition of I(p), section 3.2).
+/// Why there is nothing to show.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum GainError {
+    /// The trial has no such choice.
+    #[error("the trial has no choice {choice}: there are {count}")]
+    NoChoice {
+        /// Which was asked for, from 1.
+        choice: usize,
+        /// How many there are.
+        count: usize,
+    },
+    /// The choice has no such candidate.
+    #[error("choice {choice} has no candidate {candidate}: there are {count}")]
+    NoCandidate {
+        /// Which choice, from 1.
+        choice: usize,
+        /// Which candidate was asked for, from 1.
+        candidate: usize,
+        /// How many there are.
+        count: usize,
+    },
+    /// The choice took none of its candidates.
+    #[error("choice {choice} chose none of its {count} candidates")]
+    NoneChosen {
+        /// Which choice, from 1.
+        choice: usize,
+        /// How many candidates there are.
+        count: usize,
+    },
+}
+
+/// Draws the map at a choice with the candidate; the cells that count without prior knowledge; and where the trial had a prior, the
+/// prior over the map, and the cells that count with it (the paper's definition of I(p), section 3.2).
 ///
 /// # Errors
-/// Where the trial has no such choice or candidate, in words.
-pub fn gain_svg(recording: &Recording, view: GainView) -> Result<String, String> {
+/// Where the trial has no such choice or candidate.
+pub fn gain_svg(recording: &Recording, view: GainView) -> Result<String, GainError> {
     let (decision, map) = at_choice(recording, view.decision)?;
     let count = decision.frontiers.len();
     let index = match view.candidate {
         Some(n) => n.checked_sub(1),
         None => decision.chosen,
     };
-    let frontier =
-        index.and_then(|i| decision.frontiers.get(i)).ok_or_else(|| match view.candidate {
-            Some(n) => format!("choice {} has no candidate {n}: there are {count}", view.decision),
-            None => format!("choice {} chose none of its {count} candidates", view.decision),
-        })?;
+    let choice = view.decision;
+    let frontier = index.and_then(|i| decision.frontiers.get(i)).ok_or(match view.candidate {
+        Some(candidate) => GainError::NoCandidate { choice, candidate, count },
+        None => GainError::NoneChosen { choice, count },
+    })?;
     let home = recording.map_pose.inverse_transform(frontier.candidate);
     let scene = Scene::new(recording, &map, home, view.range_cells);
     let without = scene
@@ -88,22 +119,25 @@ pub fn gain_svg(recording: &Recording, view: GainView) -> Result<String, String>
     Ok(document(whole, tall, &title, body))
 }
 
-/// Returns the `number`-th choice of a trial, from 1, and the map on which it was made.
-fn at_choice(recording: &Recording, number: usize) -> Result<(&Decision, OccupancyGrid), String> {
+/// Returns the `choice`-th choice of a trial, from 1, and the map on which it was made.
+fn at_choice(
+    recording: &Recording,
+    choice: usize,
+) -> Result<(&Decision, OccupancyGrid), GainError> {
     let mut map = OccupancyGrid::filled(recording.map_frame, Occupancy::Unknown);
-    let mut seen = 0;
+    let mut count = 0;
     for frame in &recording.frames {
         for (cell, value) in &frame.map_changes {
             map.set(*cell, *value);
         }
         if let Some(decision) = &frame.decision {
-            seen += 1;
-            if seen == number {
+            count += 1;
+            if count == choice {
                 return Ok((decision, map));
             }
         }
     }
-    Err(format!("the trial has no choice {number}: there are {seen}"))
+    Err(GainError::NoChoice { choice, count })
 }
 
 /// Map and prior on one lattice, cut to what the scanner reaches from the candidate.
@@ -235,7 +269,7 @@ mod tests {
     #[test]
     fn what_is_not_there_is_told_with_what_is() {
         let recording = recording(40);
-        let fault = |view| gain_svg(&recording, view).unwrap_err();
+        let fault = |view| gain_svg(&recording, view).unwrap_err().to_string();
         let many = fault(GainView { decision: 999, ..view(None) });
         assert!(many.starts_with("the trial has no choice 999: there are "), "{many}");
         let none = fault(view(Some(99)));

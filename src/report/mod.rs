@@ -25,7 +25,7 @@ mod still;
 mod tables;
 mod template;
 
-pub use bag::{Bag, bag, bag_under_banner};
+pub use bag::{Bag, BagError, bag, bag_under_banner};
 pub use banner::{drawing_under_banner, page_under_banner};
 pub use claim::{ClaimRow, ComparisonRow};
 pub use content::{
@@ -34,7 +34,7 @@ pub use content::{
 };
 pub use difference::difference_page;
 pub use evaluation::{Badge, Command, Evaluation};
-pub use gain_still::{GainView, gain_svg};
+pub use gain_still::{GainError, GainView, gain_svg};
 pub use gather::content_of;
 pub use origin::{InputRow, Provenance};
 pub use page::page;

@@ -32,7 +32,7 @@ pub(super) fn check(bundle: &Bundle, replanned: &dyn Replanned) -> Derived {
         Err(_) if !found.faults.is_empty() => return found,
         Err(problem) => {
             let path = BundlePath::payload(format::TRIALS);
-            found.faults.push(Fault::new(path, "records that make results", problem));
+            found.faults.push(Fault::new(path, "records that make results", problem.to_string()));
             return found;
         }
     };

@@ -115,7 +115,7 @@ impl Earlier {
             Ok(compared) if compared.len() == drawn.len() => compared,
             other => {
                 let found = match other {
-                    Err(problem) => problem,
+                    Err(problem) => problem.to_string(),
                     Ok(fewer) => format!("{} of them", fewer.len()),
                 };
                 let expected = format!("{} executed again", drawn.len());

@@ -355,7 +355,8 @@ impl Climb<'_> {
             Ok(replanned) => replanned,
             Err(problem) => {
                 let path = BundlePath::payload(format::STUDY);
-                let fault = Fault::new(path, "a manifest that can be planned again", problem);
+                let fault =
+                    Fault::new(path, "a manifest that can be planned again", problem.to_string());
                 self.report.note(Level::Derived, Severity::Error, [fault]);
                 return;
             }

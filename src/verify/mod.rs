@@ -23,12 +23,14 @@ mod support;
 #[cfg(test)]
 mod tests;
 
-pub use attestation::{Attestation, Envelope, LONGEST as LONGEST_ATTESTATION};
+pub use attestation::{AttestError, Attestation, Envelope, LONGEST as LONGEST_ATTESTATION};
 pub use closeness::{Apart, Closeness};
 pub use earlier::{Earlier, EarlierAgain, Made};
 pub use finding::{Finding, Level, Severity};
 pub use ladder::{Options, Report, Reviewer, Rows, Verdict, climb, climb_and_keep, climb_for};
-pub use pipeline::{Pipeline, PlannedTrial, Replanned};
+pub use pipeline::{
+    ContentError, MakeAgainError, Pipeline, PlannedTrial, ReplanError, Replanned, ReplicateError,
+};
 pub use reexecution::Sample;
 pub use replan::{Reenactment, plan_of};
 pub use replication::{ClaimAgain, Replication, VerdictStanding};

@@ -100,7 +100,7 @@ pub(super) fn check(
         let expected = format!("{} trials executed again", indices.len());
         Fault::new(&trials, expected, found).hint("this is a bug in reenact, or too little memory")
     };
-    let fresh = replanned.execute(indices).map_err(failed)?;
+    let fresh = replanned.execute(indices).map_err(|problem| failed(problem.to_string()))?;
     if fresh.len() != indices.len() {
         return Err(failed(fresh.len().to_string()));
     }

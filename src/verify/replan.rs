@@ -1,11 +1,12 @@
 //! The pipeline that `run` goes, gone again from a bundle: manifest, plan, trials, results.
 
+use super::pipeline::{ContentError, MakeAgainError, ReplanError, ReplicateError};
 use super::{Earlier, Made, Pipeline, PlannedTrial, Replanned};
 use crate::bundle::{Bundle, BundleContent, BundlePath, Fault, assemble, format};
 use crate::claims::sensitivity::{Run, in_words};
 use crate::digest::Sha256Digest;
-use crate::document::{MOST_FAULTS, Source, reports};
-use crate::manifest::{self, Experiment, Inputs, Measured, WrittenIn};
+use crate::document::Source;
+use crate::manifest::{self, Experiment, InputError, Inputs, Measured, WrittenIn};
 use crate::plan::{ENGINE_VERSION, Plan, Selection};
 use crate::rng::Seeds;
 use crate::runner::{Observer, RunError, Scheduler, Silent};
@@ -41,7 +42,7 @@ impl Pipeline for Reenactment<'_> {
         ENGINE_VERSION
     }
 
-    fn replan<'a>(&'a self, bundle: &'a Bundle) -> Result<Box<dyn Replanned + 'a>, String> {
+    fn replan<'a>(&'a self, bundle: &'a Bundle) -> Result<Box<dyn Replanned + 'a>, ReplanError> {
         let (plan, selection) = plan_of(bundle)?;
         Ok(Box::new(Study {
             bundle,
@@ -59,8 +60,8 @@ const MOST_MISSING: u64 = 10_000;
 /// Plans the study of `bundle` again, from its manifest, inputs, overrides and selection alone.
 ///
 /// # Errors
-/// Where they do not make a plan, in words.
-pub fn plan_of(bundle: &Bundle) -> Result<(Plan, Selection), String> {
+/// Where they do not make a plan.
+pub fn plan_of(bundle: &Bundle) -> Result<(Plan, Selection), ReplanError> {
     plan_with(bundle, None)
 }
 
@@ -68,7 +69,7 @@ pub fn plan_of(bundle: &Bundle) -> Result<(Plan, Selection), String> {
 fn plan_with(
     bundle: &Bundle,
     fresh: Option<(u64, &Study<'_>)>,
-) -> Result<(Plan, Selection), String> {
+) -> Result<(Plan, Selection), ReplanError> {
     let (source, mut overrides) = written(bundle)?;
     // As `run --set seed=S` would have it: the last override counts.
     overrides.extend(fresh.map(|(seed, _)| format!("seed={seed}")));
@@ -76,7 +77,7 @@ fn plan_with(
     let selection = if written.is_absent() {
         Selection::default()
     } else {
-        written.read().map_err(|e| format!("selection: {e}"))?
+        written.read().map_err(ReplanError::Selection)?
     };
     let inputs: &dyn Inputs = match fresh {
         Some((seed, study)) => &Afresh::seeded(bundle, seed, study),
@@ -88,10 +89,10 @@ fn plan_with(
     let sealed: usize =
         bundle.conditions().iter().map(|c| bundle.record_lines(&c.slug).count()).sum();
     if planned > sealed as u64 + MOST_MISSING {
-        return Err(format!("one of {planned} trials, where the bundle holds {sealed} records"));
+        return Err(ReplanError::TooMany { planned, sealed });
     }
     let plan = if selection.is_partial() {
-        Plan::select(experiment, &selection).map_err(|e| e.to_string())?
+        Plan::select(experiment, &selection)?
     } else {
         Plan::of(experiment)
     };
@@ -99,10 +100,9 @@ fn plan_with(
 }
 
 /// The manifest in `bundle` and what was overridden in it.
-fn written(bundle: &Bundle) -> Result<(Source, Vec<String>), String> {
-    let overrides = bundle.resolved().overrides.read().map_err(|e| format!("overrides: {e}"))?;
-    let text = std::str::from_utf8(bundle.study_yaml())
-        .map_err(|_| "study.yaml is not UTF-8 text".to_owned())?;
+fn written(bundle: &Bundle) -> Result<(Source, Vec<String>), ReplanError> {
+    let overrides = bundle.resolved().overrides.read().map_err(ReplanError::Overrides)?;
+    let text = std::str::from_utf8(bundle.study_yaml()).map_err(|_| ReplanError::NotText)?;
     Ok((Source::new("study.yaml", text), overrides))
 }
 
@@ -110,37 +110,30 @@ fn resolve(
     source: &Source,
     overrides: &[String],
     inputs: &dyn Inputs,
-) -> Result<Experiment, String> {
-    match manifest::resolve(source, overrides, inputs) {
-        Ok((experiment, _)) => Ok(experiment),
-        Err(faults) => {
-            let (reports, count) = (reports(&faults, false), faults.iter().map(|f| f.count).sum());
-            // A fault of a bundle is cut where it is long, so the count comes first.
-            let counted = match count {
-                0..=MOST_FAULTS => String::new(),
-                _ => format!("{count} faults; the first are\n"),
-            };
-            Err(counted + &reports.concat())
-        }
-    }
+) -> Result<Experiment, ReplanError> {
+    let resolved = manifest::resolve(source, overrides, inputs);
+    resolved.map(|(experiment, _)| experiment).map_err(ReplanError::Faulty)
 }
+
+/// Why a bundle's manifest does not get an input.
+#[derive(Debug, thiserror::Error)]
+#[error("the bundle holds no such input")]
+struct NotSealed;
 
 /// The inputs sealed in a bundle.
 struct Sealed<'a>(&'a Bundle);
 
 impl Inputs for Sealed<'_> {
-    fn read(&self, as_written: &str, _: WrittenIn) -> Result<Vec<u8>, String> {
-        self.0
-            .input(as_written)
-            .map(<[u8]>::to_vec)
-            .ok_or_else(|| "the bundle holds no such input".to_owned())
+    fn read(&self, as_written: &str, _: WrittenIn) -> Result<Vec<u8>, InputError> {
+        let bytes = self.0.input(as_written).map(<[u8]>::to_vec);
+        bytes.ok_or_else(|| InputError::other(NotSealed))
     }
 
-    fn calibrate(&self, _: &Experiment, sealed_as: &str) -> Result<Measured, String> {
+    fn calibrate(&self, _: &Experiment, sealed_as: &str) -> Result<Measured, InputError> {
         self.read(sealed_as, WrittenIn::Calibration).map(Measured::Passages)
     }
 
-    fn explore(&self, _: &TrialSpec, sealed_as: &[String; 2]) -> Result<[Vec<u8>; 2], String> {
+    fn explore(&self, _: &TrialSpec, sealed_as: &[String; 2]) -> Result<[Vec<u8>; 2], InputError> {
         let [descriptor, image] = sealed_as;
         let read = |name: &str| self.read(name, WrittenIn::PreviousMap);
         Ok([read(descriptor)?, read(image)?])
@@ -168,11 +161,11 @@ impl<'a> Afresh<'a> {
 }
 
 impl Inputs for Afresh<'_> {
-    fn read(&self, as_written: &str, written_in: WrittenIn) -> Result<Vec<u8>, String> {
+    fn read(&self, as_written: &str, written_in: WrittenIn) -> Result<Vec<u8>, InputError> {
         self.sealed.read(as_written, written_in)
     }
 
-    fn calibrate(&self, calibration: &Experiment, sealed_as: &str) -> Result<Measured, String> {
+    fn calibrate(&self, calibration: &Experiment, sealed_as: &str) -> Result<Measured, InputError> {
         let Some((seed, study)) = self.fresh else {
             return self.sealed.calibrate(calibration, sealed_as);
         };
@@ -181,15 +174,19 @@ impl Inputs for Afresh<'_> {
         let mut seeded = calibration.clone();
         seeded.seed = seed;
         let plan = Plan::of(seeded);
-        let records = study.run(&plan.trials)?;
+        let records = study.run(&plan.trials).map_err(InputError::other)?;
         let planned = PlannedPassages::of(plan.experiment.design(), plan.experiment.trials);
         planned
             .and_then(|planned| planned.showed(&records))
             .map(|passages| Measured::Passages(passages.to_csv().into_bytes()))
-            .map_err(|e| e.to_string())
+            .map_err(InputError::other)
     }
 
-    fn explore(&self, spec: &TrialSpec, sealed_as: &[String; 2]) -> Result<[Vec<u8>; 2], String> {
+    fn explore(
+        &self,
+        spec: &TrialSpec,
+        sealed_as: &[String; 2],
+    ) -> Result<[Vec<u8>; 2], InputError> {
         let again = manifest::explored(spec, sealed_as)?;
         // With another seed there is another exploration, of which the bundle knows nothing.
         if let Ok(sealed) = self.sealed.explore(spec, sealed_as) {
@@ -220,23 +217,23 @@ struct Study<'a> {
 
 impl Study<'_> {
     /// The records of `trials`, never from a store.
-    fn run(&self, trials: &[TrialSpec]) -> Result<Vec<TrialRecord>, String> {
-        let records = self.scheduler.run(trials, &studies::execute, None, self.observer);
-        records.map_err(|e| e.to_string())
+    fn run(&self, trials: &[TrialSpec]) -> Result<Vec<TrialRecord>, RunError> {
+        self.scheduler.run(trials, &studies::execute, None, self.observer)
     }
 
     /// Drives the passages at `indices` again.
-    fn drive_again(&self, indices: &[usize]) -> Result<Vec<Option<Fault>>, String> {
-        let run = self.plan.experiment.calibration.as_deref().ok_or("there is no calibration")?;
-        let sealed = run.passages.as_ref().ok_or("the calibration holds no passages")?;
+    fn drive_again(&self, indices: &[usize]) -> Result<Vec<Option<Fault>>, MakeAgainError> {
+        let run = self.plan.experiment.calibration.as_deref();
+        let run = run.ok_or(MakeAgainError::NoCalibration)?;
+        let sealed = run.passages.as_ref().ok_or(MakeAgainError::NoPassages)?;
         let path = BundlePath::input(file_name(&run.sealed_as));
         let plan = Plan::of(run.experiment.clone());
-        let spec = |&i: &usize| plan.trials.get(i).cloned().ok_or(format!("no passage {i}"));
+        let spec = |&i: &usize| plan.trials.get(i).cloned().ok_or(MakeAgainError::NoPassage(i));
         let trials = indices.iter().map(spec).collect::<Result<Vec<TrialSpec>, _>>()?;
         let records = self.run(&trials)?;
         let compared = indices.iter().zip(&records).map(|(&index, record)| {
             let expected = Passages::told_of(record);
-            let found = sealed.told(index).ok_or(format!("no passage {index}"))?;
+            let found = sealed.told(index).ok_or(MakeAgainError::NoPassage(index))?;
             let fault = Fault::new(
                 // Below the header.
                 path.line(index + 2),
@@ -250,17 +247,19 @@ impl Study<'_> {
     }
 
     /// Runs the rows at `indices` of the robustness table again.
-    fn vary_again(&self, indices: &[usize]) -> Result<Vec<Option<Fault>>, String> {
-        let known = self.plan.experiment.sensitivity.as_ref().ok_or("there is no such table")?;
+    fn vary_again(&self, indices: &[usize]) -> Result<Vec<Option<Fault>>, MakeAgainError> {
+        let known = self.plan.experiment.sensitivity.as_ref();
+        let known = known.ok_or(MakeAgainError::NoTable)?;
         let path = BundlePath::input(file_name(&known.as_written));
         let runs = known.table.runs();
         let compared = indices.iter().map(|&index| {
-            let run = runs.get(index).ok_or(format!("no row {index}"))?;
+            let run = runs.get(index).ok_or(MakeAgainError::NoRow(index))?;
             let (expected, found) = match self.varied_plan(run) {
-                Err(problem) => ("a run that can be planned again".to_owned(), problem),
+                Err(problem) => ("a run that can be planned again".to_owned(), problem.to_string()),
                 Ok(plan) => {
                     let records = self.run(&plan.trials)?;
-                    let verdicts = assemble::verdicts(&plan, &records)?;
+                    let verdicts = assemble::verdicts(&plan, &records)
+                        .map_err(|problem| MakeAgainError::Unjudged(problem.to_string()))?;
                     match run.difference(&run.with(&verdicts, records_digest(&records))) {
                         Some(difference) => difference,
                         None => return Ok(None),
@@ -275,7 +274,7 @@ impl Study<'_> {
     }
 
     /// The plan of a run of the robustness table.
-    fn varied_plan(&self, run: &Run) -> Result<Plan, String> {
+    fn varied_plan(&self, run: &Run) -> Result<Plan, ReplanError> {
         let (source, mut overrides) = written(self.bundle)?;
         let value_of = |path: &str, tried: &str| {
             let assumptions = &self.plan.experiment.assumptions;
@@ -304,19 +303,15 @@ impl Replanned for Study<'_> {
         self.plan.trials.iter().map(planned).collect()
     }
 
-    fn content(&self) -> Result<BundleContent, String> {
-        let records = self.bundle.records().map_err(|faults| {
-            faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
-        })?;
+    fn content(&self) -> Result<BundleContent, ContentError> {
+        let records = self.bundle.records().map_err(ContentError::Records)?;
         assemble::assemble(&self.plan, self.bundle.study_yaml(), &self.selection, &records)
+            .map_err(|problem| ContentError::Unjudged(problem.to_string()))
     }
 
-    fn execute(&self, indices: &[usize]) -> Result<Vec<String>, String> {
+    fn execute(&self, indices: &[usize]) -> Result<Vec<String>, RunError> {
         let specs: Vec<TrialSpec> = indices.iter().map(|&i| self.plan.trials[i].clone()).collect();
-        self.scheduler
-            .run(&specs, &studies::execute, None, self.observer)
-            .map(|records| records.iter().map(TrialRecord::to_line).collect())
-            .map_err(|e| e.to_string())
+        Ok(self.run(&specs)?.iter().map(TrialRecord::to_line).collect())
     }
 
     fn explore_again(&self) -> Vec<Fault> {
@@ -326,7 +321,11 @@ impl Replanned for Study<'_> {
         let mut faults = afresh.other.into_inner();
         if let (Err(problem), true) = (told, faults.is_empty()) {
             let path = BundlePath::payload(format::STUDY);
-            faults.push(Fault::new(path, "earlier explorations that can be run again", problem));
+            faults.push(Fault::new(
+                path,
+                "earlier explorations that can be run again",
+                problem.to_string(),
+            ));
         }
         faults
     }
@@ -350,16 +349,21 @@ impl Replanned for Study<'_> {
         passages.chain(robustness).collect()
     }
 
-    fn make_again(&self, made: Made, indices: &[usize]) -> Result<Vec<Option<Fault>>, String> {
+    fn make_again(
+        &self,
+        made: Made,
+        indices: &[usize],
+    ) -> Result<Vec<Option<Fault>>, MakeAgainError> {
         match made {
             Made::Passages => self.drive_again(indices),
             Made::Robustness => self.vary_again(indices),
         }
     }
 
-    fn replicate(&self, seed: u64) -> Result<BundleContent, String> {
+    fn replicate(&self, seed: u64) -> Result<BundleContent, ReplicateError> {
         let (plan, selection) = plan_with(self.bundle, Some((seed, self)))?;
         let records = self.run(&plan.trials)?;
         assemble::assemble(&plan, self.bundle.study_yaml(), &selection, &records)
+            .map_err(|problem| ReplicateError::Unjudged(problem.to_string()))
     }
 }

@@ -137,7 +137,8 @@ pub(super) fn check(
         Ok(fresh) => fresh,
         Err(problem) => {
             let expected = "a study that can be run with another seed";
-            return obstacle(Fault::new(BundlePath::payload(format::STUDY), expected, problem));
+            let path = BundlePath::payload(format::STUDY);
+            return obstacle(Fault::new(path, expected, problem.to_string()));
         }
     };
     let pair = |path: &str| (text(bundle.result(path)), text(result_of(&fresh, path)));

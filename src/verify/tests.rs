@@ -7,6 +7,7 @@ mod replicated;
 
 use super::*;
 use crate::bundle::{Archive, Bundle, BundleContent, Form, Limits, Tree, archive, sample};
+use crate::runner::RunError;
 use crate::studies::TrialRecord;
 
 /// The sample study's own pipeline: keys follow from the seed in the manifest, records from the keys.
@@ -30,10 +31,14 @@ impl Pipeline for Engine {
         self.version
     }
 
-    fn replan<'a>(&'a self, bundle: &'a Bundle) -> Result<Box<dyn Replanned + 'a>, String> {
-        let text = std::str::from_utf8(bundle.study_yaml()).map_err(|e| e.to_string())?;
+    fn replan<'a>(&'a self, bundle: &'a Bundle) -> Result<Box<dyn Replanned + 'a>, ReplanError> {
+        let text = std::str::from_utf8(bundle.study_yaml()).map_err(|_| ReplanError::NotText)?;
         let seed = text.lines().find_map(|line| line.strip_prefix("seed: ")?.parse().ok());
-        Ok(Box::new(Study { bundle, seed: seed.ok_or("no seed")?, claims: self.claims }))
+        Ok(Box::new(Study {
+            bundle,
+            seed: seed.ok_or(ReplanError::Faulty(Vec::new()))?,
+            claims: self.claims,
+        }))
     }
 }
 
@@ -58,20 +63,20 @@ impl Replanned for Study<'_> {
         self.fresh().into_iter().map(planned).collect()
     }
 
-    fn content(&self) -> Result<BundleContent, String> {
-        let records = self.bundle.records().map_err(|faults| faults[0].to_string())?;
+    fn content(&self) -> Result<BundleContent, ContentError> {
+        let records = self.bundle.records().map_err(ContentError::Records)?;
         let of =
             |prior: &str| records.iter().filter(|r| r.condition[0].1 == prior).cloned().collect();
         let conditions = ["none", "floor-plan"].map(|prior| (prior, of(prior)));
         Ok(sample::content_of(self.bundle.study_yaml(), self.seed, &conditions))
     }
 
-    fn execute(&self, indices: &[usize]) -> Result<Vec<String>, String> {
+    fn execute(&self, indices: &[usize]) -> Result<Vec<String>, RunError> {
         let fresh = self.fresh();
         Ok(indices.iter().map(|&i| fresh[i].1.to_line()).collect())
     }
 
-    fn replicate(&self, seed: u64) -> Result<BundleContent, String> {
+    fn replicate(&self, seed: u64) -> Result<BundleContent, ReplicateError> {
         let records = |prior| (0..3).map(|trial| sample::record(seed, prior, trial)).collect();
         let conditions = ["none", "floor-plan"].map(|prior| (prior, records(prior)));
         let mut content = sample::content_of(self.bundle.study_yaml(), seed, &conditions);

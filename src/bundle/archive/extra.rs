@@ -13,27 +13,43 @@ pub(super) struct Fields<'a> {
     pub(super) zip64: Option<&'a [u8]>,
 }
 
+/// What was found that is not [`EXPECTED`].
+#[derive(Debug, Clone, thiserror::Error)]
+pub(super) enum ExtraError {
+    #[error("{0} bytes that are none")]
+    None(usize),
+    #[error("field 0x{0:04x} twice")]
+    Twice(u16),
+    #[error("field 0x{0:04x}, {1}")]
+    Misleading(u16, &'static str),
+    #[error("field 0x{0:04x}, whose meaning is unknown")]
+    Unknown(u16),
+    #[error("field 0x{0:04x} of {1} bytes that are not its own")]
+    Other(u16, usize),
+    #[error("a zip64 field of other sizes than are missing")]
+    Zip64,
+}
+
 /// Reads them all.
 ///
 /// # Errors
-/// What was found that is not [`EXPECTED`].
-pub(super) fn read(mut extra: &[u8]) -> Result<Fields<'_>, String> {
+/// As [`ExtraError`] says.
+pub(super) fn read(mut extra: &[u8]) -> Result<Fields<'_>, ExtraError> {
     let (mut fields, mut seen) = (Fields::default(), Vec::new());
     while !extra.is_empty() {
-        let (id, field, rest) =
-            split(extra).ok_or_else(|| format!("{} bytes that are none", extra.len()))?;
+        let (id, field, rest) = split(extra).ok_or(ExtraError::None(extra.len()))?;
         if seen.contains(&id) {
-            return Err(format!("field 0x{id:04x} twice"));
+            return Err(ExtraError::Twice(id));
         }
         seen.push(id);
         if id == ZIP64 {
             fields.zip64 = Some(field);
         } else if let Some(meaning) = misleading(id) {
-            return Err(format!("field 0x{id:04x}, {meaning}"));
+            return Err(ExtraError::Misleading(id, meaning));
         } else if !KNOWN.contains(&id) {
-            return Err(format!("field 0x{id:04x}, whose meaning is unknown"));
+            return Err(ExtraError::Unknown(id));
         } else if !is_whole(id, field) {
-            return Err(format!("field 0x{id:04x} of {} bytes that are not its own", field.len()));
+            return Err(ExtraError::Other(id, field.len()));
         }
         extra = rest;
     }

@@ -61,7 +61,7 @@ pub(super) struct Central<'a> {
     comment: usize,
     disk: u16,
     /// What is wrong with its extra fields.
-    extra: Option<String>,
+    extra: Option<extra::ExtraError>,
 }
 
 /// Bytes of a central header without name, extra fields and comment.
@@ -94,7 +94,7 @@ impl<'a> Central<'a> {
             _ => u64::from(size),
         });
         if !long.is_empty() || fields.zip64.is_some_and(<[u8]>::is_empty) {
-            fault.get_or_insert("a zip64 field of other sizes than are missing".to_owned());
+            fault.get_or_insert(extra::ExtraError::Zip64);
         }
         Self {
             name: &header[CENTRAL..][..name],
@@ -160,7 +160,7 @@ impl<'a> Central<'a> {
             );
         }
         if let Some(found) = &self.extra {
-            fault(extra::EXPECTED, found.clone());
+            fault(extra::EXPECTED, found.to_string());
         }
         faults
     }
@@ -211,7 +211,7 @@ pub(super) struct Local<'a> {
     /// Whether sizes are written in eight bytes, also in the descriptor behind the data.
     pub(super) is_long: bool,
     /// What is wrong with its extra fields.
-    pub(super) extra: Option<String>,
+    pub(super) extra: Option<extra::ExtraError>,
     /// Bytes that the header takes.
     pub(super) length: usize,
 }
@@ -236,7 +236,7 @@ impl<'a> Local<'a> {
             Some(long) if is_long && long.len() == 16 => [0, 8].map(|at| Record(long).u64(at)),
             None if !is_long => short.map(u64::from),
             _ => {
-                fault.get_or_insert("a zip64 field of other sizes than are missing".to_owned());
+                fault.get_or_insert(extra::ExtraError::Zip64);
                 short.map(u64::from)
             }
         };

@@ -235,7 +235,7 @@ fn extra_fields_that_change_nothing_are_read_over() {
         (b"UT\x05\x00\x03".to_vec(), "5 bytes that are none"),
         (b"UT".to_vec(), "2 bytes that are none"),
     ] {
-        assert_eq!(extra::read(&hostile).unwrap_err(), found);
+        assert_eq!(extra::read(&hostile).unwrap_err().to_string(), found);
     }
 }
 

@@ -6,7 +6,7 @@ use crate::cli::load;
 use crate::cli::terminal::Terminal;
 use crate::document::Diagnostic;
 use crate::geometry::Point;
-use crate::report::show::{self, Derived, Drawing, Over};
+use crate::report::show::{self, Derived, Drawing, FetchError, Over};
 use crate::store;
 use crate::world::generate::{self, Family};
 use crate::world::mesh;
@@ -34,7 +34,7 @@ impl Models for Shelf {
         let path = match place_of(uri, &self.folders) {
             Ok(Place::Model(path)) => PathBuf::from(path),
             Ok(Place::Beside(path)) => self.beside.join(path),
-            Err(why) => return Found::Missing(why),
+            Err(why) => return Found::Missing(why.to_string()),
         };
         let name = path.display().to_string();
         match store::read(&path, load::MOST_INPUT) {
@@ -54,8 +54,9 @@ fn draw(
 ) -> Result<Drawing, Failure> {
     let height = args.height.unwrap_or(show::CUT_HEIGHT);
     let beside = |file: &Path| file.parent().unwrap_or(Path::new("")).to_owned();
-    let fetch_from =
-        |folder: PathBuf| move |path: &str| load::bytes(&folder.join(path)).map_err(|f| f.message);
+    let fetch_from = |folder: PathBuf| {
+        move |path: &str| load::bytes(&folder.join(path)).map_err(|f| FetchError(f.message))
+    };
     let told = |faults: Vec<Diagnostic>| {
         terminal.diagnostics(&faults);
         Failure::not_understood(format!("{name}: {}", Terminal::count(&faults)))

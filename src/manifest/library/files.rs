@@ -1,6 +1,6 @@
 //! The files a manifest names: asked for once each, by their path as written.
 
-use super::inputs::{Inputs, Measured};
+use super::inputs::{InputError, Inputs, Measured};
 use crate::digest::{FileDigest, Sha256Digest};
 use crate::manifest::experiment::Experiment;
 use crate::manifest::input::{Input, InputKind, WrittenIn};
@@ -13,7 +13,7 @@ type Key = (String, WrittenIn);
 /// A file that was asked for.
 #[derive(Clone)]
 struct File {
-    bytes: Result<Arc<[u8]>, String>,
+    bytes: Result<Arc<[u8]>, InputError>,
     kind: InputKind,
 }
 
@@ -40,13 +40,13 @@ impl<'a> InputFiles<'a> {
     /// Returns the bytes of `path`, which is [`super::normalised`]: a file that is a `kind`.
     ///
     /// # Errors
-    /// Why there are none, in words.
+    /// Why there are none.
     pub(in crate::manifest) fn read(
         &mut self,
         path: &str,
         written_in: WrittenIn,
         kind: InputKind,
-    ) -> Result<Arc<[u8]>, String> {
+    ) -> Result<Arc<[u8]>, InputError> {
         let file = self.files.entry((path.to_owned(), written_in)).or_insert_with(|| File {
             bytes: self.source.read(path, written_in).map(Into::into),
             kind,
@@ -67,7 +67,7 @@ impl<'a> InputFiles<'a> {
         &mut self,
         calibration: &Experiment,
         sealed_as: &str,
-    ) -> Result<Measured, String> {
+    ) -> Result<Measured, InputError> {
         let measured = self.source.calibrate(calibration, sealed_as)?;
         if let Measured::Passages(bytes) = &measured {
             self.made(sealed_as, InputKind::Passages, bytes);
@@ -91,7 +91,7 @@ impl<'a> InputFiles<'a> {
         &mut self,
         spec: &TrialSpec,
         sealed_as: &[String; 2],
-    ) -> Result<[Arc<[u8]>; 2], String> {
+    ) -> Result<[Arc<[u8]>; 2], InputError> {
         let keys = sealed_as.each_ref().map(|name| (name.clone(), WrittenIn::PreviousMap));
         if !self.files.contains_key(&keys[0]) {
             let files = match self.source.explore(spec, sealed_as) {

@@ -3,22 +3,48 @@
 use crate::manifest::experiment::Experiment;
 use crate::manifest::input::WrittenIn;
 use crate::studies::TrialSpec;
+use std::error::Error;
+use std::sync::Arc;
+
+/// Why an input cannot be had.
+#[derive(Debug, Clone, thiserror::Error)]
+pub enum InputError {
+    /// There is no file of that name.
+    #[error("no such file")]
+    NoFile,
+    /// Nobody here runs calibrations.
+    #[error("nobody here can run `{0}`")]
+    NoCalibration(String),
+    /// Nobody here runs explorations.
+    #[error("nobody here can run the exploration {0}")]
+    NoExploration(String),
+    /// Whoever hands inputs over has a reason of its own.
+    #[error("{0}")]
+    Other(Arc<dyn Error + Send + Sync>),
+}
+
+impl InputError {
+    /// Returns `reason` as the reason why there is no input.
+    pub fn other(reason: impl Error + Send + Sync + 'static) -> Self {
+        Self::Other(Arc::new(reason))
+    }
+}
 
 /// Who hands over the bytes of files: the file system, or a bundle.
 pub trait Inputs {
-    /// The bytes of the file `as_written`: a path with forward slashes and without needless dots.
+    /// Returns the bytes of the file `as_written`: a path with forward slashes and without needless dots.
     ///
     /// # Errors
-    /// Why there are none, in words (`no such file`).
-    fn read(&self, as_written: &str, written_in: WrittenIn) -> Result<Vec<u8>, String>;
+    /// Why there are none.
+    fn read(&self, as_written: &str, written_in: WrittenIn) -> Result<Vec<u8>, InputError>;
 
-    /// The passages of the experiment `calibration`, one row a trial; in bundles they are sealed as `sealed_as`.
+    /// Returns the passages of the experiment `calibration`, one row a trial; in bundles they are sealed as `sealed_as`.
     ///
     /// # Errors
-    /// Why there are none, in words.
-    fn calibrate(&self, calibration: &Experiment, sealed_as: &str) -> Result<Measured, String> {
+    /// Why there are none.
+    fn calibrate(&self, calibration: &Experiment, sealed_as: &str) -> Result<Measured, InputError> {
         let _ = sealed_as;
-        Err(format!("nobody here can run `{}`", calibration.name))
+        Err(InputError::NoCalibration(calibration.name.clone()))
     }
 
     /// The manifest on whose behalf these files are read, where that is a calibration: it has none of its own.
@@ -30,10 +56,14 @@ pub trait Inputs {
     /// they are sealed as `sealed_as`. [`crate::manifest::explored`] makes them.
     ///
     /// # Errors
-    /// Why there is none, in words.
-    fn explore(&self, spec: &TrialSpec, sealed_as: &[String; 2]) -> Result<[Vec<u8>; 2], String> {
+    /// Why there is none.
+    fn explore(
+        &self,
+        spec: &TrialSpec,
+        sealed_as: &[String; 2],
+    ) -> Result<[Vec<u8>; 2], InputError> {
         let _ = sealed_as;
-        Err(format!("nobody here can run the exploration {}", spec.key.short()))
+        Err(InputError::NoExploration(spec.key.short()))
     }
 }
 

@@ -8,7 +8,7 @@ mod inputs;
 mod paths;
 mod pins;
 
-pub use inputs::{Inputs, Measured};
+pub use inputs::{InputError, Inputs, Measured};
 pub(super) use paths::{joined, normalised, relative_to};
 
 use super::faults::Faults;
@@ -49,8 +49,8 @@ pub(super) struct Library<'a> {
 pub(super) enum Unread {
     /// There are no bytes.
     Missing {
-        /// Why, in words.
-        reason: String,
+        /// Why.
+        reason: InputError,
         /// Where it is published, where it is pinned.
         published: Option<String>,
     },

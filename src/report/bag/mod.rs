@@ -19,6 +19,8 @@ use messages::{
 use std::collections::BTreeMap;
 use writer::BagWriter;
 
+pub use writer::BagError;
+
 /// Shortest time between two maps (s): GMapping's `map_update_interval` as the prior-knowledge study set it.
 const MAP_PERIOD_S: f64 = 1.0;
 /// Nominal level of a log line.
@@ -38,7 +40,7 @@ pub struct Bag {
 ///
 /// # Errors
 /// Where a message cannot be encoded, which is a bug.
-pub fn bag(recording: &Recording, scan_rate_hz: Option<f64>) -> Result<Bag, String> {
+pub fn bag(recording: &Recording, scan_rate_hz: Option<f64>) -> Result<Bag, BagError> {
     bag_under_banner(recording, scan_rate_hz, None)
 }
 
@@ -50,7 +52,7 @@ pub fn bag_under_banner(
     recording: &Recording,
     scan_rate_hz: Option<f64>,
     banner: Option<&str>,
-) -> Result<Bag, String> {
+) -> Result<Bag, BagError> {
     let mut writing = Writing {
         recording,
         writer: BagWriter::new()?,
@@ -98,7 +100,7 @@ struct Writing<'a> {
 
 impl Writing<'_> {
     /// What holds all the time: where the robot's map lies in the world, where the scanner sits, what it was told before.
-    fn still(&mut self) -> Result<(), String> {
+    fn still(&mut self) -> Result<(), BagError> {
         let recording = self.recording;
         let mut transforms = vec![transform(0.0, "world", "map", recording.map_pose)];
         if let Some(first) = recording.sensed.iter().flatten().next() {
@@ -113,7 +115,7 @@ impl Writing<'_> {
         Ok(())
     }
 
-    fn sensed(&mut self, sensed: &Sensed) -> Result<(), String> {
+    fn sensed(&mut self, sensed: &Sensed) -> Result<(), BagError> {
         let at = stamp(sensed);
         let odometry = sensed.odometry;
         // map -> odom is what the robot corrects its odometry by (REP-105).
@@ -136,7 +138,7 @@ impl Writing<'_> {
         Ok(())
     }
 
-    fn frame(&mut self, frame: &Frame) -> Result<(), String> {
+    fn frame(&mut self, frame: &Frame) -> Result<(), BagError> {
         let at = frame.time_s;
         self.writer.write("/clock", at, &Clock { clock: Time::of(at) })?;
         let pose = PoseStamped { header: header(at, "world"), pose: frame.pose.into() };
@@ -177,7 +179,7 @@ impl Writing<'_> {
         Ok(())
     }
 
-    fn map(&mut self, at: f64) -> Result<(), String> {
+    fn map(&mut self, at: f64) -> Result<(), BagError> {
         (self.map_changed, self.map_written_s) = (false, Some(at));
         let message = grid(at, "map", &self.recording.map_frame, self.map.clone());
         self.writer.write("/map", at, &message)

@@ -11,6 +11,17 @@ use std::io::Cursor;
 /// Encapsulation header of little-endian plain CDR (DDSI-RTPS 2.5, section 10.2), as `rmw` writes it.
 const CDR_LE: [u8; 4] = [0, 1, 0, 0];
 
+/// Why a bag cannot be written, which is a bug.
+#[derive(Debug, thiserror::Error)]
+pub enum BagError {
+    /// The container refuses a record.
+    #[error(transparent)]
+    Container(#[from] mcap::McapError),
+    /// A message cannot be encoded.
+    #[error(transparent)]
+    Message(#[from] cdr_encoding::Error),
+}
+
 /// A bag in the making.
 pub(super) struct BagWriter {
     writer: Writer<Cursor<Vec<u8>>>,
@@ -19,12 +30,12 @@ pub(super) struct BagWriter {
 
 impl BagWriter {
     /// An empty bag. Nothing in it tells of when or where it was written.
-    pub(super) fn new() -> Result<Self, String> {
+    pub(super) fn new() -> Result<Self, BagError> {
         let options = WriteOptions::new()
             .profile("ros2")
             .library(concat!("reenact ", env!("CARGO_PKG_VERSION")))
             .compression(None);
-        let writer = options.create(Cursor::new(Vec::new())).map_err(|e| e.to_string())?;
+        let writer = options.create(Cursor::new(Vec::new()))?;
         Ok(Self { writer, channels: BTreeMap::new() })
     }
 
@@ -34,42 +45,36 @@ impl BagWriter {
         topic: &'static str,
         time_s: f64,
         message: &M,
-    ) -> Result<(), String> {
+    ) -> Result<(), BagError> {
         let (channel_id, sequence) = match self.channels.get(topic) {
             Some((id, count)) => (*id, *count),
             None => (self.open::<M>(topic)?, 0),
         };
         self.channels.insert(topic, (channel_id, sequence + 1));
         let mut bytes = CDR_LE.to_vec();
-        let content =
-            cdr_encoding::to_vec::<M, LittleEndian>(message).map_err(|e| e.to_string())?;
-        bytes.extend(content);
+        bytes.extend(cdr_encoding::to_vec::<M, LittleEndian>(message)?);
         let time = nanoseconds(time_s);
         let header = MessageHeader { channel_id, sequence, log_time: time, publish_time: time };
-        self.writer.write_to_known_channel(&header, &bytes).map_err(|e| e.to_string())
+        Ok(self.writer.write_to_known_channel(&header, &bytes)?)
     }
 
     /// Writes the metadata record `name` with one entry.
-    pub(super) fn tell(&mut self, name: &str, key: &str, value: &str) -> Result<(), String> {
+    pub(super) fn tell(&mut self, name: &str, key: &str, value: &str) -> Result<(), BagError> {
         let metadata = BTreeMap::from([(key.to_owned(), value.to_owned())]);
         let record = Metadata { name: name.to_owned(), metadata };
-        self.writer.write_metadata(&record).map_err(|e| e.to_string())
+        Ok(self.writer.write_metadata(&record)?)
     }
 
-    fn open<M: Message>(&mut self, topic: &'static str) -> Result<u16, String> {
+    fn open<M: Message>(&mut self, topic: &'static str) -> Result<u16, BagError> {
         // Where ROS 2 names a type, `msg` stands between package and type.
         let name = M::TYPE.replace('/', "/msg/");
-        let schema = self
-            .writer
-            .add_schema(&name, "ros2msg", definition(M::TYPE).as_bytes())
-            .map_err(|e| e.to_string())?;
-        let metadata = BTreeMap::new();
-        self.writer.add_channel(schema, topic, "cdr", &metadata).map_err(|e| e.to_string())
+        let schema = self.writer.add_schema(&name, "ros2msg", definition(M::TYPE).as_bytes())?;
+        Ok(self.writer.add_channel(schema, topic, "cdr", &BTreeMap::new())?)
     }
 
     /// The file's bytes, and how many messages each topic has.
-    pub(super) fn finish(mut self) -> Result<(Vec<u8>, BTreeMap<&'static str, u32>), String> {
-        self.writer.finish().map_err(|e| e.to_string())?;
+    pub(super) fn finish(mut self) -> Result<(Vec<u8>, BTreeMap<&'static str, u32>), BagError> {
+        self.writer.finish()?;
         let counts = self.channels.into_iter().map(|(topic, (_, count))| (topic, count));
         Ok((self.writer.into_inner().into_inner(), counts.collect()))
     }

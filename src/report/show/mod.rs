@@ -41,11 +41,18 @@ pub struct Drawing {
     pub warnings: Vec<Diagnostic>,
 }
 
+/// Why a file beside a descriptor cannot be had, as whoever fetches it says: the end of a sentence.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct FetchError(pub String);
+
+/// Hands over a file by its path relative to the descriptor's folder.
+pub type Fetch<'f> = dyn FnMut(&str) -> Result<Vec<u8>, FetchError> + 'f;
+
 /// Draws the robot, world or map in the file `name`, told apart by content: URDF, SDF, `map_server` YAML (with an
 /// `image:`), topo-metric map or world YAML. Worlds are cut at `height` m; all their layers are drawn.
 ///
-/// `models` is asked for a world's meshes, `fetch` for a map's image, by its path relative to the descriptor's folder; its error is a fragment
-/// that says why not.
+/// `models` is asked for a world's meshes, `fetch` for a map's image.
 ///
 /// # Errors
 /// Every fault of the file.
@@ -54,7 +61,7 @@ pub fn draw(
     bytes: &[u8],
     height: f64,
     models: &mut dyn sdf::Models,
-    fetch: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
+    fetch: &mut Fetch<'_>,
 ) -> Result<Drawing, Vec<Diagnostic>> {
     let Ok(text) = std::str::from_utf8(bytes) else {
         let fault = Diagnostic::placeless(format!("`{name}` is not text")).help(
@@ -90,7 +97,7 @@ pub fn draw(
 fn read_map(
     name: &str,
     source: &Source,
-    fetch: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
+    fetch: &mut Fetch<'_>,
 ) -> Result<OccupancyGrid, Vec<Diagnostic>> {
     let path = map_server::image_path(source)?;
     let image = fetch(&path).map_err(|why| {

@@ -1,7 +1,9 @@
 //! Prior knowledge drawn: what is derived from a world, and a map laid over the world that it is to fit.
 
 use super::world::world_under_svg;
-use super::{Drawing, describe_grid, describe_world, drawn_world, grid_png, grid_svg, topo_metric};
+use super::{
+    Drawing, Fetch, describe_grid, describe_world, drawn_world, grid_png, grid_svg, topo_metric,
+};
 use crate::document::{Diagnostic, Source};
 use crate::figure::canvas::metres;
 use crate::geometry::{Bounds, Outline, Point};
@@ -101,7 +103,7 @@ pub fn draw_over(
     world: &World,
     height: f64,
     over: Over<'_>,
-    fetch: &mut dyn FnMut(&str) -> Result<Vec<u8>, String>,
+    fetch: &mut Fetch<'_>,
 ) -> Result<Drawing, Vec<Diagnostic>> {
     let text = text_of(over.name, over.bytes)?;
     let source = Source::new(over.name, text);

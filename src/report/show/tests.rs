@@ -181,9 +181,10 @@ fn of_a_mostly_unknown_map_the_known_part_is_drawn() {
 #[test]
 fn what_cannot_be_drawn_is_said() {
     let fault = |name: &str, bytes: &[u8]| {
-        let faults =
-            draw(name, bytes, CUT_HEIGHT, &mut NoModels, &mut |_| Err("no such file".to_owned()))
-                .unwrap_err();
+        let faults = draw(name, bytes, CUT_HEIGHT, &mut NoModels, &mut |_| {
+            Err(FetchError("no such file".to_owned()))
+        })
+        .unwrap_err();
         faults[0].render(false)
     };
     assert_eq!(
@@ -250,16 +251,15 @@ fn what_lies_off_in_a_prior_is_told_apart_and_in_numbers() {
 
 #[test]
 fn a_robots_sensors_are_drawn_to_scale_too() {
-    let robot =
-        |text: &str| {
-            texts(
-                &draw("r.urdf", text.as_bytes(), CUT_HEIGHT, &mut NoModels, &mut |_| {
-                    Err(String::new())
-                })
-                .unwrap()
-                .svg,
-            )
-        };
+    let robot = |text: &str| {
+        texts(
+            &draw("r.urdf", text.as_bytes(), CUT_HEIGHT, &mut NoModels, &mut |_| {
+                Err(FetchError(String::new()))
+            })
+            .unwrap()
+            .svg,
+        )
+    };
     let said = robot(KOBUKI);
     assert!(said.iter().any(|text| text == "How far it sees"), "{said:?}");
     assert!(said.iter().any(|text| text == "to scale with the body: scanner to 10 m"), "{said:?}");
@@ -270,16 +270,18 @@ fn a_robots_sensors_are_drawn_to_scale_too() {
 fn a_topo_metric_map_is_drawn_alone_and_over_its_world() {
     let map = "reenact-topo-metric-map: 1\nname: m\nsource: ours\nnodes:\n  hall: {at-m: [0, 0]}\n  door: {at-m: [3, 4]}\n\
                edges: [[hall, door]]\n";
-    let alone =
-        draw("m.yaml", map.as_bytes(), CUT_HEIGHT, &mut NoModels, &mut |_| Err(String::new()))
-            .unwrap();
+    let alone = draw("m.yaml", map.as_bytes(), CUT_HEIGHT, &mut NoModels, &mut |_| {
+        Err(FetchError(String::new()))
+    })
+    .unwrap();
     assert!(alone.text.contains("2 places, 1 direct ways, 5 m together"), "{}", alone.text);
     assert!(
         ["hall", "door", "place"].iter().all(|name| texts(&alone.svg).iter().any(|t| t == name))
     );
     let world = read_world("w.world", WORLD.as_bytes(), None, &mut NoModels).unwrap();
     let over = Over { name: "m.yaml", bytes: map.as_bytes(), start: Point::ZERO };
-    let over = draw_over(&world, CUT_HEIGHT, over, &mut |_| Err(String::new())).unwrap();
+    let over =
+        draw_over(&world, CUT_HEIGHT, over, &mut |_| Err(FetchError(String::new()))).unwrap();
     assert!(over.text.contains("over the world: "), "{}", over.text);
 }
 

@@ -25,7 +25,7 @@ pub mod strategy;
 mod study;
 pub mod toposemantic_map;
 
-pub use calibration::Calibration;
+pub use calibration::{Calibration, CalibrationError};
 pub use in_situ::ManeuverRow;
 pub use intersection_detection::{IntersectionDetectionSystem, Perception};
 pub use mission::{policy_chart, run, tag_scheme};

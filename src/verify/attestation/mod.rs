@@ -10,7 +10,7 @@ mod statement;
 pub use dsse::Envelope;
 pub use reading::Attestation;
 
-use super::{EarlierAgain, Report, Verdict};
+use super::{EarlierAgain, Level, Report, Verdict};
 use crate::bundle::{Moment, format};
 use crate::json;
 use statement::{Digests, Note, Predicate, Replicated, Rung, Sampled, Statement, Subject};
@@ -18,31 +18,49 @@ use statement::{Digests, Note, Predicate, Replicated, Rung, Sampled, Statement, 
 /// The most bytes that an envelope may have.
 pub const LONGEST: u64 = 1 << 20;
 
+/// Why there is nothing to attest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum AttestError {
+    /// The check was held against an attestation that is not good.
+    #[error("the attestation that was given is refused")]
+    Refused,
+    /// It holds less far than was asked.
+    #[error("the bundle holds to level {reached} and not to level {asked}, as was asked")]
+    NotSoFar {
+        /// How far it holds.
+        reached: Level,
+        /// How far was asked.
+        asked: Level,
+    },
+    /// Not even level 0 holds.
+    #[error("the bundle holds to no level and not to level {asked}, as was asked")]
+    Nowhere {
+        /// How far was asked.
+        asked: Level,
+    },
+    /// There is no bag.
+    #[error("a crate without its bag has no bundle id to attest; check the bundle itself")]
+    NoBag,
+}
+
 impl Report {
-    /// The attestation of a check that holds, unsigned: the same check gives the same bytes.
+    /// Returns the attestation of a check that holds, unsigned: the same check gives the same bytes.
     ///
     /// # Errors
-    /// Where there is nothing to attest, in words.
-    pub fn attest(&self, date: Moment) -> Result<Envelope, String> {
-        let (Some(level), Verdict::Holds) = (self.reached, self.verdict()) else {
-            let reached =
-                self.reached.map_or("no level".to_owned(), |level| format!("level {level}"));
-            return Err(if self.reached == Some(self.asked) {
-                "the attestation that was given is refused".to_owned()
-            } else {
-                format!(
-                    "the bundle holds to {reached} and not to level {}, as was asked",
-                    self.asked
-                )
+    /// Where there is nothing to attest.
+    pub fn attest(&self, date: Moment) -> Result<Envelope, AttestError> {
+        let (asked, reached) = (self.asked, self.reached);
+        let (Some(level), Verdict::Holds) = (reached, self.verdict()) else {
+            return Err(match reached {
+                Some(reached) if reached == asked => AttestError::Refused,
+                Some(reached) => AttestError::NotSoFar { reached, asked },
+                None => AttestError::Nowhere { asked },
             });
         };
         let (Some(id), Some(results), Some(study), Some(departure)) =
             (self.bundle_id, self.results_digest, self.study_digest, &self.departure)
         else {
-            return Err(
-                "a crate without its bag has no bundle id to attest; check the bundle itself"
-                    .to_owned(),
-            );
+            return Err(AttestError::NoBag);
         };
         let notes = self.findings.iter().map(|finding| Note {
             level: finding.level.number(),

@@ -3,11 +3,11 @@
 use super::*;
 
 /// The sample's pipeline, but for what `execute` answers.
-struct Executing(fn(&[usize]) -> Result<Vec<String>, String>);
+struct Executing(fn(&[usize]) -> Result<Vec<String>, RunError>);
 
 struct Answering<'a> {
     inner: Box<dyn Replanned + 'a>,
-    answer: fn(&[usize]) -> Result<Vec<String>, String>,
+    answer: fn(&[usize]) -> Result<Vec<String>, RunError>,
 }
 
 impl Pipeline for Executing {
@@ -15,7 +15,7 @@ impl Pipeline for Executing {
         ENGINE.engine()
     }
 
-    fn replan<'a>(&'a self, bundle: &'a Bundle) -> Result<Box<dyn Replanned + 'a>, String> {
+    fn replan<'a>(&'a self, bundle: &'a Bundle) -> Result<Box<dyn Replanned + 'a>, ReplanError> {
         Ok(Box::new(Answering { inner: ENGINE.replan(bundle)?, answer: self.0 }))
     }
 }
@@ -25,15 +25,15 @@ impl Replanned for Answering<'_> {
         self.inner.trials()
     }
 
-    fn content(&self) -> Result<BundleContent, String> {
+    fn content(&self) -> Result<BundleContent, ContentError> {
         self.inner.content()
     }
 
-    fn execute(&self, indices: &[usize]) -> Result<Vec<String>, String> {
+    fn execute(&self, indices: &[usize]) -> Result<Vec<String>, RunError> {
         (self.answer)(indices)
     }
 
-    fn replicate(&self, seed: u64) -> Result<BundleContent, String> {
+    fn replicate(&self, seed: u64) -> Result<BundleContent, ReplicateError> {
         self.inner.replicate(seed)
     }
 }
@@ -52,7 +52,7 @@ fn a_sample_of_no_trial_passes_nothing() {
                 of no trial shows nothing: draw one at least with `--sample`)\nno trial was executed again\nnot checked: time and host \
                 of the run\nreached level 3 (derived) of level 4 (sampled): this program cannot judge further\n";
     assert!(human.ends_with(says), "{human}");
-    let why = report.attest(crate::bundle::Moment(0)).unwrap_err();
+    let why = report.attest(crate::bundle::Moment(0)).unwrap_err().to_string();
     assert_eq!(
         why,
         "the bundle holds to level 3 (derived) and not to level 4 (sampled), as was asked"
@@ -61,11 +61,12 @@ fn a_sample_of_no_trial_passes_nothing() {
 
 #[test]
 fn a_program_that_executed_otherwise_than_asked_has_failed() {
-    type Answer = fn(&[usize]) -> Result<Vec<String>, String>;
+    type Answer = fn(&[usize]) -> Result<Vec<String>, RunError>;
     let none: Answer = |_| Ok(Vec::new());
     let fewer: Answer = |indices| Ok(vec![String::new(); indices.len() - 1]);
-    let refused: Answer = |_| Err("no thread could be started".to_owned());
-    for (answer, found) in [(none, "0"), (fewer, "5"), (refused, "no thread could be started")] {
+    let refused: Answer = |_| Err(RunError::Threads { jobs: 2, problem: "none left".to_owned() });
+    let no_threads = "could not start 2 threads: none left; try fewer --jobs";
+    for (answer, found) in [(none, "0"), (fewer, "5"), (refused, no_threads)] {
         for level in [Level::Sampled, Level::Full, Level::Replicated] {
             let report = climbed(level, 6, &Executing(answer));
             assert_eq!((report.verdict(), report.reached), (Verdict::Failed, Some(Level::Derived)));

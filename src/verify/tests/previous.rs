@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::document::Source;
-use crate::manifest::{self, Inputs, WrittenIn};
+use crate::manifest::{self, InputError, Inputs, WrittenIn};
 use crate::plan::{Plan, Selection};
 use crate::runner::{Scheduler, Silent};
 use crate::studies::{self, TrialSpec};
@@ -19,16 +19,20 @@ struct Inn {
 }
 
 impl Inputs for Inn {
-    fn read(&self, as_written: &str, _: WrittenIn) -> Result<Vec<u8>, String> {
+    fn read(&self, as_written: &str, _: WrittenIn) -> Result<Vec<u8>, InputError> {
         let robot = concat!(env!("CARGO_MANIFEST_DIR"), "/robots/kobuki.urdf");
         match as_written {
             "room.yaml" => Ok(ROOM.as_bytes().to_vec()),
-            "kobuki.urdf" => std::fs::read(robot).map_err(|e| e.to_string()),
-            _ => Err("no such file".to_owned()),
+            "kobuki.urdf" => std::fs::read(robot).map_err(InputError::other),
+            _ => Err(InputError::NoFile),
         }
     }
 
-    fn explore(&self, spec: &TrialSpec, sealed_as: &[String; 2]) -> Result<[Vec<u8>; 2], String> {
+    fn explore(
+        &self,
+        spec: &TrialSpec,
+        sealed_as: &[String; 2],
+    ) -> Result<[Vec<u8>; 2], InputError> {
         let [descriptor, mut image] = manifest::explored(spec, sealed_as)?;
         if !self.honest {
             let last = image.len() - 200;

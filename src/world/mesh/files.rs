@@ -1,13 +1,13 @@
 //! STL and OBJ: the one place that names the crate which reads them. Both hold metres, z up, as Gazebo takes them.
 
-use super::Part;
+use super::{MeshError, Part};
 
 /// The triangles of an STL file, in text or binary.
 ///
 /// # Errors
-/// What is wrong with it, in words.
-pub(super) fn stl(bytes: &[u8]) -> Result<Vec<Part>, String> {
-    let scene = mesh_loader::stl::from_slice(bytes).map_err(|e| e.to_string())?;
+/// What is wrong with it.
+pub(super) fn stl(bytes: &[u8]) -> Result<Vec<Part>, MeshError> {
+    let scene = mesh_loader::stl::from_slice(bytes)?;
     let parts = parts(scene)?;
     let found: usize = parts.iter().map(|part| part.triangles.len()).sum();
     // A binary file announces its triangles; the reader takes what there is of them.
@@ -16,7 +16,7 @@ pub(super) fn stl(bytes: &[u8]) -> Result<Vec<Part>, String> {
     {
         let announced = announced.iter().rev().fold(0_u64, |n, byte| n << 8 | u64::from(*byte));
         if announced != found as u64 {
-            return Err(format!("it announces {announced} triangles and holds {found}"));
+            return Err(MeshError::Announced { announced, found });
         }
     }
     Ok(parts)
@@ -25,27 +25,26 @@ pub(super) fn stl(bytes: &[u8]) -> Result<Vec<Part>, String> {
 /// The triangles of an OBJ file. Its materials are of no concern here, and no other file is read.
 ///
 /// # Errors
-/// What is wrong with it, in words.
-pub(super) fn obj(bytes: &[u8]) -> Result<Vec<Part>, String> {
+/// What is wrong with it.
+pub(super) fn obj(bytes: &[u8]) -> Result<Vec<Part>, MeshError> {
     let nothing = |_: &std::path::Path| -> std::io::Result<Vec<u8>> {
         Err(std::io::ErrorKind::NotFound.into())
     };
-    parts(mesh_loader::obj::from_slice(bytes, None, nothing).map_err(|e| e.to_string())?)
+    parts(mesh_loader::obj::from_slice(bytes, None, nothing)?)
 }
 
-fn parts(scene: mesh_loader::Scene) -> Result<Vec<Part>, String> {
+fn parts(scene: mesh_loader::Scene) -> Result<Vec<Part>, MeshError> {
     let part = |mesh: mesh_loader::Mesh| {
-        let corner = |index: u32| -> Result<[f64; 3], String> {
+        let corner = |index: u32| -> Result<[f64; 3], MeshError> {
             let found = usize::try_from(index).ok().and_then(|i| mesh.vertices.get(i));
-            let [x, y, z] = *found.ok_or_else(|| {
-                format!("a face has the corner {index}, of {} corners", mesh.vertices.len())
-            })?;
+            let corners = mesh.vertices.len();
+            let [x, y, z] = *found.ok_or(MeshError::NoCorner { index, corners })?;
             Ok([f64::from(x), f64::from(y), f64::from(z)])
         };
-        let triangle = |face: &[u32; 3]| -> Result<super::Triangle, String> {
+        let triangle = |face: &[u32; 3]| -> Result<super::Triangle, MeshError> {
             Ok([corner(face[0])?, corner(face[1])?, corner(face[2])?])
         };
-        let triangles = mesh.faces.iter().map(triangle).collect::<Result<_, String>>()?;
+        let triangles = mesh.faces.iter().map(triangle).collect::<Result<_, MeshError>>()?;
         Ok(Part { names: vec![mesh.name.clone()], triangles })
     };
     scene.meshes.into_iter().map(part).collect()

@@ -64,6 +64,25 @@ impl Serialize for Mesh {
     }
 }
 
+/// Why a file is no mesh of ours: the end of a sentence.
+#[derive(Debug, thiserror::Error)]
+enum MeshError {
+    #[error(transparent)]
+    Unread(#[from] std::io::Error),
+    #[error("it announces {announced} triangles and holds {found}")]
+    Announced { announced: u64, found: usize },
+    #[error("a face has the corner {index}, of {corners} corners")]
+    NoCorner { index: u32, corners: usize },
+    #[error("expected .stl, .obj or .dae, found `.{0}`")]
+    Ending(String),
+    #[error("expected coordinates within {MAX_DISTANCE} m of the origin, found {0}")]
+    Far(f64),
+    #[error("it has no triangle")]
+    Empty,
+    #[error("expected at most {MAX_TRIANGLES} triangles, found {0}")]
+    TooMany(usize),
+}
+
 /// Reads the file `name`, whose ending tells its format: `.stl`, `.obj` or `.dae`.
 ///
 /// # Errors
@@ -81,7 +100,7 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<Vec<Part>, Vec<Diagnostic>> {
         "stl" => files::stl(bytes),
         "obj" => files::obj(bytes),
         "dae" => return collada::read(name, bytes),
-        other => Err(format!("expected .stl, .obj or .dae, found `.{other}`")),
+        other => Err(MeshError::Ending(other.to_owned())),
     };
     match read.and_then(|parts| checked(parts.iter()).map(|()| parts)) {
         Ok(parts) => Ok(parts),
@@ -90,21 +109,19 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<Vec<Part>, Vec<Diagnostic>> {
 }
 
 /// Nothing, where `parts` are a mesh of ours; else what is wrong with them.
-fn checked<'p>(parts: impl Iterator<Item = &'p Part>) -> Result<(), String> {
+fn checked<'p>(parts: impl Iterator<Item = &'p Part>) -> Result<(), MeshError> {
     let mut count = 0;
     for part in parts {
         count += part.triangles.len();
         let corners = part.triangles.iter().flatten().flatten();
         if let Some(wrong) = corners.copied().find(|c| !c.is_finite() || c.abs() > MAX_DISTANCE) {
-            return Err(format!(
-                "expected coordinates within {MAX_DISTANCE} m of the origin, found {wrong}"
-            ));
+            return Err(MeshError::Far(wrong));
         }
     }
     match count {
-        0 => Err("it has no triangle".to_owned()),
+        0 => Err(MeshError::Empty),
         1..=MAX_TRIANGLES => Ok(()),
-        _ => Err(format!("expected at most {MAX_TRIANGLES} triangles, found {count}")),
+        _ => Err(MeshError::TooMany(count)),
     }
 }
 

@@ -9,7 +9,7 @@ mod mesh;
 mod model;
 mod models;
 
-pub use models::{Found, Models, NoModels, Place, place_of};
+pub use models::{Found, Models, NoModels, Place, Unplaced, place_of};
 
 use super::World;
 use crate::document::xml::{self, Faults};

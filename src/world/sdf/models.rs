@@ -32,33 +32,50 @@ pub enum Place {
     Beside(String),
 }
 
-/// Where the file `uri` lies, when `folders` are those of the models: `NAME` of `model://NAME/mesh.dae` to its folder.
+/// Why the file that a URI names lies nowhere: the end of a sentence.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum Unplaced {
+    /// It is elsewhere, or no folder of models is given at all: there is nothing to say.
+    #[error("")]
+    Untold,
+    /// It leads out of its folder.
+    #[error("its path leads out of the folder")]
+    LeadsOut,
+    /// It begins at the root of a file system.
+    #[error("a path from the root of some machine is not followed")]
+    FromRoot,
+    /// Of its model no folder is given.
+    #[error("no folder is given for the model `{0}`")]
+    NoFolder(String),
+}
+
+/// Returns where the file `uri` lies, when `folders` are those of the models: `NAME` of `model://NAME/mesh.dae` to its folder.
 ///
 /// # Errors
-/// Why it lies nowhere, to end a sentence; nothing to say where no folder is given at all.
-pub fn place_of(uri: &str, folders: &BTreeMap<String, String>) -> Result<Place, String> {
+/// Why it lies nowhere.
+pub fn place_of(uri: &str, folders: &BTreeMap<String, String>) -> Result<Place, Unplaced> {
     let model = uri.strip_prefix("model://");
     let path = model.or_else(|| uri.strip_prefix("file://")).unwrap_or(uri);
     if path.contains("://") || path.is_empty() {
-        return Err(String::new());
+        return Err(Unplaced::Untold);
     }
     if path.split(['/', '\\']).any(|step| step == "..") {
-        return Err("its path leads out of the folder".to_owned());
+        return Err(Unplaced::LeadsOut);
     }
     if model.is_none() {
         if path.starts_with('/') {
-            return Err("a path from the root of some machine is not followed".to_owned());
+            return Err(Unplaced::FromRoot);
         }
         return Ok(Place::Beside(path.to_owned()));
     }
     if folders.is_empty() {
-        return Err(String::new());
+        return Err(Unplaced::Untold);
     }
     let path = path.trim_start_matches('/');
     let (name, rest) = path.split_once('/').unwrap_or((path, ""));
     match folders.get(name) {
         Some(folder) => Ok(Place::Model(format!("{folder}/{rest}"))),
-        None => Err(format!("no folder is given for the model `{name}`")),
+        None => Err(Unplaced::NoFolder(name.to_owned())),
     }
 }
 

@@ -234,9 +234,9 @@ fn uris_lead_into_folders_that_are_given_and_nowhere_else() {
         ("https://example.org/a.stl", ""),
         ("", ""),
     ] {
-        assert_eq!(place(uri), Err(why.to_owned()), "{uri}");
+        assert_eq!(place(uri).unwrap_err().to_string(), why, "{uri}");
     }
-    assert_eq!(place_of("model://house/a.dae", &BTreeMap::new()), Err(String::new()));
+    assert_eq!(place_of("model://house/a.dae", &BTreeMap::new()), Err(Unplaced::Untold));
 }
 
 /// Lines of a model, world frame.
