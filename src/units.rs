@@ -1,7 +1,7 @@
-//! Physical units at the boundaries: newtypes for lengths, times, angles and speeds, and the one clock.
+//! Physical units where numbers would be taken for one another: times, angles, and the one clock.
 //!
 //! REP-103 throughout: metres, seconds, radians; x forward, y left, angles counter-clockwise.
-//! Inside a computation plain `f64` in SI units is used; these types guard what crosses a module border.
+//! Everything else is a plain `f64` in SI units, with the unit in its name or its doc.
 
 use serde::{Deserialize, Serialize};
 
@@ -28,24 +28,12 @@ macro_rules! unit {
 }
 
 unit!(
-    /// A length in metres.
-    Metres, "m"
-);
-unit!(
     /// A duration in seconds of simulated time.
     Seconds, "s"
 );
 unit!(
     /// An angle in radians, counter-clockwise.
     Radians, "rad"
-);
-unit!(
-    /// A linear speed in metres per second.
-    MetresPerSecond, "m/s"
-);
-unit!(
-    /// An angular speed in radians per second, counter-clockwise.
-    RadiansPerSecond, "rad/s"
 );
 
 impl Radians {
