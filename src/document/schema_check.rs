@@ -5,11 +5,15 @@
 //! `prefixItems`, lengths and ranges. serde itself would stop at the first fault and lose most places.
 
 mod branches;
+mod faults;
+mod spot;
 mod words;
 
-use super::node::{Content, Entry, Node, Place, Tree, start_of};
-use super::{Diagnostic, MOST_FAULTS, Severity, quoted, suggestion};
+use super::node::{Content, Entry, Node, Place, Tree};
+use super::{Diagnostic, Severity, quoted, suggestion};
+use faults::{Fault, Faults};
 use serde_json::{Map, Value};
+use spot::Spot;
 use std::collections::BTreeSet;
 use words::{accepts, constants, described, expected};
 
@@ -48,140 +52,6 @@ pub fn check(schema: &Value, tree: &Tree) -> Vec<Diagnostic> {
         diagnostic
     });
     told.chain(others).collect()
-}
-
-/// Faults in the order of the reading: the first ones, and how many there are.
-#[derive(Default)]
-struct Faults {
-    list: Vec<Fault>,
-    /// Places of unknown keys: one is met as often as there are choices around it.
-    unknown: BTreeSet<Place>,
-    /// How many faults there are but for unknown keys.
-    others: usize,
-}
-
-impl Faults {
-    fn count(&self) -> usize {
-        self.others + self.unknown.len()
-    }
-
-    /// Whether a further fault is only counted: to put it into words could take longer than all the rest.
-    fn is_full(&self) -> bool {
-        self.list.len() >= MOST_FAULTS
-    }
-
-    /// Takes the fault that `made` puts into words, or counts it.
-    fn push(&mut self, made: impl FnOnce() -> Fault) {
-        self.others += 1;
-        self.tell(made);
-    }
-
-    /// The same for an unknown key at `place`.
-    fn push_unknown(&mut self, place: Place, made: impl FnOnce() -> Fault) {
-        if self.unknown.insert(place) {
-            self.tell(made);
-        }
-    }
-
-    fn tell(&mut self, made: impl FnOnce() -> Fault) {
-        if !self.is_full() {
-            self.list.push(made());
-        }
-    }
-
-    /// Takes what another reading of a part found.
-    fn append(&mut self, mut found: Self) {
-        self.others += found.others;
-        let told = self.unknown.clone();
-        self.unknown.append(&mut found.unknown);
-        let room = MOST_FAULTS.saturating_sub(self.list.len());
-        let fresh = found.list.into_iter().filter(|fault| !told.contains(&fault.place));
-        self.list.extend(fresh.take(room));
-    }
-}
-
-/// A fault that is not yet tied to its source.
-#[derive(Debug, Clone, PartialEq)]
-struct Fault {
-    place: Place,
-    message: String,
-    label: String,
-    help: Option<String>,
-}
-
-/// A node, how it is reached and where to point when something is missing from it.
-#[derive(Clone, Copy)]
-struct Spot<'a> {
-    node: &'a Node,
-    /// Where its key stands, or the node itself.
-    key: Place,
-    above: Option<&'a Spot<'a>>,
-    step: Step<'a>,
-}
-
-#[derive(Clone, Copy)]
-enum Step<'a> {
-    Root,
-    Key(&'a str),
-    Item(usize),
-}
-
-impl<'a> Spot<'a> {
-    fn root(node: &'a Node) -> Self {
-        Self { node, key: start_of(node), above: None, step: Step::Root }
-    }
-
-    fn entry(&'a self, entry: &'a Entry) -> Self {
-        Self {
-            node: &entry.value,
-            key: entry.key_place,
-            above: Some(self),
-            step: Step::Key(&entry.key),
-        }
-    }
-
-    fn item(&'a self, number: usize, node: &'a Node) -> Self {
-        Self { node, key: start_of(node), above: Some(self), step: Step::Item(number) }
-    }
-
-    /// `parameters.sensing.range-m`, as `--set` takes it; empty for the whole document.
-    fn path(&self) -> String {
-        let above = self.above.map_or_else(String::new, Spot::path);
-        match self.step {
-            Step::Root => above,
-            Step::Key(key) if above.is_empty() => quoted(key).into_owned(),
-            Step::Key(key) => format!("{above}.{}", quoted(key)),
-            Step::Item(number) => format!("{above}[{number}]"),
-        }
-    }
-
-    /// The path in backquotes, or words for the whole document.
-    fn name(&self) -> String {
-        let path = self.path();
-        if path.is_empty() { "the document".to_owned() } else { format!("`{path}`") }
-    }
-
-    fn fault(&self, message: impl Into<String>, label: impl Into<String>) -> Fault {
-        Fault {
-            // What is not written can only be shown by its key.
-            place: if self.node.content == Content::Null { self.key } else { self.node.place },
-            message: message.into(),
-            label: label.into(),
-            help: None,
-        }
-    }
-}
-
-impl Fault {
-    fn help(mut self, help: impl Into<String>) -> Self {
-        self.help = Some(help.into());
-        self
-    }
-
-    fn at(mut self, place: Place) -> Self {
-        self.place = place;
-        self
-    }
 }
 
 struct Checker<'s> {

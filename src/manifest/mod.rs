@@ -53,7 +53,7 @@ pub use document::{
     Alpha, Author, BoundingBoxOf, Cite, DerivedFrom, FactorRef, FloorPlanOf, FootprintOf,
     GenerateDoc, GeneratedWorld, ManifestDoc, MapPrior, OriginDoc, OwnWorld, PoseDoc,
     PreviousMapDoc, PreviousMapOf, PriorDoc, PriorFrame, PublishedDoc, PublishedFile, SeedDoc,
-    StartDoc, UnknownAs, WorldDoc, WorldFile,
+    StartDoc, TopoMetricPrior, UnknownAs, WorldDoc, WorldFile,
 };
 pub use experiment::{
     Assumption, CalibrationRun, Experiment, Meanings, ResolvedCondition, Robustness,

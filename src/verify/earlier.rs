@@ -1,7 +1,7 @@
 //! What a study rests on and runs before it made: the passages of its calibration, the runs behind its robustness table. They
 //! are executed again like trials: a sample at level 4, all passages at level 5, rows of the robustness table as many as asked.
 
-use super::ladder::{Options, Rows};
+use super::asked::{Options, Rows};
 use super::{Level, Replanned, reexecution};
 use crate::bundle::Fault;
 use crate::rng::Seeds;

@@ -3,6 +3,7 @@
 //! [`climb`] collects every [`Finding`] of the levels asked for and reports the rung reached. Checksums (level 1) only
 //! show that nothing changed since they were computed; from level 3 on, a forger would have to make the engine agree.
 
+mod asked;
 mod attestation;
 mod closeness;
 mod coherent;
@@ -23,11 +24,12 @@ mod support;
 #[cfg(test)]
 mod tests;
 
+pub use asked::{Options, Reviewer, Rows};
 pub use attestation::{AttestError, Attestation, Envelope, LONGEST as LONGEST_ATTESTATION};
 pub use closeness::{Apart, Closeness};
 pub use earlier::{Earlier, EarlierAgain, Made};
 pub use finding::{Finding, Level, Severity};
-pub use ladder::{Options, Report, Reviewer, Rows, Verdict, climb, climb_and_keep, climb_for};
+pub use ladder::{Report, Verdict, climb, climb_and_keep, climb_for};
 pub use pipeline::{
     ContentError, MakeAgainError, Pipeline, PlannedTrial, ReplanError, Replanned, ReplicateError,
 };

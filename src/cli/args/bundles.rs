@@ -1,0 +1,187 @@
+//! What can be typed about bundles: to verify, compare, report, export and replay them.
+
+use super::Format;
+use crate::verify::Rows;
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
+
+/// A value that its option does not take.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+enum ValueError {
+    #[error("expected a number of rows or `all`")]
+    Rows,
+    #[error("expected a number above 0")]
+    Rate,
+}
+
+/// Reads how many rows `--robustness` asks for.
+fn rows(text: &str) -> Result<Rows, ValueError> {
+    match text {
+        "all" => Ok(Rows::All),
+        number => number.parse().map(Rows::Drawn).map_err(|_| ValueError::Rows),
+    }
+}
+
+/// Reads a rate in Hz.
+fn rate(text: &str) -> Result<f64, ValueError> {
+    let rate = text.parse().ok().filter(|rate: &f64| rate.is_finite() && *rate > 0.0);
+    rate.ok_or(ValueError::Rate)
+}
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct VerifyArgs {
+    /// The bundle: a zip or a folder
+    pub(in crate::cli) bundle: PathBuf,
+    /// How far to climb: 0 safe, 1 intact, 2 coherent, 3 derived, 4 sampled, 5 re-executed in full, 6 replicated with
+    /// fresh seeds
+    #[arg(long, value_name = "0..6", default_value_t = 3)]
+    pub(in crate::cli) level: u8,
+    /// Trials to draw at level 4, 1 or more
+    #[arg(long, value_name = "N", default_value_t = 59)]
+    pub(in crate::cli) sample: usize,
+    /// Rows of the robustness table (`sensitivity:`) to run again from level 4 on, each a run of the study at another value
+    /// of one setting: a number or `all` [default: 1 at level 4, 3 at level 5]
+    #[arg(long, value_name = "N|all", value_parser = rows)]
+    pub(in crate::cli) robustness: Option<Rows>,
+    /// The reviewer's seed for drawing them, and the experiment's at level 6 [default: a fresh one, printed]
+    #[arg(long, value_name = "S")]
+    pub(in crate::cli) sample_seed: Option<u64>,
+    /// Keys that may vouch for the bundle: an OpenSSH `allowed_signers` file or a minisign public key
+    #[arg(long, value_name = "FILE")]
+    pub(in crate::cli) trust: Option<PathBuf>,
+    /// A signature that lies beside the bundle rather than in it
+    #[arg(long, value_name = "FILE", requires = "trust")]
+    pub(in crate::cli) signature: Option<PathBuf>,
+    /// Where the bundle holds, write an attestation of that (an in-toto Statement in a DSSE envelope), and beside it, as
+    /// FILE.pae, the bytes to sign
+    #[arg(long, value_name = "FILE")]
+    pub(in crate::cli) attest: Option<PathBuf>,
+    /// An attestation of this bundle, which one of the trusted keys must have signed
+    #[arg(long, value_name = "FILE", requires = "trust")]
+    pub(in crate::cli) attestation: Option<PathBuf>,
+    /// Threads for re-execution [default: all processors]
+    #[arg(short, long, value_name = "N")]
+    pub(in crate::cli) jobs: Option<usize>,
+    /// How the answer is written
+    #[arg(long, value_enum, default_value = "human")]
+    pub(in crate::cli) format: Format,
+}
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct AttestArgs {
+    /// The attestation, as `verify --attest` wrote it; the signature is put into this file
+    pub(in crate::cli) attestation: PathBuf,
+    /// A signature of FILE.pae by `ssh-keygen -Y sign -n reenact` or minisign
+    #[arg(long, value_name = "FILE")]
+    pub(in crate::cli) signature: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct DiffArgs {
+    /// The old one: a bundle (zip or folder) or a .lock file
+    pub(in crate::cli) a: PathBuf,
+    /// The new one
+    pub(in crate::cli) b: PathBuf,
+    /// By how much a metric (or, without METRIC, any number) may differ (repeatable): 0.5, 1%, distance-m=0.5
+    #[arg(long, value_name = "[METRIC=]NUMBER[%]")]
+    pub(in crate::cli) tolerance: Vec<String>,
+    /// How the answer is written
+    #[arg(long, value_enum, default_value = "human")]
+    pub(in crate::cli) format: DiffFormat,
+    /// Write the answer to this file
+    #[arg(short, long, value_name = "FILE")]
+    pub(in crate::cli) output: Option<PathBuf>,
+    /// Show a bundle that fails its check all the same, under a banner
+    #[arg(long)]
+    pub(in crate::cli) unchecked: bool,
+}
+
+/// How differences are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(in crate::cli) enum DiffFormat {
+    /// For people
+    Human,
+    /// One compact line of JSON
+    Json,
+    /// One self-contained page
+    Html,
+}
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct ReportArgs {
+    /// The bundle
+    pub(in crate::cli) bundle: PathBuf,
+    /// The page to write [default: the bundle's name with .html, in this folder]
+    #[arg(short, long, value_name = "FILE")]
+    pub(in crate::cli) output: Option<PathBuf>,
+    /// Show a bundle that fails its check all the same, under a banner
+    #[arg(long)]
+    pub(in crate::cli) unchecked: bool,
+}
+
+#[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
+pub(in crate::cli) struct ExportArgs {
+    /// The bundle
+    pub(in crate::cli) bundle: PathBuf,
+    /// A zip without a top folder, as some importers want it
+    #[arg(long, group = "form")]
+    pub(in crate::cli) flat: bool,
+    /// A zip of the RO-Crate alone
+    #[arg(long, group = "form")]
+    pub(in crate::cli) rocrate: bool,
+    /// A folder
+    #[arg(long, group = "form")]
+    pub(in crate::cli) dir: bool,
+    /// Put this signature of its `tagmanifest-sha256.txt` into it
+    #[arg(long, value_name = "FILE", conflicts_with = "rocrate")]
+    pub(in crate::cli) signature: Option<PathBuf>,
+    /// Where to write it [default: this folder]
+    #[arg(short, long, value_name = "DIR", default_value = ".")]
+    pub(in crate::cli) out: PathBuf,
+    /// Write a bundle that fails its check all the same
+    #[arg(long)]
+    pub(in crate::cli) unchecked: bool,
+}
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct ReplayArgs {
+    /// The bundle
+    pub(in crate::cli) bundle: PathBuf,
+    /// One trial, or two to play side by side: 8 hex digits of a key, or CONDITION/NUMBER
+    #[arg(required = true, num_args = 1..=2, value_name = "TRIAL")]
+    pub(in crate::cli) trials: Vec<String>,
+    /// Write a page in which it plays
+    #[arg(long, value_name = "FILE")]
+    pub(in crate::cli) html: Option<PathBuf>,
+    /// Write a still picture
+    #[arg(long, value_name = "FILE")]
+    pub(in crate::cli) svg: Option<PathBuf>,
+    /// Write the first trial as a bag of ROS 2 messages (MCAP), as Foxglove and `ros2 bag` read it
+    #[arg(long, value_name = "FILE")]
+    pub(in crate::cli) mcap: Option<PathBuf>,
+    /// Scans per second in the bag, at most [default: all that were taken]
+    #[arg(long, value_name = "HZ", requires = "mcap", value_parser = rate)]
+    pub(in crate::cli) scan_rate: Option<f64>,
+    /// Deadline study: write the constrained MDP of every plan of the first trial into this folder, for `solve-cmdp`
+    #[arg(long, value_name = "DIR")]
+    pub(in crate::cli) plans: Option<PathBuf>,
+    /// The instant of the still picture (s) [default: the end]
+    #[arg(long, value_name = "SECONDS", requires = "svg")]
+    pub(in crate::cli) at: Option<f64>,
+    /// Prior-map study: ... or when this coverage (percent) was first reached
+    #[arg(long, value_name = "PERCENT", requires = "svg", conflicts_with = "at")]
+    pub(in crate::cli) at_coverage: Option<f64>,
+    /// Leave frontiers and the planned path out of the still picture: map, path travelled and robot alone
+    #[arg(long, requires = "svg", conflicts_with = "decision")]
+    pub(in crate::cli) plain: bool,
+    /// Prior-map study: instead of a still, draw what the candidate of this choice (from 1) promises, with and without prior
+    #[arg(long, value_name = "CHOICE", requires = "svg", conflicts_with_all = ["at", "at_coverage"])]
+    pub(in crate::cli) decision: Option<usize>,
+    /// Which candidate of that choice, from 1 [default: the chosen one]
+    #[arg(long, value_name = "CANDIDATE", requires = "decision")]
+    pub(in crate::cli) gain: Option<usize>,
+    /// Show a bundle that fails its check all the same, under a banner
+    #[arg(long)]
+    pub(in crate::cli) unchecked: bool,
+}

@@ -1,0 +1,100 @@
+//! What can be typed about studies: to run, check, plan, lock and vary them.
+
+use super::{Format, SelectArgs};
+use clap::Args;
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct RunArgs {
+    /// Manifests to run, one after another
+    #[arg(required = true)]
+    pub(in crate::cli) manifests: Vec<PathBuf>,
+    /// Threads [default: all processors]
+    #[arg(short, long, value_name = "N")]
+    pub(in crate::cli) jobs: Option<usize>,
+    /// Where bundles land
+    #[arg(short, long, value_name = "DIR", default_value = "artifacts")]
+    pub(in crate::cli) out: PathBuf,
+    #[command(flatten)]
+    pub(in crate::cli) select: SelectArgs,
+    /// Neither read nor write the store of finished trials
+    #[arg(long)]
+    pub(in crate::cli) no_cache: bool,
+    #[command(flatten)]
+    pub(in crate::cli) lock: AgainstLockArgs,
+    /// Execute every trial twice, without the store; a difference ends with 3
+    #[arg(long)]
+    pub(in crate::cli) twice: bool,
+    /// Seal the source of this program into the bundle as data, for readers in ten years
+    #[arg(long)]
+    pub(in crate::cli) capsule: bool,
+    /// How the answer is written
+    #[arg(long, value_enum, default_value = "human")]
+    pub(in crate::cli) format: Format,
+}
+
+/// Whether and how the lock is held against a run.
+#[derive(Debug, Args)]
+pub(in crate::cli) struct AgainstLockArgs {
+    /// Compare with the lock beside the manifest; drift ends with 1
+    #[arg(long)]
+    pub(in crate::cli) locked: bool,
+    /// Only run trial 0 of every condition anew and compare it with the lock; seal nothing
+    #[arg(long, requires = "locked")]
+    pub(in crate::cli) probe: bool,
+}
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct CheckArgs {
+    /// Manifests to check
+    #[arg(required = true)]
+    pub(in crate::cli) manifests: Vec<PathBuf>,
+    /// Replace a value of the manifest (repeatable)
+    #[arg(long, value_name = "PATH=VALUE")]
+    pub(in crate::cli) set: Vec<String>,
+}
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct PlanArgs {
+    /// The manifest
+    pub(in crate::cli) manifest: PathBuf,
+    #[command(flatten)]
+    pub(in crate::cli) select: SelectArgs,
+    /// Print what the key of this trial is made of: 8 hex digits of it, or CONDITION/NUMBER
+    #[arg(long, value_name = "TRIAL")]
+    pub(in crate::cli) explain: Option<String>,
+    /// Say how likely the planned trials, and other numbers of them, are to decide each claim
+    #[arg(long, conflicts_with = "explain")]
+    pub(in crate::cli) power: bool,
+    /// How `--power` is written
+    #[arg(long, value_enum, default_value = "human", requires = "power")]
+    pub(in crate::cli) format: Format,
+}
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct LockArgs {
+    /// Manifests to lock, one after another
+    #[arg(required = true)]
+    pub(in crate::cli) manifests: Vec<PathBuf>,
+    /// Threads [default: all processors]
+    #[arg(short, long, value_name = "N")]
+    pub(in crate::cli) jobs: Option<usize>,
+    /// Neither read nor write the store of finished trials
+    #[arg(long)]
+    pub(in crate::cli) no_cache: bool,
+}
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct VaryArgs {
+    /// The manifest; what is found is written beside it, as NAME.sensitivity.csv
+    pub(in crate::cli) manifest: PathBuf,
+    /// Trials per condition, of the values chosen too [default: the manifest's]
+    #[arg(long, value_name = "N")]
+    pub(in crate::cli) trials: Option<u32>,
+    /// Threads [default: all processors]
+    #[arg(short, long, value_name = "N")]
+    pub(in crate::cli) jobs: Option<usize>,
+    /// Neither read nor write the store of finished trials
+    #[arg(long)]
+    pub(in crate::cli) no_cache: bool,
+}

@@ -1,0 +1,99 @@
+//! The world of a manifest as written, and where the robot begins in it.
+
+use crate::manifest::choice::Choice;
+use crate::world::document::LayerDoc;
+use crate::world::generate::Family;
+use schemars::JsonSchema;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+
+/// The true world: a file, or a building that is made for the purpose.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum WorldDoc {
+    /// A file.
+    File(WorldFile),
+    /// A building of a family.
+    Generated(GeneratedWorld),
+}
+
+/// A building of a family of buildings.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct GeneratedWorld {
+    /// Which one.
+    pub generate: GenerateDoc,
+}
+
+/// Which building of which family.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct GenerateDoc {
+    /// The family.
+    pub family: Family,
+    /// The number that names one of them.
+    pub seed: SeedDoc,
+}
+
+/// The number that names one building.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum SeedDoc {
+    /// A whole number from 0.
+    Number(u64),
+    /// The value of a factor, which is a number.
+    Factor(FactorRef),
+}
+
+/// A world in a file and the parts of it that stand.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct WorldFile {
+    /// World YAML, or a Gazebo `.world` or `.sdf` file.
+    pub file: Choice<String>,
+    /// Layers that stand; all where left out.
+    #[serde(default)]
+    pub layers: Option<Choice<Vec<String>>>,
+    /// SDF: the folders of the models that meshes are named by, `NAME` of `model://NAME/mesh.dae` to its folder. They are
+    /// relative to the manifest.
+    #[serde(default)]
+    pub models: BTreeMap<String, String>,
+    /// SDF: what stands for meshes, by their URI as the world writes it: solids as in a layer of world YAML, in the frame of
+    /// the collision. They go before a file.
+    #[serde(default)]
+    pub stand_ins: BTreeMap<String, LayerDoc>,
+}
+
+/// Where the robot begins.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum StartDoc {
+    /// A start that the world names.
+    Name(String),
+    /// A pose in the world's frame.
+    Pose(PoseDoc),
+    /// The start of the world that a factor's value names.
+    Factor(FactorRef),
+}
+
+/// The value of a factor itself.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FactorRef {
+    /// The factor.
+    pub factor: String,
+}
+
+/// A pose in the world's frame.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct PoseDoc {
+    /// Position x (m).
+    pub x_m: f64,
+    /// Position y (m).
+    pub y_m: f64,
+    /// Heading (degrees), counter-clockwise from x.
+    #[serde(default)]
+    #[schemars(range(min = -360.0, max = 360.0))]
+    pub heading_deg: f64,
+}

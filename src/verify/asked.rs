@@ -1,0 +1,51 @@
+//! What a reviewer asks of a climb, and what they bring along.
+
+use super::Level;
+use super::signature::Vouching;
+use crate::bundle::Moment;
+
+/// How far to climb.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Options {
+    /// The highest level to judge.
+    pub level: Level,
+    /// How many trials level 4 executes.
+    pub sample: usize,
+    /// How many rows of the robustness table are run again; as many as the level takes where nothing is said.
+    pub rows: Option<Rows>,
+    /// The reviewer's seed for drawing them, and for level 6 the experiment's; the bundle's author must not know it
+    /// beforehand.
+    pub seed: u64,
+}
+
+/// Rows of a robustness table: each is a run of the study at another value of one setting.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Rows {
+    /// So many, drawn with the reviewer's seed.
+    Drawn(usize),
+    /// All of them.
+    All,
+}
+
+/// What a reviewer brings along besides the bundle.
+#[derive(Clone, Copy)]
+pub struct Reviewer<'a> {
+    /// Who must vouch for the bundle.
+    pub vouching: Vouching<'a>,
+    /// Seconds since some instant, to tell how long each level took.
+    pub clock: &'a dyn Fn() -> f64,
+}
+
+impl Reviewer<'_> {
+    /// A reviewer who asks for no signature and has no clock.
+    pub fn anonymous() -> Self {
+        let vouching = Vouching { trust: None, signature: None, now: Moment(0) };
+        Self { vouching, clock: &|| 0.0 }
+    }
+}
+
+impl std::fmt::Debug for Reviewer<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Reviewer").field("vouching", &self.vouching).finish_non_exhaustive()
+    }
+}
