@@ -12,7 +12,7 @@ use crate::sandbox::repository;
 use reenact::document::Source;
 use reenact::grid::OccupancyGrid;
 use reenact::provenance::Environment;
-use reenact::world::floor_plan::{Plan, floor_plan};
+use reenact::world::floor_plan::{FloorPlanSettings, floor_plan};
 use reenact::world::map_server::{self, Options};
 use reenact::world::{World, document};
 use sketch::{Errors, Sketch};
@@ -53,7 +53,7 @@ fn plan_of(name: &str, layers: &[&str]) -> OccupancyGrid {
     let world: World = document::read(&source, Some(&layers)).unwrap_or_else(|faults| {
         panic!("{}", faults.iter().map(|f| f.render(false)).collect::<String>())
     });
-    floor_plan(&world, Plan { height: LIDAR, resolution: 0.1, layers: None }).unwrap()
+    floor_plan(&world, FloorPlanSettings { height: LIDAR, resolution: 0.1, layers: None }).unwrap()
 }
 
 /// The department as its floor plan shows it.

@@ -1,7 +1,7 @@
 //! From a plan and its records to everything a bundle says: the one function that `run` seals with and
 //! `verify` derives with.
 
-use super::content::{Author, BundleContent, Citation, SealedCondition, SealedInput};
+use super::content::{BundleContent, Person, Publication, SealedCondition, SealedInput};
 use super::{figures, format, wall_time};
 use crate::claims::{self, ClaimVerdict, Observations};
 use crate::json::AsWritten;
@@ -44,7 +44,7 @@ pub fn assemble_judged(
         bytes: input.bytes.to_vec(),
         license: input.license.clone(),
     });
-    let cite = experiment.cite.as_ref().map(|cite| Citation {
+    let cite = experiment.cite.as_ref().map(|cite| Publication {
         text: cite
             .section
             .as_ref()
@@ -67,7 +67,7 @@ pub fn assemble_judged(
         authors: experiment
             .authors
             .iter()
-            .map(|author| Author {
+            .map(|author| Person {
                 name: author.name.clone(),
                 affiliation: author.affiliation.clone(),
                 affiliation_url: None,

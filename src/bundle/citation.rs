@@ -1,7 +1,7 @@
 //! How to cite the bundle and how to deposit it: `CITATION.cff` (Citation File Format 1.2.0) and `.zenodo.json` (the fields of
 //! Zenodo's deposit schema), from what the manifest says of its authors, licence and the work it reproduces.
 
-use super::{Author, BundleContent, Circumstance};
+use super::{BundleContent, Circumstance, Person};
 use crate::digest::ResultsDigest;
 use crate::figure::svg::escape;
 use serde_json::{Value, json};
@@ -85,10 +85,10 @@ impl<'a> Name<'a> {
 }
 
 /// Who answers for the bundle: a manifest may name nobody.
-fn authors(content: &BundleContent) -> Vec<Author> {
+fn authors(content: &BundleContent) -> Vec<Person> {
     if content.authors.is_empty() {
         let name = format!("The authors of {}", content.name);
-        return vec![Author { name, ..Author::default() }];
+        return vec![Person { name, ..Person::default() }];
     }
     content.authors.clone()
 }

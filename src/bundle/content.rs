@@ -17,9 +17,9 @@ pub struct BundleContent {
     /// What it is about, in a sentence or two.
     pub description: String,
     /// What it reproduces.
-    pub cite: Option<Citation>,
+    pub cite: Option<Publication>,
     /// Who wrote the manifest.
-    pub authors: Vec<Author>,
+    pub authors: Vec<Person>,
     /// Licence of the bundle: an SPDX identifier, or the address of a text.
     pub license: String,
     /// The experiment's seed.
@@ -47,7 +47,7 @@ pub struct BundleContent {
 
 /// A person who wrote the manifest.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Author {
+pub struct Person {
     /// Full name.
     pub name: String,
     /// Institution.
@@ -60,7 +60,7 @@ pub struct Author {
 
 /// The work that the study reproduces.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Citation {
+pub struct Publication {
     /// The reference in full.
     pub text: String,
     /// Its DOI or other web address.

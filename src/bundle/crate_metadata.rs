@@ -388,6 +388,6 @@ fn license_id(license: &str) -> String {
         .unwrap_or_else(|| format!("#license-{}", Sha256Digest::of(license).short()))
 }
 
-fn cite_id(cite: &super::Citation) -> String {
+fn cite_id(cite: &super::Publication) -> String {
     cite.url.clone().unwrap_or_else(|| "#reproduced-work".to_owned())
 }

@@ -1,7 +1,7 @@
 //! Who made the study and whom they belong to, as an RO-Crate names them.
 
 use super::crate_entities::Entity;
-use super::{Author, BundleContent, format};
+use super::{BundleContent, Person, format};
 use std::collections::BTreeMap;
 
 /// Identifiers of authors and of the organisations they belong to.
@@ -67,7 +67,7 @@ impl People {
     }
 }
 
-fn affiliation(author: &Author) -> &str {
+fn affiliation(author: &Person) -> &str {
     author.affiliation.as_deref().unwrap_or(UNAFFILIATED)
 }
 

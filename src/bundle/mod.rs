@@ -41,7 +41,7 @@ pub use archive::{Archive, Form, Limits};
 pub use capsule::Capsule;
 pub use class::{Class, class_of, is_tag_file, table_in_markdown};
 pub use content::{
-    Author, BundleContent, Circumstance, Citation, SealedCondition, SealedInput, seal_inputs,
+    BundleContent, Circumstance, Person, Publication, SealedCondition, SealedInput, seal_inputs,
 };
 pub use departure::{Departure, shell_word};
 pub use fault::{Fault, visible};

@@ -89,7 +89,11 @@ impl Bundle {
             match payload(&path).map(|bytes| std::str::from_utf8(bytes)) {
                 Some(Ok(_)) => {}
                 Some(Err(_)) => {
-                    faults.push(Fault::new(BundlePath::payload(&path), "UTF-8 text", "other bytes"))
+                    faults.push(Fault::new(
+                        BundlePath::payload(&path),
+                        "UTF-8 text",
+                        "other bytes",
+                    ));
                 }
                 None => faults.push(missing(&path, "the condition's records")),
             }

@@ -1,7 +1,7 @@
 //! A small bundle for tests, and tools to damage it.
 
 use super::{
-    Author, BundleContent, Circumstance, Citation, Form, Moment, Sealed, SealedCondition, Tree,
+    BundleContent, Circumstance, Form, Moment, Person, Publication, Sealed, SealedCondition, Tree,
     bag, format, seal, seal_inputs,
 };
 use crate::digest::{Sha256Digest, TrialKey};
@@ -110,14 +110,14 @@ pub(crate) fn content_of(
         name: "corridors".into(),
         title: "Corridors with and without a floor plan".into(),
         description: "A robot explores corridors, with and without a floor plan.".into(),
-        cite: Some(Citation {
+        cite: Some(Publication {
             text: "A. Author, \"On corridors\", 2020".into(),
             url: Some("https://doi.org/10.1000/182".into()),
         }),
-        authors: vec![Author {
+        authors: vec![Person {
             name: "A. Researcher".into(),
             affiliation: Some("Example Robotics Lab".into()),
-            ..Author::default()
+            ..Person::default()
         }],
         license: "CC-BY-4.0".into(),
         seed,

@@ -23,7 +23,7 @@ pub type WallTimes = BTreeMap<TrialKey, WallTime>;
 
 /// Verdicts on the claims about the machine, and the files under `circumstances/` that hold them.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Measured {
+pub struct MachineResults {
     /// In the manifest's order.
     pub verdicts: Vec<ClaimVerdict>,
     /// As [`super::Circumstance::files`] takes them; none where nothing is claimed of the machine.
@@ -38,11 +38,11 @@ pub fn measured(
     plan: &Plan,
     records: &[TrialRecord],
     times: Result<&WallTimes, &str>,
-) -> Result<Measured, String> {
+) -> Result<MachineResults, String> {
     let claims = &plan.experiment.claims;
     let claims: Vec<_> = claims.iter().filter(|claim| claim.circumstance).collect();
     if plan.partial || claims.is_empty() {
-        return Ok(Measured::default());
+        return Ok(MachineResults::default());
     }
     let experiment = &plan.experiment;
     let context =
@@ -60,7 +60,7 @@ pub fn measured(
         }
     };
     files.push(("claims.json".to_owned(), assemble::verdicts_json(&verdicts)));
-    Ok(Measured { verdicts, files })
+    Ok(MachineResults { verdicts, files })
 }
 
 /// The columns of the times of trials of a design of `factors`.

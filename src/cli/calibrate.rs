@@ -3,7 +3,7 @@
 
 use super::progress::Progress;
 use super::terminal::Terminal;
-use crate::manifest::{self, Experiment, ExploreError, Measured};
+use crate::manifest::{self, Calibrated, Experiment, ExploreError};
 use crate::plan::Plan;
 use crate::runner::{RunError, Scheduler, StoreError, TrialStore};
 use crate::store::DirectoryStore;
@@ -45,9 +45,9 @@ impl Calibrator<'_> {
         self,
         calibration: &Experiment,
         terminal: Terminal,
-    ) -> Result<Measured, Unmeasured> {
+    ) -> Result<Calibrated, Unmeasured> {
         if matches!(self, Self::StandIn) {
-            return Ok(Measured::StandIn);
+            return Ok(Calibrated::StandIn);
         }
         let plan = Plan::of(calibration.clone());
         let records = match self {
@@ -64,7 +64,7 @@ impl Calibrator<'_> {
         };
         let planned = PlannedPassages::of(plan.experiment.design(), plan.experiment.trials);
         let passages = planned.and_then(|planned| planned.showed(&records))?;
-        Ok(Measured::Passages(passages.to_csv().into_bytes()))
+        Ok(Calibrated::Passages(passages.to_csv().into_bytes()))
     }
 
     /// The map that the robot of `spec` ends with, as a descriptor and an image. One exploration takes about a second, so

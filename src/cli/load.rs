@@ -7,7 +7,7 @@ use super::terminal::Terminal;
 use crate::bundle::archive::{Archive, Limits};
 use crate::bundle::{Resolved, format, names};
 use crate::document::{Severity, Source};
-use crate::manifest::{self, Experiment, InputError, Inputs, Measured, WrittenIn};
+use crate::manifest::{self, Calibrated, Experiment, InputError, Inputs, WrittenIn};
 use crate::plan::{Plan, Selection};
 use crate::store::{self, reason};
 use crate::studies::TrialSpec;
@@ -199,7 +199,7 @@ impl Inputs for Folder<'_> {
         .map_err(InputError::other)
     }
 
-    fn calibrate(&self, calibration: &Experiment, _: &str) -> Result<Measured, InputError> {
+    fn calibrate(&self, calibration: &Experiment, _: &str) -> Result<Calibrated, InputError> {
         self.calibrator.passages(calibration, self.terminal).map_err(InputError::other)
     }
 

@@ -2,7 +2,7 @@
 
 use super::experiment::{CalibrationRun, Experiment};
 use super::input::{Input, InputKind, WrittenIn};
-use super::library::{InputError, Inputs, Library, Measured, joined, normalised};
+use super::library::{Calibrated, InputError, Inputs, Library, joined, normalised};
 use super::resolve::resolve;
 use super::resolver::Resolver;
 use crate::studies::deadline::{Calibration, CalibrationError, PlannedPassages};
@@ -91,8 +91,8 @@ impl Resolver<'_> {
     ) -> Result<(CalibrationRun, Calibration), Unmeasured> {
         let passages = PlannedPassages::of(experiment.design(), experiment.trials)?;
         let measured = match self.library.files.calibrate(&experiment, &sealed_as)? {
-            Measured::StandIn => None,
-            Measured::Passages(bytes) => {
+            Calibrated::StandIn => None,
+            Calibrated::Passages(bytes) => {
                 let text = String::from_utf8(bytes)?;
                 let read = passages.read(&text);
                 Some(read.map_err(|error| Unmeasured::Unread(sealed_as.clone(), error))?)

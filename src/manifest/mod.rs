@@ -59,7 +59,7 @@ pub use experiment::{
     Assumption, CalibrationRun, Experiment, Meanings, ResolvedCondition, Robustness,
 };
 pub use input::{Input, InputKind, WrittenIn};
-pub use library::{InputError, Inputs, Measured};
+pub use library::{Calibrated, InputError, Inputs};
 pub use names::Factor;
 pub use parameters::ParametersDoc;
 pub use pinned::{PinnedDoc, PinnedFileDoc};

@@ -6,7 +6,7 @@ use super::faults::step;
 use super::input::{InputKind, WrittenIn};
 use super::library::{Library, Unread, joined, normalised};
 use super::resolver::Resolver;
-use crate::world::sdf::{Found, Models, Place, Unplaced, place_of};
+use crate::world::sdf::{Found, MeshPath, Models, Unplaced, mesh_path};
 use crate::world::{Solid, document, mesh};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -28,9 +28,9 @@ pub(super) struct Shelf<'r, 'a> {
 impl Shelf<'_, '_> {
     /// The path of the file that `uri` names.
     fn path_of(&self, uri: &str) -> Result<(String, WrittenIn), Unplaced> {
-        Ok(match place_of(uri, &self.doc.models)? {
-            Place::Model(path) => (normalised(&path), self.folders),
-            Place::Beside(path) => (joined(&self.world.0, &path), self.world.1),
+        Ok(match mesh_path(uri, &self.doc.models)? {
+            MeshPath::Model(path) => (normalised(&path), self.folders),
+            MeshPath::Beside(path) => (joined(&self.world.0, &path), self.world.1),
         })
     }
 

@@ -19,9 +19,10 @@ use crate::json;
 use crate::rng::Seeds;
 use crate::studies::prior_map::{self, PriorMap};
 use crate::studies::{Condition, Setup, Study, TrialSpec};
-use crate::world::floor_plan::{self, Plan};
+use crate::world::floor_plan::{self, FloorPlanSettings};
 use crate::world::map_server;
 use serde_json::json;
+use std::fmt;
 use std::string::FromUtf8Error;
 use std::sync::Arc;
 
@@ -36,7 +37,13 @@ pub enum ExploreError {
     Unmapped(String),
     /// Nothing can stand in for its map.
     #[error(transparent)]
-    NoPlan(#[from] floor_plan::PlanError),
+    NoPlan(#[from] floor_plan::FloorPlanError),
+}
+
+impl ExploreError {
+    fn unmapped(problem: impl fmt::Display) -> Self {
+        Self::Unmapped(problem.to_string())
+    }
 }
 
 impl From<ExploreError> for InputError {
@@ -50,8 +57,7 @@ impl From<ExploreError> for InputError {
 /// # Errors
 /// Where it cannot run or maps nothing.
 pub fn explored(spec: &TrialSpec, named: &[String; 2]) -> Result<[Vec<u8>; 2], ExploreError> {
-    let map = prior_map::explored_map(spec, setup_of(spec)?)
-        .map_err(|problem| ExploreError::Unmapped(problem.to_string()))?;
+    let map = prior_map::explored_map(spec, setup_of(spec)?).map_err(ExploreError::unmapped)?;
     Ok(map_server::write(&map, &image_beside(named)))
 }
 
@@ -64,7 +70,7 @@ pub fn unexplored(spec: &TrialSpec, named: &[String; 2]) -> Result<[Vec<u8>; 2],
     let setup = setup_of(spec)?;
     let height = setup.robot.lidar.as_ref().map_or(0.0, |lidar| lidar.height);
     let resolution = setup.parameters.mapping.resolution_m;
-    let plan = Plan { height, resolution, layers: None };
+    let plan = FloorPlanSettings { height, resolution, layers: None };
     let map = floor_plan::floor_plan(&setup.world, plan)?;
     Ok(map_server::write(&map, &image_beside(named)))
 }

@@ -16,7 +16,7 @@ use crate::grid::{GridFrame, OccupancyGrid};
 use crate::robot::Robot;
 use crate::studies::Condition;
 use crate::studies::prior_map::Parameters;
-use crate::world::{floor_plan::Plan, map_server};
+use crate::world::{floor_plan::FloorPlanSettings, map_server};
 use serde_json::json;
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -144,7 +144,7 @@ impl<'a> Resolver<'a> {
         // Without a scanner there is no height to cut at; the lint says so.
         let height = robot.lidar.as_ref().map_or(0.0, |lidar| lidar.height);
         let cache = json!([described, of.meaning, height]).to_string();
-        let plan = Plan { height, resolution, layers: None };
+        let plan = FloorPlanSettings { height, resolution, layers: None };
         let known = self.once(
             |library| &mut library.grids,
             cache,

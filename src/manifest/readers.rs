@@ -4,7 +4,7 @@ use super::document::Alpha;
 use crate::document::{Diagnostic, Source};
 use crate::grid::OccupancyGrid;
 use crate::studies::prior_map::tour::{self, TopoMetricMap};
-use crate::world::floor_plan::{self, Plan, PlanError};
+use crate::world::floor_plan::{self, FloorPlanError, FloorPlanSettings};
 use crate::world::{World, document, map_server, sdf};
 
 /// What is derived from a world as prior knowledge.
@@ -32,7 +32,11 @@ impl Derived {
     ///
     /// # Errors
     /// Nothing to draw or too much.
-    pub(super) fn draw(self, world: &World, plan: Plan<'_>) -> Result<OccupancyGrid, PlanError> {
+    pub(super) fn draw(
+        self,
+        world: &World,
+        plan: FloorPlanSettings<'_>,
+    ) -> Result<OccupancyGrid, FloorPlanError> {
         match self {
             Self::FloorPlan => floor_plan::floor_plan(world, plan),
             Self::Footprint => floor_plan::footprint(world, plan),

@@ -6,6 +6,7 @@ use crate::digest::TrialKey;
 use crate::document::{Diagnostic, MOST_FAULTS, reports};
 use crate::plan::SelectionError;
 use crate::runner::RunError;
+use std::fmt;
 use thiserror::Error;
 
 /// Why a bundle's manifest makes no plan.
@@ -58,6 +59,12 @@ pub enum ContentError {
     Unjudged(String),
 }
 
+impl ContentError {
+    pub(super) fn unjudged(problem: impl fmt::Display) -> Self {
+        Self::Unjudged(problem.to_string())
+    }
+}
+
 /// Why what runs before the study's own made cannot be made again.
 #[derive(Debug, Error)]
 pub enum MakeAgainError {
@@ -87,6 +94,12 @@ pub enum MakeAgainError {
     Unjudged(String),
 }
 
+impl MakeAgainError {
+    pub(super) fn unjudged(problem: impl fmt::Display) -> Self {
+        Self::Unjudged(problem.to_string())
+    }
+}
+
 /// Why a study cannot be run with another seed.
 #[derive(Debug, Error)]
 pub enum ReplicateError {
@@ -99,6 +112,12 @@ pub enum ReplicateError {
     /// A claim cannot be judged by them.
     #[error("{0}")]
     Unjudged(String),
+}
+
+impl ReplicateError {
+    pub(super) fn unjudged(problem: impl fmt::Display) -> Self {
+        Self::Unjudged(problem.to_string())
+    }
 }
 
 /// The way from a manifest to trials, as `run` goes it.

@@ -6,7 +6,7 @@ use crate::bundle::{Bundle, BundleContent, BundlePath, Fault, assemble, format};
 use crate::claims::sensitivity::{Run, in_words};
 use crate::digest::Sha256Digest;
 use crate::document::Source;
-use crate::manifest::{self, Experiment, InputError, Inputs, Measured, WrittenIn};
+use crate::manifest::{self, Calibrated, Experiment, InputError, Inputs, WrittenIn};
 use crate::plan::{ENGINE_VERSION, Plan, Selection};
 use crate::rng::Seeds;
 use crate::runner::{Observer, RunError, Scheduler, Silent};
@@ -129,8 +129,8 @@ impl Inputs for Sealed<'_> {
         bytes.ok_or_else(|| InputError::other(NotSealed))
     }
 
-    fn calibrate(&self, _: &Experiment, sealed_as: &str) -> Result<Measured, InputError> {
-        self.read(sealed_as, WrittenIn::Calibration).map(Measured::Passages)
+    fn calibrate(&self, _: &Experiment, sealed_as: &str) -> Result<Calibrated, InputError> {
+        self.read(sealed_as, WrittenIn::Calibration).map(Calibrated::Passages)
     }
 
     fn explore(&self, _: &TrialSpec, sealed_as: &[String; 2]) -> Result<[Vec<u8>; 2], InputError> {
@@ -165,7 +165,11 @@ impl Inputs for Afresh<'_> {
         self.sealed.read(as_written, written_in)
     }
 
-    fn calibrate(&self, calibration: &Experiment, sealed_as: &str) -> Result<Measured, InputError> {
+    fn calibrate(
+        &self,
+        calibration: &Experiment,
+        sealed_as: &str,
+    ) -> Result<Calibrated, InputError> {
         let Some((seed, study)) = self.fresh else {
             return self.sealed.calibrate(calibration, sealed_as);
         };
@@ -178,7 +182,7 @@ impl Inputs for Afresh<'_> {
         let planned = PlannedPassages::of(plan.experiment.design(), plan.experiment.trials);
         planned
             .and_then(|planned| planned.showed(&records))
-            .map(|passages| Measured::Passages(passages.to_csv().into_bytes()))
+            .map(|passages| Calibrated::Passages(passages.to_csv().into_bytes()))
             .map_err(InputError::other)
     }
 
@@ -258,8 +262,8 @@ impl Study<'_> {
                 Err(problem) => ("a run that can be planned again".to_owned(), problem.to_string()),
                 Ok(plan) => {
                     let records = self.run(&plan.trials)?;
-                    let verdicts = assemble::verdicts(&plan, &records)
-                        .map_err(|problem| MakeAgainError::Unjudged(problem.to_string()))?;
+                    let verdicts =
+                        assemble::verdicts(&plan, &records).map_err(MakeAgainError::unjudged)?;
                     match run.difference(&run.with(&verdicts, records_digest(&records))) {
                         Some(difference) => difference,
                         None => return Ok(None),
@@ -306,7 +310,7 @@ impl Replanned for Study<'_> {
     fn content(&self) -> Result<BundleContent, ContentError> {
         let records = self.bundle.records().map_err(ContentError::Records)?;
         assemble::assemble(&self.plan, self.bundle.study_yaml(), &self.selection, &records)
-            .map_err(|problem| ContentError::Unjudged(problem.to_string()))
+            .map_err(ContentError::unjudged)
     }
 
     fn execute(&self, indices: &[usize]) -> Result<Vec<String>, RunError> {
@@ -364,6 +368,6 @@ impl Replanned for Study<'_> {
         let (plan, selection) = plan_with(self.bundle, Some((seed, self)))?;
         let records = self.run(&plan.trials)?;
         assemble::assemble(&plan, self.bundle.study_yaml(), &selection, &records)
-            .map_err(|problem| ReplicateError::Unjudged(problem.to_string()))
+            .map_err(ReplicateError::unjudged)
     }
 }

@@ -17,7 +17,7 @@ const MAX_CELLS: f64 = (1_u32 << 26) as f64;
 
 /// Why no plan can be drawn.
 #[derive(Debug, Clone, PartialEq, Error)]
-pub enum PlanError {
+pub enum FloorPlanError {
     /// Nothing of the chosen layers is cut by the plane.
     #[error("world `{world}` has nothing at a height of {height} m in the chosen layers")]
     Empty {
@@ -42,7 +42,7 @@ pub enum PlanError {
 
 /// The layers to draw, and the resolution.
 #[derive(Debug, Clone, Copy)]
-pub struct Plan<'a> {
+pub struct FloorPlanSettings<'a> {
     /// Height of the cut (m): the lidar's.
     pub height: f64,
     /// Side of a cell (m).
@@ -55,7 +55,10 @@ pub struct Plan<'a> {
 ///
 /// # Errors
 /// Nothing to draw, or too much.
-pub fn floor_plan(world: &World, plan: Plan<'_>) -> Result<OccupancyGrid, PlanError> {
+pub fn floor_plan(
+    world: &World,
+    plan: FloorPlanSettings<'_>,
+) -> Result<OccupancyGrid, FloorPlanError> {
     let outlines: Vec<Outline> = world
         .solids
         .iter()
@@ -64,14 +67,14 @@ pub fn floor_plan(world: &World, plan: Plan<'_>) -> Result<OccupancyGrid, PlanEr
         .collect();
     let bounds = outlines.iter().fold(Bounds::EMPTY, |all, outline| all.union(outline.bounds()));
     if bounds.is_empty() {
-        return Err(PlanError::Empty { world: world.name.clone(), height: plan.height });
+        return Err(FloorPlanError::Empty { world: world.name.clone(), height: plan.height });
     }
     // At least two cells, so that the outside is one piece at any resolution.
     let bounds = bounds.grown(MARGIN.max(2.0 * plan.resolution));
     let (width, height, resolution) = (bounds.width(), bounds.height(), plan.resolution);
     let cells = (width / resolution + 2.0) * (height / resolution + 2.0);
     if !cells.is_finite() || cells > MAX_CELLS || resolution <= 0.0 {
-        return Err(PlanError::TooLarge { width, height, resolution });
+        return Err(FloorPlanError::TooLarge { width, height, resolution });
     }
     let frame = GridFrame::covering(bounds, resolution);
     let mut grid = OccupancyGrid::filled(frame, Occupancy::Free);
@@ -97,7 +100,10 @@ pub fn floor_plan(world: &World, plan: Plan<'_>) -> Result<OccupancyGrid, PlanEr
 ///
 /// # Errors
 /// As [`floor_plan`].
-pub fn footprint(world: &World, plan: Plan<'_>) -> Result<OccupancyGrid, PlanError> {
+pub fn footprint(
+    world: &World,
+    plan: FloorPlanSettings<'_>,
+) -> Result<OccupancyGrid, FloorPlanError> {
     let walls = floor_plan(world, plan)?;
     let frame = *walls.frame();
     let mut outside = OccupancyGrid::filled(frame, Occupancy::Unknown);
@@ -125,7 +131,10 @@ pub fn footprint(world: &World, plan: Plan<'_>) -> Result<OccupancyGrid, PlanErr
 ///
 /// # Errors
 /// As [`floor_plan`].
-pub fn bounding_box(world: &World, plan: Plan<'_>) -> Result<OccupancyGrid, PlanError> {
+pub fn bounding_box(
+    world: &World,
+    plan: FloorPlanSettings<'_>,
+) -> Result<OccupancyGrid, FloorPlanError> {
     let walls = floor_plan(world, plan)?;
     let frame = *walls.frame();
     let mut extent = Bounds::EMPTY;
@@ -188,8 +197,8 @@ mod tests {
         grid.values().chunks(width).rev().map(|row| row.iter().map(symbol).collect()).collect()
     }
 
-    fn plan(layers: Option<&[String]>) -> Plan<'_> {
-        Plan { height: 0.16, resolution: 0.3, layers }
+    fn plan(layers: Option<&[String]>) -> FloorPlanSettings<'_> {
+        FloorPlanSettings { height: 0.16, resolution: 0.3, layers }
     }
 
     #[test]
@@ -239,7 +248,7 @@ mod tests {
             floor_plan(&world(), plan(Some(&none))).unwrap_err().to_string(),
             "world `room` has nothing at a height of 0.16 m in the chosen layers"
         );
-        let fine = Plan { resolution: 1e-6, ..plan(None) };
+        let fine = FloorPlanSettings { resolution: 1e-6, ..plan(None) };
         assert_eq!(
             floor_plan(&world(), fine).unwrap_err().to_string(),
             "a plan of 5 x 4 m at 0.000001 m per cell is too large: expected at most 2^26 cells"
@@ -255,7 +264,7 @@ mod tests {
         for name in ["basic_no_furniture", "office_no_furniture", "open_no_furniture", "map2"] {
             let source = originals::source(&folder.join(format!("worlds/{name}.world")));
             let world = sdf::read(&source).unwrap();
-            let plan = Plan { height: 0.1602, resolution: 0.1, layers: None };
+            let plan = FloorPlanSettings { height: 0.1602, resolution: 0.1, layers: None };
             let count = |grid: OccupancyGrid| grid.count(Occupancy::Occupied);
             let walls = count(floor_plan(&world, plan).unwrap());
             let hull = count(footprint(&world, plan).unwrap());

@@ -3,7 +3,7 @@
 use reenact::geometry::{Outline, Point};
 use reenact::grid::{Cell, Grid, GridFrame, Occupancy};
 use reenact::world::World;
-use reenact::world::floor_plan::{Plan, floor_plan};
+use reenact::world::floor_plan::{FloorPlanSettings, floor_plan};
 use std::collections::BTreeSet;
 
 /// Side of a cell of floor (m).
@@ -89,7 +89,7 @@ impl Floor {
     /// Cells of 0.1 m of the floor plan of `world` that border what is reached, by their centres (m).
     pub(crate) fn walls(&self, world: &World) -> Vec<Point> {
         let layers = ["walls".to_owned()];
-        let plan = Plan { height: LIDAR, resolution: 0.1, layers: Some(&layers) };
+        let plan = FloorPlanSettings { height: LIDAR, resolution: 0.1, layers: Some(&layers) };
         let plan = floor_plan(world, plan).unwrap();
         let frame = self.reached.frame();
         // The centre stays a radius away from a wall of 0.15 m.

@@ -10,7 +10,7 @@ use crate::report::show::{self, Derived, Drawing, FetchError, Over};
 use crate::store;
 use crate::world::generate::{self, Family};
 use crate::world::mesh;
-use crate::world::sdf::{Found, Models, Place, place_of};
+use crate::world::sdf::{Found, MeshPath, Models, mesh_path};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -31,9 +31,9 @@ struct Shelf {
 
 impl Models for Shelf {
     fn find(&mut self, uri: &str) -> Found {
-        let path = match place_of(uri, &self.folders) {
-            Ok(Place::Model(path)) => PathBuf::from(path),
-            Ok(Place::Beside(path)) => self.beside.join(path),
+        let path = match mesh_path(uri, &self.folders) {
+            Ok(MeshPath::Model(path)) => PathBuf::from(path),
+            Ok(MeshPath::Beside(path)) => self.beside.join(path),
             Err(why) => return Found::Missing(why.to_string()),
         };
         let name = path.display().to_string();

@@ -42,7 +42,11 @@ pub trait Inputs {
     ///
     /// # Errors
     /// Why there are none.
-    fn calibrate(&self, calibration: &Experiment, sealed_as: &str) -> Result<Measured, InputError> {
+    fn calibrate(
+        &self,
+        calibration: &Experiment,
+        sealed_as: &str,
+    ) -> Result<Calibrated, InputError> {
         let _ = sealed_as;
         Err(InputError::NoCalibration(calibration.name.clone()))
     }
@@ -69,7 +73,7 @@ pub trait Inputs {
 
 /// What calibrating gave.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Measured {
+pub enum Calibrated {
     /// The passages, as `studies::deadline::Passages` writes them.
     Passages(Vec<u8>),
     /// Nothing was measured: numbers stand in that enter no result.

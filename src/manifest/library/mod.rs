@@ -8,7 +8,7 @@ mod inputs;
 mod paths;
 mod pins;
 
-pub use inputs::{InputError, Inputs, Measured};
+pub use inputs::{Calibrated, InputError, Inputs};
 pub(super) use paths::{joined, normalised, relative_to};
 
 use super::faults::Faults;

@@ -9,7 +9,7 @@ use crate::figure::canvas::metres;
 use crate::geometry::{Bounds, Outline, Point};
 use crate::grid::{Cell, GridFrame, Occupancy, OccupancyGrid};
 use crate::studies::prior_map::tour;
-use crate::world::floor_plan::{self, Plan};
+use crate::world::floor_plan::{self, FloorPlanSettings};
 use crate::world::{World, document, sdf};
 
 /// How near (m) to something solid an occupied cell of a prior counts as on it.
@@ -77,7 +77,7 @@ pub fn draw_derived(
     height: f64,
     resolution: f64,
 ) -> Result<Drawing, Vec<Diagnostic>> {
-    let plan = Plan { height, resolution, layers: None };
+    let plan = FloorPlanSettings { height, resolution, layers: None };
     let (what, grid) = match kind {
         Derived::FloorPlan => ("floor plan", floor_plan::floor_plan(world, plan)),
         Derived::Footprint => ("footprint", floor_plan::footprint(world, plan)),

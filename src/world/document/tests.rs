@@ -1,7 +1,7 @@
 use super::*;
 use crate::document::mutation::{edits, mutate};
 use crate::grid::{Occupancy, OccupancyGrid};
-use crate::world::floor_plan::{Plan, floor_plan};
+use crate::world::floor_plan::{FloorPlanSettings, floor_plan};
 use crate::world::{originals, sdf};
 use proptest::prelude::*;
 
@@ -175,7 +175,7 @@ fn the_basic_apartment_has_the_walls_of_the_original() {
     let original =
         sdf::read(&originals::source(&folder.join("worlds/basic_no_furniture.world"))).unwrap();
     let ours = read(&Source::new("worlds/basic.yaml", BASIC), Some(&[])).unwrap();
-    let plan = Plan { height: 0.1602, resolution: 0.2, layers: None };
+    let plan = FloorPlanSettings { height: 0.1602, resolution: 0.2, layers: None };
     let cells = |grid: &OccupancyGrid| -> Vec<(i32, i32)> {
         let frame = *grid.frame();
         let occupied = frame.cells().filter(|cell| grid.at(*cell) == Occupancy::Occupied);

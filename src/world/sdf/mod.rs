@@ -9,7 +9,7 @@ mod mesh;
 mod model;
 mod models;
 
-pub use models::{Found, Models, NoModels, Place, Unplaced, place_of};
+pub use models::{Found, MeshPath, Models, NoModels, Unplaced, mesh_path};
 
 use super::World;
 use crate::document::xml::{self, Faults};

@@ -25,7 +25,7 @@ pub trait Models {
 
 /// Where the file that a URI names lies.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Place {
+pub enum MeshPath {
     /// In the folder of a model: that folder and the way from there.
     Model(String),
     /// By a path from the folder of the world's file.
@@ -53,7 +53,7 @@ pub enum Unplaced {
 ///
 /// # Errors
 /// Why it lies nowhere.
-pub fn place_of(uri: &str, folders: &BTreeMap<String, String>) -> Result<Place, Unplaced> {
+pub fn mesh_path(uri: &str, folders: &BTreeMap<String, String>) -> Result<MeshPath, Unplaced> {
     let model = uri.strip_prefix("model://");
     let path = model.or_else(|| uri.strip_prefix("file://")).unwrap_or(uri);
     if path.contains("://") || path.is_empty() {
@@ -66,7 +66,7 @@ pub fn place_of(uri: &str, folders: &BTreeMap<String, String>) -> Result<Place, 
         if path.starts_with('/') {
             return Err(Unplaced::FromRoot);
         }
-        return Ok(Place::Beside(path.to_owned()));
+        return Ok(MeshPath::Beside(path.to_owned()));
     }
     if folders.is_empty() {
         return Err(Unplaced::Untold);
@@ -74,7 +74,7 @@ pub fn place_of(uri: &str, folders: &BTreeMap<String, String>) -> Result<Place, 
     let path = path.trim_start_matches('/');
     let (name, rest) = path.split_once('/').unwrap_or((path, ""));
     match folders.get(name) {
-        Some(folder) => Ok(Place::Model(format!("{folder}/{rest}"))),
+        Some(folder) => Ok(MeshPath::Model(format!("{folder}/{rest}"))),
         None => Err(Unplaced::NoFolder(name.to_owned())),
     }
 }

@@ -221,12 +221,12 @@ fn what_stands_for_a_mesh_or_lacks_is_told() {
 #[test]
 fn uris_lead_into_folders_that_are_given_and_nowhere_else() {
     let folders = BTreeMap::from([("house".to_owned(), "models/house".to_owned())]);
-    let place = |uri: &str| place_of(uri, &folders);
-    let model = Place::Model("models/house/m/bed.dae".to_owned());
+    let place = |uri: &str| mesh_path(uri, &folders);
+    let model = MeshPath::Model("models/house/m/bed.dae".to_owned());
     assert_eq!(place("model://house/m/bed.dae"), Ok(model.clone()));
     assert_eq!(place("model:///house/m/bed.dae"), Ok(model));
-    assert_eq!(place("file://m/a.stl"), Ok(Place::Beside("m/a.stl".to_owned())));
-    assert_eq!(place("m/a.stl"), Ok(Place::Beside("m/a.stl".to_owned())));
+    assert_eq!(place("file://m/a.stl"), Ok(MeshPath::Beside("m/a.stl".to_owned())));
+    assert_eq!(place("m/a.stl"), Ok(MeshPath::Beside("m/a.stl".to_owned())));
     for (uri, why) in [
         ("model://shed/a.dae", "no folder is given for the model `shed`"),
         ("model://house/../a.dae", "its path leads out of the folder"),
@@ -236,7 +236,7 @@ fn uris_lead_into_folders_that_are_given_and_nowhere_else() {
     ] {
         assert_eq!(place(uri).unwrap_err().to_string(), why, "{uri}");
     }
-    assert_eq!(place_of("model://house/a.dae", &BTreeMap::new()), Err(Unplaced::Untold));
+    assert_eq!(mesh_path("model://house/a.dae", &BTreeMap::new()), Err(Unplaced::Untold));
 }
 
 /// Lines of a model, world frame.
