@@ -25,12 +25,12 @@ use std::collections::{BTreeMap, BTreeSet};
 ///
 /// ```
 /// use reenact::document::Source;
-/// use reenact::manifest::{self, Inputs, WrittenIn};
+/// use reenact::manifest::{self, InputError, Inputs, WrittenIn};
 /// use reenact::plan::Plan;
 /// # struct Beside;
 /// # impl Inputs for Beside {
-/// #     fn read(&self, as_written: &str, _: WrittenIn) -> Result<Vec<u8>, String> {
-/// #         std::fs::read(format!("manifests/{as_written}")).map_err(|error| error.to_string())
+/// #     fn read(&self, as_written: &str, _: WrittenIn) -> Result<Vec<u8>, InputError> {
+/// #         std::fs::read(format!("manifests/{as_written}")).map_err(InputError::other)
 /// #     }
 /// # }
 ///
