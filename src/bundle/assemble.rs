@@ -3,24 +3,25 @@
 
 use super::content::{BundleContent, Person, Publication, SealedCondition, SealedInput};
 use super::{figures, format, wall_time};
+use crate::claims::observations::TrialsTableError;
 use crate::claims::{self, ClaimVerdict, Observations};
 use crate::json::AsWritten;
 use crate::manifest::{Input, InputKind};
 use crate::plan::{ENGINE_VERSION, Plan, Selection};
 use crate::studies::{Dictionary, Findings, Outcome, TableLayout, TrialRecord, coverage_tables};
 use crate::table::{DescribedTable, Table};
-use serde_json::{Value, json};
+use serde_json::json;
 
 /// Makes the content of the bundle of `plan`, whose trials yielded `records` (in plan order).
 ///
 /// # Errors
-/// Where a claim cannot be judged at all, in words; resolution has refused such manifests before.
+/// Where no claim can be judged by such records; resolution has refused such manifests before.
 pub fn assemble(
     plan: &Plan,
     study_yaml: &[u8],
     selection: &Selection,
     records: &[TrialRecord],
-) -> Result<BundleContent, String> {
+) -> Result<BundleContent, TrialsTableError> {
     let verdicts = verdicts(plan, records)?;
     Ok(assemble_judged(plan, study_yaml, selection, records, &verdicts))
 }
@@ -96,8 +97,11 @@ pub fn assemble_judged(
 /// partial runs. Claims about the machine are judged by [`super::wall_time`].
 ///
 /// # Errors
-/// Where a claim cannot be judged at all, in words.
-pub fn verdicts(plan: &Plan, records: &[TrialRecord]) -> Result<Vec<ClaimVerdict>, String> {
+/// Where no claim can be judged by such records.
+pub fn verdicts(
+    plan: &Plan,
+    records: &[TrialRecord],
+) -> Result<Vec<ClaimVerdict>, TrialsTableError> {
     if plan.partial {
         return Ok(Vec::new());
     }
@@ -112,7 +116,7 @@ pub fn verdicts(plan: &Plan, records: &[TrialRecord]) -> Result<Vec<ClaimVerdict
         return Ok(Vec::new());
     }
     // Read once: to read thousands of trials takes longer than to judge a claim by them.
-    let observations = Observations::read(&trials).map_err(|error| error.to_string())?;
+    let observations = Observations::read(&trials)?;
     let judged = about_the_study
         .into_iter()
         .map(|claim| claims::judge_observations(claim, &observations, &context));

@@ -2,6 +2,7 @@
 
 use super::assemble;
 use crate::claims::metric::WALL_TIME_COLUMNS;
+use crate::claims::observations::TrialsTableError;
 use crate::claims::{self, ClaimVerdict};
 use crate::digest::TrialKey;
 use crate::plan::Plan;
@@ -33,12 +34,12 @@ pub struct MachineResults {
 /// Judges the claims about the machine by the `times` of `plan`'s trials, or says of each why there are none.
 ///
 /// # Errors
-/// Where a claim cannot be judged at all, in words.
+/// Where no claim can be judged by such records.
 pub fn measured(
     plan: &Plan,
     records: &[TrialRecord],
     times: Result<&WallTimes, &str>,
-) -> Result<MachineResults, String> {
+) -> Result<MachineResults, TrialsTableError> {
     let claims = &plan.experiment.claims;
     let claims: Vec<_> = claims.iter().filter(|claim| claim.circumstance).collect();
     if plan.partial || claims.is_empty() {
@@ -53,7 +54,7 @@ pub fn measured(
             let table = table(plan, records, times);
             files.push(("wall-times.csv".to_owned(), table.to_csv().into_bytes()));
             let judged = claims.iter().map(|claim| claims::judge(claim, &table, &context));
-            judged.collect::<Result<Vec<_>, _>>().map_err(|error| error.to_string())?
+            judged.collect::<Result<Vec<_>, _>>()?
         }
         Err(reason) => {
             claims.iter().map(|claim| claims::not_measured(claim, reason, &context)).collect()

@@ -56,7 +56,7 @@ pub struct ComparisonRow {
 /// Why a file is no list of verdicts.
 #[derive(Debug, thiserror::Error)]
 #[error("{path}: {error}")]
-pub(super) struct NoVerdicts {
+pub struct NoVerdicts {
     path: String,
     error: serde_json::Error,
 }

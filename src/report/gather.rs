@@ -5,31 +5,38 @@ use super::content::{Citation, Figure, Headline, OutcomeCount, ReportContent, Re
 use super::evaluation::{Evaluated, evaluation};
 use super::origin::provenance;
 use super::{claim, limits, tables};
-use crate::bundle::{Bundle, assemble, figures as drawings};
+use crate::bundle::{Bundle, Fault, assemble, figures as drawings};
 use crate::plan::{Plan, Selection};
 use crate::studies::{Findings, TrialRecord};
+
+/// Why a bundle gives no report.
+#[derive(Debug, thiserror::Error)]
+pub enum UnreadBundle {
+    /// Lines of it are no records.
+    #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
+    Records(Vec<Fault>),
+    /// It holds no list of verdicts where one should be.
+    #[error(transparent)]
+    Verdicts(#[from] claim::NoVerdicts),
+}
 
 /// What the page of `bundle` says, `plan` and `selection` being those made again from it.
 ///
 /// # Errors
-/// Where the records or verdicts cannot be read, in words.
+/// Where the records or verdicts cannot be read.
 pub fn content_of(
     bundle: &Bundle,
     plan: &Plan,
     selection: &Selection,
-) -> Result<ReportContent, String> {
-    let records = bundle
-        .records()
-        .map_err(|faults| faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))?;
+) -> Result<ReportContent, UnreadBundle> {
+    let records = bundle.records().map_err(UnreadBundle::Records)?;
     let experiment = &plan.experiment;
     let factors = assemble::factors(plan);
     let findings = assemble::findings(plan, &records, &factors);
     let cite = experiment.cite.as_ref();
     let machine_verdicts =
         bundle.circumstance_files().find(|(path, _)| *path == "claims.json").map(|(_, b)| b);
-    let rows = |path: &str, bytes: Option<&[u8]>| {
-        claim::rows(path, bytes, &experiment.claims).map_err(|error| error.to_string())
-    };
+    let rows = |path: &str, bytes: Option<&[u8]>| claim::rows(path, bytes, &experiment.claims);
     let claims = rows("results/claims.json", bundle.result("claims.json"))?;
     let machine_claims = rows("circumstances/claims.json", machine_verdicts)?;
     let tables: Vec<ReportTable> =

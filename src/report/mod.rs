@@ -27,7 +27,7 @@ mod template;
 
 pub use bag::{Bag, BagError, bag, bag_under_banner};
 pub use banner::{drawing_under_banner, page_under_banner};
-pub use claim::{ClaimRow, ComparisonRow};
+pub use claim::{ClaimRow, ComparisonRow, NoVerdicts};
 pub use content::{
     Assumption, Citation, Figure, FlipRow, Headline, Measured, OutcomeCount, ReportCell,
     ReportContent, ReportRow, ReportTable, Tried,
@@ -35,7 +35,7 @@ pub use content::{
 pub use difference::difference_page;
 pub use evaluation::{Badge, Command, Evaluation};
 pub use gain_still::{GainError, GainView, gain_svg};
-pub use gather::content_of;
+pub use gather::{UnreadBundle, content_of};
 pub use origin::{InputRow, Provenance};
 pub use page::page;
 pub use replay::{Note, replay_page};

@@ -2,11 +2,11 @@
 
 use super::{Earlier, Made};
 use crate::bundle::{Bundle, BundleContent, Fault};
+use crate::claims::observations::TrialsTableError;
 use crate::digest::TrialKey;
 use crate::document::{Diagnostic, MOST_FAULTS, reports};
 use crate::plan::SelectionError;
 use crate::runner::RunError;
-use std::fmt;
 use thiserror::Error;
 
 /// Why a bundle's manifest makes no plan.
@@ -54,15 +54,9 @@ pub enum ContentError {
     /// Lines of it are no records.
     #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
     Records(Vec<Fault>),
-    /// A claim cannot be judged by them.
-    #[error("{0}")]
-    Unjudged(String),
-}
-
-impl ContentError {
-    pub(super) fn unjudged(problem: impl fmt::Display) -> Self {
-        Self::Unjudged(problem.to_string())
-    }
+    /// No claim can be judged by them.
+    #[error(transparent)]
+    Unjudged(#[from] TrialsTableError),
 }
 
 /// Why what runs before the study's own made cannot be made again.
@@ -89,15 +83,9 @@ pub enum MakeAgainError {
     /// The trials could not be executed.
     #[error(transparent)]
     Run(#[from] RunError),
-    /// A claim cannot be judged by them.
-    #[error("{0}")]
-    Unjudged(String),
-}
-
-impl MakeAgainError {
-    pub(super) fn unjudged(problem: impl fmt::Display) -> Self {
-        Self::Unjudged(problem.to_string())
-    }
+    /// No claim can be judged by them.
+    #[error(transparent)]
+    Unjudged(#[from] TrialsTableError),
 }
 
 /// Why a study cannot be run with another seed.
@@ -109,15 +97,9 @@ pub enum ReplicateError {
     /// The trials could not be executed.
     #[error(transparent)]
     Run(#[from] RunError),
-    /// A claim cannot be judged by them.
-    #[error("{0}")]
-    Unjudged(String),
-}
-
-impl ReplicateError {
-    pub(super) fn unjudged(problem: impl fmt::Display) -> Self {
-        Self::Unjudged(problem.to_string())
-    }
+    /// No claim can be judged by them.
+    #[error(transparent)]
+    Unjudged(#[from] TrialsTableError),
 }
 
 /// The way from a manifest to trials, as `run` goes it.

@@ -262,8 +262,7 @@ impl Study<'_> {
                 Err(problem) => ("a run that can be planned again".to_owned(), problem.to_string()),
                 Ok(plan) => {
                     let records = self.run(&plan.trials)?;
-                    let verdicts =
-                        assemble::verdicts(&plan, &records).map_err(MakeAgainError::unjudged)?;
+                    let verdicts = assemble::verdicts(&plan, &records)?;
                     match run.difference(&run.with(&verdicts, records_digest(&records))) {
                         Some(difference) => difference,
                         None => return Ok(None),
@@ -309,8 +308,7 @@ impl Replanned for Study<'_> {
 
     fn content(&self) -> Result<BundleContent, ContentError> {
         let records = self.bundle.records().map_err(ContentError::Records)?;
-        assemble::assemble(&self.plan, self.bundle.study_yaml(), &self.selection, &records)
-            .map_err(ContentError::unjudged)
+        Ok(assemble::assemble(&self.plan, self.bundle.study_yaml(), &self.selection, &records)?)
     }
 
     fn execute(&self, indices: &[usize]) -> Result<Vec<String>, RunError> {
@@ -367,7 +365,6 @@ impl Replanned for Study<'_> {
     fn replicate(&self, seed: u64) -> Result<BundleContent, ReplicateError> {
         let (plan, selection) = plan_with(self.bundle, Some((seed, self)))?;
         let records = self.run(&plan.trials)?;
-        assemble::assemble(&plan, self.bundle.study_yaml(), &selection, &records)
-            .map_err(ReplicateError::unjudged)
+        Ok(assemble::assemble(&plan, self.bundle.study_yaml(), &selection, &records)?)
     }
 }

@@ -13,7 +13,7 @@ pub(in crate::cli) fn run(args: &ReportArgs, terminal: Terminal) -> Result<Exit,
     let checked::Checked { bundle, words, banner } = checked::bundle(&args.bundle, args.unchecked)?;
     let (plan, selection) = plan_of(&bundle).map_err(Failure::not_understood)?;
     let content = report::content_of(&bundle, &plan, &selection)
-        .map_err(|message| Failure { exit: Exit::No, message })?;
+        .map_err(|error| Failure { exit: Exit::No, message: error.to_string() })?;
     let output = args.output.clone().unwrap_or_else(|| {
         let stem = format!("{}-{}", bundle.name(), bundle.results_digest().short());
         PathBuf::from(stem).with_extension("html")
