@@ -4,7 +4,7 @@ use super::assumptions::{assumptions, tried_with};
 use super::content::{Citation, Figure, Headline, OutcomeCount, ReportContent, ReportTable};
 use super::evaluation::{Evaluated, evaluation};
 use super::origin::provenance;
-use super::{claim, limits, tables};
+use super::{claim, limits};
 use crate::bundle::{Bundle, assemble, figures as drawings};
 use crate::plan::{Plan, Selection};
 use crate::studies::{Findings, TrialRecord};
@@ -31,8 +31,11 @@ pub fn content_of(
         claim::rows("results/claims.json", bundle.result("claims.json"), &experiment.claims)?;
     let machine_claims =
         claim::rows("circumstances/claims.json", machine_verdicts, &experiment.claims)?;
+    let section = cite.and_then(|cite| cite.section.as_deref()).unwrap_or_default();
+    let exhibits =
+        experiment.tables.iter().map(|request| request.exhibit(&findings, &experiment.tables));
     let tables: Vec<ReportTable> =
-        experiment.tables.iter().map(|request| tables::table(&findings, request, plan)).collect();
+        exhibits.map(|exhibit| ReportTable::of(exhibit, section, trials_a_cell(plan))).collect();
     let figures = figures(bundle, plan, &findings);
     let headline = headline(bundle, plan, &records);
     let circumstance = bundle.circumstance();
@@ -66,6 +69,11 @@ pub fn content_of(
         tried_with: tried_with(experiment),
         provenance: provenance(bundle, plan),
     })
+}
+
+/// Trials that were planned for a cell: fewer than the manifest's where `--trials` asked for fewer.
+fn trials_a_cell(plan: &Plan) -> usize {
+    plan.trials.chunk_by(|a, b| a.condition == b.condition).map(<[_]>::len).max().unwrap_or(0)
 }
 
 fn headline(bundle: &Bundle, plan: &Plan, records: &[TrialRecord]) -> Headline {

@@ -138,9 +138,10 @@ fn counted(n: usize, one: &str, several: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{ReportCell, content_of};
+    use super::super::content_of;
     use super::*;
     use crate::bundle::{Bundle, Limits, assemble, figures};
+    use crate::studies::GridCell;
     use crate::verify::plan_of;
 
     /// The published quickstart: ten trials without and ten with a floor plan, nothing claimed.
@@ -164,7 +165,7 @@ mod tests {
         records[0].outcome = Outcome::PANICKED;
         records[1].outcome = Outcome::STUCK;
         let mut tables = content_of(&bundle, &plan, &selection).unwrap().tables;
-        let silent = |cell: &mut ReportCell, why| {
+        let silent = |cell: &mut GridCell, why| {
             (cell.ours, cell.agreement) = (None, Agreement::Silent(why));
         };
         silent(&mut tables[0].rows[0].cells[0], Silence::NotReached);

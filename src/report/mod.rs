@@ -22,15 +22,13 @@ mod recorded;
 pub mod replay;
 pub mod show;
 mod still;
-mod tables;
 mod template;
 
 pub use bag::{Bag, bag, bag_under_banner};
 pub use banner::{drawing_under_banner, page_under_banner};
 pub use claim::{ClaimRow, ComparisonRow};
 pub use content::{
-    Assumption, Citation, Figure, Flip, Headline, Measured, OutcomeCount, ReportCell,
-    ReportContent, ReportRow, ReportTable, Tried,
+    Assumption, Citation, Figure, Flip, Headline, OutcomeCount, ReportContent, ReportTable, Tried,
 };
 pub use difference::difference_page;
 pub use evaluation::{Badge, Command, Evaluation};

@@ -1,6 +1,6 @@
 //! What a manifest may ask to see: tables and figures in its study's layouts.
 
-use super::{PublishedScatter, deadline, outcomes, prior_map};
+use super::{Exhibit, Findings, PublishedScatter, deadline, outcomes, prior_map};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -18,10 +18,28 @@ pub struct TableRequest {
     pub layout: TableLayout,
 }
 
-/// The layouts of tables.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum TableLayout {
+/// The layouts of tables, each a variant of [`TableLayout`] that holds what a manifest says of it.
+macro_rules! table_layouts {
+    ($($(#[$doc:meta])* $name:ident($wanted:ty),)*) => {
+        /// The layouts of tables.
+        #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+        #[serde(rename_all = "kebab-case")]
+        pub enum TableLayout {
+            $($(#[$doc])* $name($wanted),)*
+        }
+
+        impl TableRequest {
+            /// The table, made of `findings`; `tables` are all that the manifest asks for.
+            pub fn exhibit(&self, findings: &Findings<'_>, tables: &[Self]) -> Exhibit {
+                match &self.layout {
+                    $(TableLayout::$name(wanted) => Exhibit::of(self, wanted, findings, tables),)*
+                }
+            }
+        }
+    };
+}
+
+table_layouts! {
     /// Prior map: mean and standard deviation of a metric at levels of coverage, as in Tables 1 to 10.
     CoverageTable(prior_map::CoverageTable),
     /// Prior map: slope, correlation and distance of log ratios to the baseline, ours against the paper's.
@@ -42,11 +60,7 @@ pub fn coverage_tables(tables: &[TableRequest]) -> Vec<(&str, &prior_map::Covera
         .iter()
         .filter_map(|request| match &request.layout {
             TableLayout::CoverageTable(table) => Some((request.id.as_str(), table)),
-            TableLayout::AgreementTable(_)
-            | TableLayout::EffectsTable(_)
-            | TableLayout::MeasuresTable(_)
-            | TableLayout::OutcomeTable(_)
-            | TableLayout::ManeuverTable(_) => None,
+            _ => None,
         })
         .collect()
 }
