@@ -2,7 +2,7 @@
 //! `verify` derives with.
 
 use super::content::{Author, BundleContent, Citation, SealedCondition, SealedInput};
-use super::{figures, format, wall_time};
+use super::{format, wall_time};
 use crate::claims::{self, Observations, Verdict};
 use crate::manifest::{Input, InputKind};
 use crate::plan::{ENGINE_VERSION, Plan, Selection};
@@ -193,7 +193,7 @@ fn results(plan: &Plan, records: &[TrialRecord]) -> Result<Results, String> {
         files.push((path("md"), in_markdown(&exhibit).into_bytes()));
     }
     for request in &experiment.figures {
-        if let Some(drawn) = figures::draw(plan, &findings, request) {
+        if let Some(drawn) = request.draw(&findings, &experiment.tables) {
             files.push((format!("figures/{}.svg", request.id), drawn.svg.into_bytes()));
         }
     }

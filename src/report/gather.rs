@@ -5,7 +5,7 @@ use super::content::{Citation, Figure, Headline, OutcomeCount, ReportContent, Re
 use super::evaluation::{Evaluated, evaluation};
 use super::origin::provenance;
 use super::{claim, limits};
-use crate::bundle::{Bundle, assemble, figures as drawings};
+use crate::bundle::{Bundle, assemble};
 use crate::plan::{Plan, Selection};
 use crate::studies::{Findings, TrialRecord};
 
@@ -106,7 +106,7 @@ fn figures(bundle: &Bundle, plan: &Plan, findings: &Findings<'_>) -> Vec<Figure>
         .filter_map(|request| {
             let file = format!("figures/{}.svg", request.id);
             let bytes = bundle.result(&file)?;
-            let drawn = drawings::draw(plan, findings, request)?;
+            let drawn = request.draw(findings, &plan.experiment.tables)?;
             Some(Figure {
                 id: request.id.clone(),
                 title: request.title.clone(),

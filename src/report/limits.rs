@@ -140,7 +140,7 @@ fn counted(n: usize, one: &str, several: &str) -> String {
 mod tests {
     use super::super::content_of;
     use super::*;
-    use crate::bundle::{Bundle, Limits, assemble, figures};
+    use crate::bundle::{Bundle, Limits, assemble};
     use crate::studies::GridCell;
     use crate::verify::plan_of;
 
@@ -203,7 +203,7 @@ mod tests {
         let factors = assemble::factors(&plan);
         let request = &plan.experiment.figures[0];
         let drawn = |records: &[TrialRecord]| {
-            figures::draw(&plan, &assemble::findings(&plan, records, &factors), request)
+            request.draw(&assemble::findings(&plan, records, &factors), &plan.experiment.tables)
         };
         let none = |record: &TrialRecord| record.condition().value("prior") == Some("none");
         let half: Vec<TrialRecord> = records.iter().filter(|r| none(r)).cloned().collect();

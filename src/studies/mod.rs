@@ -6,6 +6,7 @@
 mod columns;
 pub mod deadline;
 mod dictionary;
+mod drawn;
 mod exhibit;
 mod factor_value;
 mod findings;
@@ -24,6 +25,7 @@ pub mod wander;
 
 pub use columns::Columns;
 pub use dictionary::Dictionary;
+pub use drawn::Drawn;
 pub use exhibit::{Exhibit, Grid, GridCell, GridRow, Layout, Lines, Measured, Set, Source};
 pub use factor_value::FactorValue;
 pub use findings::Findings;

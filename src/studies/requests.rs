@@ -1,6 +1,6 @@
 //! What a manifest may ask to see: tables and figures in its study's layouts.
 
-use super::{Exhibit, Findings, PublishedScatter, deadline, outcomes, prior_map};
+use super::{Drawn, Exhibit, Findings, PublishedScatter, deadline, outcomes, prior_map};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -98,6 +98,23 @@ pub enum FigureLayout {
     PublishedScatter(PublishedScatter),
     /// Deadline: policies on the toposemantic graph of the building, from a start to the goal.
     PolicyGraph(deadline::PolicyGraph),
+}
+
+impl FigureRequest {
+    /// The figure, drawn of `findings`; `tables` are all that the manifest asks for. `None` where no trial that was run has
+    /// anything to show in it, as a partial run may leave it: axes alone would look like a result.
+    pub fn draw(&self, findings: &Findings<'_>, tables: &[TableRequest]) -> Option<Drawn> {
+        let title = self.title.as_str();
+        match &self.layout {
+            FigureLayout::CoverageCurve(wanted) => wanted.draw(title, findings, tables),
+            FigureLayout::WorldPlan(wanted) => Some(wanted.draw(title, findings)),
+            FigureLayout::PriorOverWorld(wanted) => Some(wanted.draw_with_prior(title, findings)),
+            FigureLayout::OutcomeBars(wanted) => wanted.draw(title, findings),
+            FigureLayout::OutcomeShares(wanted) => wanted.draw(title, findings),
+            FigureLayout::PublishedScatter(wanted) => wanted.draw(title, findings, tables),
+            FigureLayout::PolicyGraph(wanted) => Some(wanted.draw(title, findings)),
+        }
+    }
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use super::requests::{CoverageCurve, CoverageTable, Metric};
 use crate::figure::{LineChart, PublishedPoint, Series};
 use crate::stats::compatibility::{Agreement, Ours, Printed};
 use crate::stats::summary::{Summary, median, quantile};
-use crate::studies::{Findings, Outcome, SeriesPoint};
+use crate::studies::{Drawn, Findings, Outcome, SeriesPoint, TableRequest, coverage_tables};
 use crate::table::{Table, Value};
 
 /// Mean and spread of one cell of a table, beside the paper's.
@@ -33,6 +33,23 @@ pub struct CoverageCell {
     pub agreement: Agreement,
     /// Tests against the baseline, where the request asks for them.
     pub tests: Option<CellTests>,
+}
+
+impl CoverageCurve {
+    /// The figure, where trials have curves.
+    pub(in crate::studies) fn draw(
+        &self,
+        title: &str,
+        findings: &Findings<'_>,
+        tables: &[TableRequest],
+    ) -> Option<Drawn> {
+        let tables: Vec<_> = coverage_tables(tables).into_iter().map(|(_, table)| table).collect();
+        let chart = findings.coverage_figure(title, self, &tables);
+        let caption = "Median of the trials with a band from the 10th to the 90th percentile; hollow markers are the paper's \
+                       means with one standard deviation.";
+        (!chart.is_empty())
+            .then(|| Drawn::new(("Line chart", title), chart.to_svg(), chart.in_words(), caption))
+    }
 }
 
 impl Findings<'_> {
@@ -126,7 +143,7 @@ impl Findings<'_> {
 
     /// A requested figure: median coverage with a band from the 10th to the 90th percentile of trials, and the
     /// paper's points where a table of the same metric has them.
-    pub fn coverage_figure(
+    fn coverage_figure(
         &self,
         title: &str,
         wanted: &CoverageCurve,
