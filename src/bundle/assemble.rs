@@ -201,7 +201,7 @@ fn results(plan: &Plan, records: &[TrialRecord]) -> Result<Results, String> {
     Ok((files, described))
 }
 
-/// What the data dictionary says of `exhibit`, whose tidy form lies at `path`.
+/// Returns what the data dictionary says of `exhibit`, whose tidy form lies at `path`.
 pub(crate) fn described_table(exhibit: &Exhibit, path: String) -> DescribedTable {
     DescribedTable {
         path,
@@ -212,7 +212,7 @@ pub(crate) fn described_table(exhibit: &Exhibit, path: String) -> DescribedTable
     }
 }
 
-/// `exhibit` as a document: its lines, and below them what they leave out and what the marks beside the paper's numbers mean.
+/// Returns `exhibit` as a document: its lines, and below them what they leave out and what the marks beside the paper's numbers mean.
 pub(crate) fn in_markdown(exhibit: &Exhibit) -> String {
     let mut text = format!("# {}\n\n{}", exhibit.title, exhibit.print().to_markdown());
     if exhibit.set.more > 0 {

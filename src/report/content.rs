@@ -112,7 +112,7 @@ pub struct ReportTable {
 }
 
 impl ReportTable {
-    /// The page's table of `exhibit`; the paper's numbers stand in its part `section`, and cells are of `trials` at most.
+    /// Makes the page's table of `exhibit`; the paper's numbers stand in its part `section`, and cells are of `trials` at most.
     pub(crate) fn of(exhibit: Exhibit, section: &str, trials: usize) -> Self {
         let Exhibit { id, title, set, .. } = exhibit;
         let grid = set.grid;

@@ -12,19 +12,19 @@ pub struct Columns<'a, C>(Vec<(Column, Reading<'a, C>)>);
 type Reading<'a, C> = Box<dyn Fn(&C) -> Value + 'a>;
 
 impl<'a, C: 'a> Columns<'a, C> {
-    /// No columns.
+    /// Begins without columns.
     pub fn none() -> Self {
         Self(Vec::new())
     }
 
-    /// The same and `column`, in which a cell has `value`.
+    /// Adds `column`, in which a cell has `value`.
     #[must_use]
     pub fn with<V: Into<Value>>(mut self, column: Column, value: impl Fn(&C) -> V + 'a) -> Self {
         self.0.push((column, Box::new(move |cell| value(cell).into())));
         self
     }
 
-    /// The same and `column` of computed numbers, to six significant digits.
+    /// Adds `column` of computed numbers, to six significant digits.
     #[must_use]
     pub fn number<N: Into<Option<f64>>>(
         self,
@@ -34,13 +34,13 @@ impl<'a, C: 'a> Columns<'a, C> {
         self.with(column, move |cell| value(cell).into().map(rounded))
     }
 
-    /// The same and a column of the count `name`.
+    /// Adds a column of the count `name`.
     #[must_use]
     pub fn count(self, name: &str, meaning: &str, value: impl Fn(&C) -> u64 + 'a) -> Self {
         self.with(Column::count(name, meaning), move |cell| whole(value(cell)))
     }
 
-    /// The same and a column of each of the factors `names`, whose values of a cell `values` has in that order.
+    /// Adds a column of each of the factors `names`, whose values of a cell `values` has in that order.
     #[must_use]
     pub fn factors(
         self,
@@ -55,7 +55,7 @@ impl<'a, C: 'a> Columns<'a, C> {
         })
     }
 
-    /// The same and five columns that tell how a cell agrees with the paper's; `unit` is that of the cell.
+    /// Adds five columns that say how a cell agrees with the paper's; `unit` is that of the cell.
     #[must_use]
     pub fn agreement(self, unit: &str, of: fn(&C) -> Agreement) -> Self {
         let one_of = |name: &str, meaning: &str, names: &[&str]| {
@@ -100,7 +100,7 @@ impl<'a, C: 'a> Columns<'a, C> {
             )
     }
 
-    /// The tidy table of `cells`, one row each.
+    /// Returns the tidy table of `cells`, one row each.
     pub(super) fn table(&self, cells: &[C]) -> Table {
         let mut table = Table::new(self.0.iter().map(|(column, _)| column.name.as_str()));
         for cell in cells {
@@ -109,18 +109,18 @@ impl<'a, C: 'a> Columns<'a, C> {
         table
     }
 
-    /// What the columns say.
+    /// Returns what the columns say.
     pub(super) fn described(self) -> Vec<Column> {
         self.0.into_iter().map(|(column, _)| column).collect()
     }
 }
 
-/// A count as a table holds it.
+/// Returns a count as a table holds it.
 pub(super) fn whole(n: u64) -> i64 {
     i64::try_from(n).unwrap_or(i64::MAX)
 }
 
-/// What a column of the factor `name` says, of these `factors` with their values; `None` where it is none of them.
+/// Returns what a column of the factor `name` says, of these `factors` with their values; `None` where it is none of them.
 pub(super) fn of_factor(factors: &[(String, Vec<String>)], name: &str) -> Option<Column> {
     let (_, values) = factors.iter().find(|(known, _)| known == name)?;
     let meaning = "Factor of the design: study.yaml says what each value stands for";

@@ -16,7 +16,7 @@ pub struct Drawn {
 }
 
 impl Drawn {
-    /// The figure `title` of this `kind`, which `caption` says how to read; `words` tell what it shows, as far as more than
+    /// Makes the figure `title` of this `kind`, which `caption` says how to read; `words` tell what it shows, as far as more than
     /// its title can be told.
     pub(super) fn new(
         (kind, title): (&str, &str),
@@ -31,7 +31,7 @@ impl Drawn {
 }
 
 impl<'a> Findings<'a> {
-    /// The first condition of the design that has all values of `only`; `None` where the design leaves that combination
+    /// Returns the first condition of the design that has all values of `only`; `None` where the design leaves that combination
     /// out.
     pub(super) fn first(
         &self,
@@ -47,7 +47,7 @@ impl<'a> Findings<'a> {
 /// What is said in place of a drawing of a condition that there is not.
 pub(super) const NO_CONDITION: &str = "no condition of the design has these values";
 
-/// A drawing of `words`, where nothing can be drawn.
+/// Draws `words`, where nothing can be drawn.
 pub(super) fn words_alone(title: &str, words: &str) -> String {
     let text = svg::Element::new("text").at("x", 10.0).at("y", 24.0).text(words);
     svg::document(320.0, 36.0, title, [text])

@@ -95,7 +95,7 @@ pub enum Source {
 }
 
 impl Source {
-    /// The paper where numbers of its are named.
+    /// Returns the paper where numbers of its are named.
     pub(super) fn of(published: Option<&String>) -> Self {
         published.map_or(Self::Nowhere, |_| Self::Paper)
     }
@@ -140,7 +140,7 @@ pub struct Measured {
     pub n: Option<u64>,
 }
 
-/// The page looks up mark and words by the name.
+/// Writes the name, by which the page looks up mark and words.
 fn by_name<S: Serializer>(agreement: &Agreement, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.serialize_str(agreement.name())
 }
@@ -150,18 +150,18 @@ pub trait Layout {
     /// What one row of the tidy form is made of.
     type Cell;
 
-    /// The cells, in the order of the tidy form; `tables` are all that the manifest asks for.
+    /// Finds the cells, in the order of the tidy form; `tables` are all that the manifest asks for.
     fn cells(&self, findings: &Findings<'_>, tables: &[TableRequest]) -> Vec<Self::Cell>;
 
-    /// The columns of the tidy form.
+    /// Declares the columns of the tidy form.
     fn columns<'a>(&'a self, findings: &Findings<'_>) -> Columns<'a, Self::Cell>;
 
-    /// The cells as readers see them.
+    /// Sets the cells for readers.
     fn set(&self, cells: &[Self::Cell], findings: &Findings<'_>) -> Set;
 }
 
 impl Exhibit {
-    /// The table that `request` asks for in the layout `wanted`.
+    /// Makes the table that `request` asks for in the layout `wanted`.
     pub(super) fn of<L: Layout>(
         request: &TableRequest,
         wanted: &L,
@@ -182,12 +182,12 @@ impl Exhibit {
         }
     }
 
-    /// The lines as a document has room for them.
+    /// Returns the lines as a document has room for them.
     pub fn print(&self) -> &Table {
         self.set.print.as_ref().unwrap_or(&self.tidy)
     }
 
-    /// What the marks in it mean: the methods that occur; `None` where nothing is compared.
+    /// Says what the marks in it mean: the methods that occur; `None` where nothing is compared.
     pub fn rules(&self) -> Option<String> {
         let cells = self.set.grid.rows.iter().flat_map(|row| &row.cells);
         rules(cells.map(|cell| cell.agreement))
@@ -195,7 +195,7 @@ impl Exhibit {
 }
 
 impl Lines {
-    /// All lines of `table`.
+    /// Shows all lines of `table`.
     pub fn all(table: Table, keys: usize, left: impl IntoIterator<Item = usize>) -> Self {
         Self::All { table, keys, left: left.into_iter().collect() }
     }
@@ -222,7 +222,7 @@ impl<C> Abreast<'_, C> {
         self.cells.chunks(self.of.max(1)).map(|line| ((self.label)(&line[0]), line))
     }
 
-    /// The lines as a table of `columns`, in which each cell has `texts`.
+    /// Returns the lines as a table of `columns`, in which each cell has `texts`.
     pub(super) fn table<T: IntoIterator<Item = String>>(
         &self,
         columns: Vec<String>,
@@ -237,7 +237,7 @@ impl<C> Abreast<'_, C> {
         table
     }
 
-    /// The lines as rows of a grid, in which each cell is shown as `cell` says.
+    /// Returns the lines as rows of a grid, in which each cell is shown as `cell` says.
     pub(super) fn rows(&self, cell: impl Fn(&C) -> GridCell) -> Vec<GridRow> {
         let row = |(label, line): (Vec<String>, &[C])| GridRow {
             label: label.join(", "),
@@ -247,7 +247,7 @@ impl<C> Abreast<'_, C> {
     }
 }
 
-/// The values of factors, which name a line.
+/// Returns the values of factors, which name a line.
 pub(super) fn values(rows: &[(String, String)]) -> Vec<String> {
     rows.iter().map(|(_, value)| value.clone()).collect()
 }

@@ -17,7 +17,7 @@ const PRIORS: [(&str, f64); 3] = [("none", 1.0), ("floor-plan", 0.7), ("graph", 
 const READINGS: [(&str, &str, f64); 3] =
     [("paper", "uneven", 1.0), ("released", "uneven", 0.9), ("released", "even", 1.2)];
 
-/// Three trials of every condition but those of a graph of the office. Some never reach 95 %, and of one condition none.
+/// Returns three trials of every condition but those of a graph of the office. Some never reach 95 %, and of one condition none.
 fn records() -> Vec<TrialRecord> {
     let line = format!(
         "{{\"key\":\"{}\",\"condition\":[],\"trial\":0,\"outcome\":\"explored\",\"measures\":{{}},\"series\":[],\
@@ -132,7 +132,7 @@ fn requests() -> Vec<TableRequest> {
     .unwrap()
 }
 
-/// A setup of which tables see the calibration alone.
+/// Returns a setup of which tables see the calibration alone.
 fn setup() -> Setup {
     let robot = Robot {
         name: "r".to_owned(),
@@ -168,7 +168,7 @@ fn setup() -> Setup {
     ))
 }
 
-/// What `ask` finds in the findings, of calibrated maneuvers too, and in the requests.
+/// Returns what `ask` finds in the findings, of calibrated maneuvers too, and in the requests.
 pub(crate) fn with_findings<T>(ask: impl FnOnce(&Findings<'_>, &[TableRequest]) -> T) -> T {
     let factors = [
         ("environment", &["basic", "office"][..]),

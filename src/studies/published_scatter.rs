@@ -58,7 +58,7 @@ struct Pair {
 }
 
 impl PublishedScatter {
-    /// The figure, where there are points.
+    /// Draws the figure, where there are points.
     pub(super) fn draw(
         &self,
         title: &str,

@@ -29,7 +29,7 @@ macro_rules! table_layouts {
         }
 
         impl TableRequest {
-            /// The table, made of `findings`; `tables` are all that the manifest asks for.
+            /// Makes the table of `findings`; `tables` are all that the manifest asks for.
             pub fn exhibit(&self, findings: &Findings<'_>, tables: &[Self]) -> Exhibit {
                 match &self.layout {
                     $(TableLayout::$name(wanted) => Exhibit::of(self, wanted, findings, tables),)*
@@ -54,7 +54,7 @@ table_layouts! {
     ManeuverTable(deadline::ManeuverTable),
 }
 
-/// The coverage tables among `tables`, each with its id.
+/// Returns the coverage tables among `tables`, each with its id.
 pub fn coverage_tables(tables: &[TableRequest]) -> Vec<(&str, &prior_map::CoverageTable)> {
     tables
         .iter()
@@ -101,7 +101,7 @@ pub enum FigureLayout {
 }
 
 impl FigureRequest {
-    /// The figure, drawn of `findings`; `tables` are all that the manifest asks for. `None` where no trial that was run has
+    /// Draws the figure of `findings`; `tables` are all that the manifest asks for. `None` where no trial that was run has
     /// anything to show in it, as a partial run may leave it: axes alone would look like a result.
     pub fn draw(&self, findings: &Findings<'_>, tables: &[TableRequest]) -> Option<Drawn> {
         let title = self.title.as_str();

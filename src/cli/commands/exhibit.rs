@@ -3,7 +3,7 @@
 use crate::cli::fold::{aligned, wrapped};
 use crate::studies::{Exhibit, Lines};
 
-/// Ours beside the paper's, in `width` characters.
+/// Returns the table, ours beside the paper's, in `width` characters.
 pub(super) fn in_lines(exhibit: &Exhibit, width: usize) -> String {
     let note = |text: &str| wrapped(text, 2, width);
     let title = wrapped(&exhibit.title, 0, width);
@@ -109,7 +109,7 @@ mod tests {
         assert!(narrow.lines().all(|line| line.chars().count() <= 40), "{narrow}");
     }
 
-    /// Each layout of tables, of made-up findings.
+    /// Checks each layout of tables, of made-up findings.
     fn with_exhibits(check: impl Fn(&TableLayout, &Exhibit)) {
         with_findings(|findings, requests| {
             for request in requests {
@@ -144,7 +144,7 @@ mod tests {
         });
     }
 
-    /// The numbers of the tidy form's column `name`, the least first.
+    /// Returns the numbers of the tidy form's column `name`, the least first.
     fn numbers(exhibit: &Exhibit, name: &str) -> Vec<f64> {
         let values = exhibit.tidy.rows.iter().map(|row| exhibit.tidy.value(row, name));
         sorted(values.filter_map(Value::as_f64))
@@ -156,7 +156,7 @@ mod tests {
         numbers
     }
 
-    /// The page shows more digits of computed numbers than the CSV.
+    /// Compares numbers; the page shows more digits of computed numbers than the CSV.
     fn assert_same(page: &[f64], csv: &[f64], place: &str) {
         assert_eq!(page.len(), csv.len(), "{place}");
         for (a, b) in page.iter().zip(csv) {

@@ -34,7 +34,7 @@ pub struct ManeuverRow {
 }
 
 impl Findings<'_> {
-    /// The six maneuvers, motion by motion, slow before fast.
+    /// Returns the six maneuvers, motion by motion, slow before fast.
     pub fn maneuver_rows(&self, request: &ManeuverTable) -> Vec<ManeuverRow> {
         let only: Vec<(String, String)> =
             request.only.iter().map(|(f, v)| (f.clone(), v.0.clone())).collect();
@@ -124,7 +124,7 @@ impl Layout for ManeuverTable {
             .count("passages", "Times that it was begun in this study", |row| row.passages)
     }
 
-    /// On the page the calibration's numbers stand where the paper's would: a cell compares what was expected with what
+    /// Sets one line a maneuver. On the page the calibration's numbers stand where the paper's would: a cell compares what was expected with what
     /// was met.
     fn set(&self, cells: &[ManeuverRow], _: &Findings<'_>) -> Set {
         Set {
@@ -162,7 +162,7 @@ fn grid_row(row: &ManeuverRow) -> GridRow {
     }
 }
 
-/// What the planner expects of each maneuver, and what became of it.
+/// Returns what the planner expects of each maneuver, and what became of it.
 fn lines(rows: &[ManeuverRow]) -> Table {
     let columns =
         ["maneuver", "expected time", "time", "expected failure", "failure", "95 %", "passages"];

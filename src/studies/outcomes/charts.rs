@@ -75,7 +75,7 @@ fn lines<C, R>(
 }
 
 impl OutcomeTable {
-    /// The figure of estimates, where trials have any.
+    /// Draws the figure of estimates, where trials have any.
     pub(in crate::studies) fn draw(&self, title: &str, findings: &Findings<'_>) -> Option<Drawn> {
         let chart = findings.outcome_figure(title, self);
         if chart.is_empty() {
@@ -98,7 +98,7 @@ impl OutcomeTable {
 }
 
 impl OutcomeShares {
-    /// The figure of shares, where trials have ended.
+    /// Draws the figure of shares, where trials have ended.
     pub(in crate::studies) fn draw(&self, title: &str, findings: &Findings<'_>) -> Option<Drawn> {
         let chart = findings.shares_figure(title, self);
         let caption = "How trials ended, in percent of all of a condition: thick bars are ours, thin ones under them the \

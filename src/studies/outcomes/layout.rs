@@ -73,7 +73,7 @@ impl Layout for OutcomeTable {
             .agreement(unit, |cell| cell.agreement)
     }
 
-    /// The values side by side; where the paper's are asked for, they stand in columns of their own in a document, in the
+    /// Sets the values side by side; where the paper's are asked for, they stand in columns of their own in a document, in the
     /// same column in a terminal.
     fn set(&self, cells: &[OutcomeCell], findings: &Findings<'_>) -> Set {
         let side_by_side = findings.columns_of(self);
@@ -114,7 +114,7 @@ impl OutcomeCell {
         self.ours.map(|estimate| estimate.value)
     }
 
-    /// Ours as text: `54 [40, 67]` (percent and interval) or `12.3 ± 4.5` (mean and standard deviation).
+    /// Returns ours as text: `54 [40, 67]` (percent and interval) or `12.3 ± 4.5` (mean and standard deviation).
     fn in_print(&self) -> String {
         let Some(ours) = self.ours else {
             return match self.agreement {
@@ -133,7 +133,7 @@ impl OutcomeCell {
         text
     }
 
-    /// The paper's as text, after the mark of its agreement; empty where it prints none.
+    /// Returns the paper's as text, after the mark of its agreement; empty where it prints none.
     fn published_in_print(&self) -> String {
         let Some((value, _)) = self.published else { return String::new() };
         match self.agreement.mark() {
@@ -142,7 +142,7 @@ impl OutcomeCell {
         }
     }
 
-    /// Ours, how they agree, and the paper's, each in whole numbers: where there is nothing to compare, a dot.
+    /// Returns ours, how they agree, and the paper's, each in whole numbers: where there is nothing to compare, a dot.
     fn in_line(&self) -> String {
         let mark = match self.agreement.mark() {
             "" => "·",
@@ -166,7 +166,7 @@ fn grid_cell(cell: &OutcomeCell) -> GridCell {
     }
 }
 
-/// `text` with a capital.
+/// Returns `text` with a capital.
 fn sentence(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())

@@ -38,7 +38,7 @@ pub struct CellTests {
     pub published: Option<Difference>,
 }
 
-/// `columns` and those of the tests against `baseline`.
+/// Adds to `columns` those of the tests against `baseline`.
 pub(super) fn columns<'a>(
     columns: Columns<'a, CoverageCell>,
     baseline: &str,

@@ -36,7 +36,7 @@ pub struct CoverageCell {
 }
 
 impl CoverageCurve {
-    /// The figure, where trials have curves.
+    /// Draws the figure, where trials have curves.
     pub(in crate::studies) fn draw(
         &self,
         title: &str,

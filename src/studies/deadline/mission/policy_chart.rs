@@ -20,7 +20,7 @@ use std::collections::VecDeque;
 const NEAR: f64 = 3.0;
 
 impl PolicyGraph {
-    /// The policies of the first condition that it speaks of; words where there are none.
+    /// Draws the policies of the first condition that it speaks of; words where there are none.
     pub(in crate::studies) fn draw(&self, title: &str, findings: &Findings<'_>) -> Drawn {
         let found = findings.first(&self.only).and_then(|(_, setup)| setup.of::<Setup>());
         let chart = found

@@ -116,7 +116,7 @@ impl Layout for AgreementTable {
             })
     }
 
-    /// One line a part of a table. The columns of the page are its measures of agreement, each on its own.
+    /// Sets one line a part of a table. The columns of the page are its measures of agreement, each on its own.
     fn set(&self, cells: &[TableAgreement], _: &Findings<'_>) -> Set {
         let columns = [
             "slope",
@@ -156,7 +156,7 @@ impl Layout for AgreementTable {
     }
 }
 
-/// In the order of the page's columns.
+/// Returns the cells in the order of the page's columns.
 fn numbers(part: &TableAgreement) -> [GridCell; 8] {
     let share = |(inside, known): (u64, u64)| (real(inside) / real(known), Some(known));
     [
@@ -175,7 +175,7 @@ fn numbers(part: &TableAgreement) -> [GridCell; 8] {
     })
 }
 
-/// In 80 columns where names are short: each table, then its parts.
+/// Returns the lines, in 80 columns where names are short: each table, then its parts.
 fn in_print(parts: &[TableAgreement]) -> Table {
     let columns = ["part", "ratios", "slope", "Pearson", "rmse", "skill", "in", "cells in"];
     let mut table = Table::new(columns);

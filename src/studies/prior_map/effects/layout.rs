@@ -122,7 +122,7 @@ impl Layout for EffectsTable {
             )
     }
 
-    /// The largest effects as lines. On the page one line a level of a factor in a cell of the design: the coverages stand
+    /// Sets the largest effects as lines. On the page one line a level of a factor in a cell of the design: the coverages stand
     /// side by side, and beside each effect what lies between the first level and the paper.
     fn set(&self, cells: &[Effect], _: &Findings<'_>) -> Set {
         let (table, more) = in_print(cells);
@@ -166,7 +166,7 @@ fn choice(effect: &Effect) -> String {
     format!("{} {} for {}", effect.factor, effect.level, effect.against)
 }
 
-/// The largest effects, whichever way they point, and how many more there are.
+/// Returns the largest effects, up or down, and how many more there are.
 fn in_print(effects: &[Effect]) -> (Table, usize) {
     let mut effects: Vec<&Effect> = effects.iter().collect();
     let size = |effect: &Effect| effect.log_ratio.map_or(-1.0, f64::abs);

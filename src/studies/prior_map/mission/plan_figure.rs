@@ -9,7 +9,7 @@ use crate::studies::{Drawn, Findings};
 const WALLS: &str = "walls";
 
 impl PlanFigure {
-    /// The floor plan of the first condition that it speaks of; words where the design leaves that combination out.
+    /// Draws the floor plan of the first condition that it speaks of; words where the design leaves that combination out.
     pub(in crate::studies) fn draw(&self, title: &str, findings: &Findings<'_>) -> Drawn {
         Drawn::new(
             ("Floor plan", title),
@@ -19,7 +19,7 @@ impl PlanFigure {
         )
     }
 
-    /// The same under the prior map of that condition.
+    /// Draws the same under the prior map of that condition.
     pub(in crate::studies) fn draw_with_prior(
         &self,
         title: &str,

@@ -130,7 +130,7 @@ impl Layout for CoverageTable {
 }
 
 impl CoverageTable {
-    /// One line a cell.
+    /// Returns one line a cell.
     fn lines(&self, cells: &[CoverageCell]) -> Lines {
         let name = |cell: &CoverageCell| {
             let mut parts = values(&cell.rows);
@@ -208,7 +208,7 @@ fn difference(percent: Option<f64>) -> String {
     percent.map_or_else(String::new, |percent| format!("{percent:+.0} %"))
 }
 
-/// Trials that did not get there are told, never dropped.
+/// Counts the trials that got there, where not all did: the others are named, never dropped.
 fn censored(cell: &CoverageCell) -> String {
     let reached = cell.ours.map_or(0, |ours| ours.n);
     if reached < cell.trials { format!("{reached} of {}", cell.trials) } else { String::new() }
@@ -234,7 +234,7 @@ fn ours_in_print(cell: &CoverageCell) -> String {
     text
 }
 
-/// Effects with p at all runs, and at the paper's number of them.
+/// Returns effects with p at all runs, and at the paper's number of them.
 fn tests_in_print(tests: &CellTests) -> String {
     let words = |difference: Option<Difference>| {
         difference.map_or_else(|| "-".to_owned(), |d| format!("{:+.2}, p {:.1e}", d.g, d.p))
