@@ -2,13 +2,13 @@
 //! `verify` derives with.
 
 use super::content::{BundleContent, Person, Publication, SealedCondition, SealedInput};
-use super::{figures, format, wall_time};
+use super::{format, wall_time};
 use crate::claims::observations::TrialsTableError;
 use crate::claims::{self, ClaimVerdict, Observations};
 use crate::json::AsWritten;
 use crate::manifest::{Input, InputKind};
 use crate::plan::{ENGINE_VERSION, Plan, Selection};
-use crate::studies::{Dictionary, Findings, Outcome, TableLayout, TrialRecord, coverage_tables};
+use crate::studies::{Dictionary, Exhibit, Findings, Outcome, TrialRecord};
 use crate::table::{DescribedTable, Table};
 use serde_json::json;
 
@@ -201,48 +201,14 @@ fn results(plan: &Plan, records: &[TrialRecord], verdicts: &[ClaimVerdict]) -> R
         files.push(("series.csv".to_owned(), series.to_csv().into_bytes()));
     }
     for request in &experiment.tables {
+        let exhibit = request.exhibit(&findings, &experiment.tables);
         let path = |extension| format!("tables/{}.{extension}", request.id);
-        let mut note = String::new();
-        let (tidy, print) = match &request.layout {
-            TableLayout::CoverageTable(wanted) => {
-                note = method_note(findings.coverage_rules(wanted));
-                (findings.coverage_table(wanted), findings.coverage_table_in_print(wanted))
-            }
-            TableLayout::AgreementTable(wanted) => {
-                let tables = coverage_tables(&experiment.tables);
-                let print = findings.agreement_table_in_print(wanted, &tables);
-                (findings.agreement_table(wanted, &tables), print)
-            }
-            TableLayout::EffectsTable(wanted) => {
-                let (print, more) = findings.effects_table_in_print(wanted);
-                if more > 0 {
-                    note = format!("\n{more} more in {}.csv\n", request.id);
-                }
-                (findings.effects_table(wanted), print)
-            }
-            TableLayout::MeasuresTable(wanted) => {
-                note = method_note(findings.measures_rules(wanted));
-                (findings.measures_table(wanted), findings.measures_table_in_print(wanted))
-            }
-            TableLayout::OutcomeTable(wanted) => {
-                note = method_note(findings.outcome_rules(wanted));
-                (findings.outcome_table(wanted), findings.outcome_table_in_print(wanted))
-            }
-            TableLayout::ManeuverTable(wanted) => {
-                let table = findings.maneuver_table(wanted);
-                (table.clone(), table)
-            }
-        };
-        let words = (request.title.as_str(), "one cell of the printed table");
-        described.push(DescribedTable::of(&tidy, in_results(&path("csv")), words, |name| {
-            dictionary.of_table(request, name)
-        }));
-        files.push((path("csv"), tidy.to_csv().into_bytes()));
-        let print = format!("# {}\n\n{}{note}", request.title, print.to_markdown());
-        files.push((path("md"), print.into_bytes()));
+        described.push(described_table(&exhibit, in_results(&path("csv"))));
+        files.push((path("csv"), exhibit.tidy.to_csv().into_bytes()));
+        files.push((path("md"), in_markdown(&exhibit).into_bytes()));
     }
     for request in &experiment.figures {
-        if let Some(drawn) = figures::draw(plan, &findings, request) {
+        if let Some(drawn) = request.draw(&findings, &experiment.tables) {
             files.push((format!("figures/{}.svg", request.id), drawn.svg.into_bytes()));
         }
     }
@@ -250,9 +216,27 @@ fn results(plan: &Plan, records: &[TrialRecord], verdicts: &[ClaimVerdict]) -> R
     (files, described)
 }
 
-/// What the marks beside the paper's numbers mean, below a table; nothing where none stands there.
-fn method_note(rules: Option<String>) -> String {
-    rules.map_or_else(String::new, |rules| format!("\nMarks: {rules}.\n"))
+/// Returns what the data dictionary says of `exhibit`, whose tidy form lies at `path`.
+pub(crate) fn described_table(exhibit: &Exhibit, path: String) -> DescribedTable {
+    DescribedTable {
+        path,
+        title: exhibit.title.clone(),
+        row: "one cell of the printed table".to_owned(),
+        key: Vec::new(),
+        columns: exhibit.columns.clone(),
+    }
+}
+
+/// Returns `exhibit` as a document: its lines, and below them what they leave out and what the marks beside the paper's numbers mean.
+pub(crate) fn in_markdown(exhibit: &Exhibit) -> String {
+    let mut text = format!("# {}\n\n{}", exhibit.title, exhibit.print().to_markdown());
+    if exhibit.set.more > 0 {
+        text.push_str(&format!("\n{} more in {}.csv\n", exhibit.set.more, exhibit.id));
+    }
+    if let Some(rules) = exhibit.rules() {
+        text.push_str(&format!("\nMarks: {rules}.\n"));
+    }
+    text
 }
 
 /// Whether the run measures the machine.

@@ -21,7 +21,6 @@ mod crate_people;
 mod data_package;
 mod departure;
 mod fault;
-pub mod figures;
 pub mod format;
 mod moment;
 pub mod names;

@@ -1,8 +1,8 @@
 //! What a report says, before it has a look: plain values, filled in from a bundle.
 
 use super::{ClaimRow, Evaluation, Provenance};
-use crate::stats::compatibility::Agreement;
-use serde::{Serialize, Serializer};
+use crate::studies::{Exhibit, GridRow, Source};
+use serde::Serialize;
 
 /// Everything on the page of one bundle.
 #[derive(Debug, Clone, Default, Serialize)]
@@ -87,18 +87,6 @@ pub struct OutcomeCount {
     pub count: u64,
 }
 
-/// A mean over trials, in the unit of its table.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub struct Measured {
-    /// The mean.
-    pub mean: f64,
-    /// The standard deviation, where there is one.
-    pub sd: Option<f64>,
-    /// Number of trials behind it, where known.
-    pub n: Option<u64>,
-}
-
 /// One table of ours in the paper's layout, each cell beside the paper's.
 #[derive(Debug, Clone, Default, Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -120,39 +108,34 @@ pub struct ReportTable {
     /// What the columns are, one name each: `no prior`, `floor plan`.
     pub columns: Vec<String>,
     /// The rows, each with one cell per column.
-    pub rows: Vec<ReportRow>,
+    pub rows: Vec<GridRow>,
 }
 
-/// One row of a table.
-#[derive(Debug, Clone, Default, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub struct ReportRow {
-    /// Its name: `90 %`.
-    pub label: String,
-    /// Its cells.
-    pub cells: Vec<ReportCell>,
-}
-
-/// One cell: ours and the paper's.
-#[derive(Debug, Clone, Default, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub struct ReportCell {
-    /// What we found; `None` where there is nothing, for the reason that `agreement` says.
-    pub ours: Option<Measured>,
-    /// Difference of our mean to our baseline's (percent); `None` for the baseline itself.
-    pub difference_percent: Option<f64>,
-    /// What the paper prints.
-    pub published: Option<Measured>,
-    /// The difference to its baseline that the paper prints (percent).
-    pub published_difference_percent: Option<f64>,
-    /// How the two agree, or why they cannot be compared.
-    #[serde(serialize_with = "by_name")]
-    pub agreement: Agreement,
-}
-
-/// The page looks up mark and words by the name.
-fn by_name<S: Serializer>(agreement: &Agreement, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.serialize_str(agreement.name())
+impl ReportTable {
+    /// Makes the page's table of `exhibit`; the paper's numbers stand in its part `section`, and cells are of `trials` at most.
+    pub(crate) fn of(exhibit: Exhibit, section: &str, trials: usize) -> Self {
+        let Exhibit { id, title, set, .. } = exhibit;
+        let grid = set.grid;
+        Self {
+            id,
+            title: if grid.of_trials {
+                format!("{title} (n = {trials} trials a cell)")
+            } else {
+                title
+            },
+            source: match grid.source {
+                Source::Nowhere => String::new(),
+                Source::Paper => section.to_owned(),
+                Source::Other(place) => place.to_owned(),
+            },
+            quantity: grid.quantity,
+            beside: grid.beside.to_owned(),
+            decimals: grid.decimals,
+            row_header: grid.row_header,
+            columns: grid.columns,
+            rows: grid.rows,
+        }
+    }
 }
 
 /// A figure.

@@ -7,6 +7,7 @@ use crate::math::{cos, sin};
 use crate::stats::compatibility::{Agreement, Ours, Printed, Silence};
 use crate::stats::summary::Summary;
 use crate::studies::recording::{Decision, Frame, FrontierView, Recording};
+use crate::studies::{GridCell, GridRow, Measured};
 
 /// A robot that drives along two rooms of 12 by 6 m for `frames` tenths of a second and maps what is near.
 pub(super) fn recording(frames: usize) -> Recording {
@@ -130,7 +131,7 @@ pub(super) fn content() -> ReportContent {
             let (ours, published) = (measured(base * ours, 3.1), measured(base * paper, 3.46));
             let found = Summary { n: 10, mean: ours.unwrap().mean, sd: 3.1 };
             let missing = coverage > 94.0 && i == 2;
-            ReportCell {
+            GridCell {
                 ours: if missing { None } else { ours },
                 difference_percent: (i > 0 && !missing)
                     .then(|| (ours.unwrap().mean / base / 1.02 - 1.0) * 100.0),
@@ -142,7 +143,7 @@ pub(super) fn content() -> ReportContent {
                 ),
             }
         });
-        ReportRow { label: format!("{coverage} %"), cells: cells.collect() }
+        GridRow { label: format!("{coverage} %"), cells: cells.collect() }
     });
     let figure = |id: &str, title: &str, svg: String| Figure {
         id: id.into(),

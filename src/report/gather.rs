@@ -4,8 +4,8 @@ use super::assumptions::{assumptions, tried_with};
 use super::content::{Citation, Figure, Headline, OutcomeCount, ReportContent, ReportTable};
 use super::evaluation::{Evaluated, evaluation};
 use super::origin::provenance;
-use super::{claim, limits, tables};
-use crate::bundle::{Bundle, Fault, assemble, figures as drawings};
+use super::{claim, limits};
+use crate::bundle::{Bundle, Fault, assemble};
 use crate::plan::{Plan, Selection};
 use crate::studies::{Findings, TrialRecord};
 
@@ -39,8 +39,11 @@ pub fn content_of(
     let rows = |path: &str, bytes: Option<&[u8]>| claim::rows(path, bytes, &experiment.claims);
     let claims = rows("results/claims.json", bundle.result("claims.json"))?;
     let machine_claims = rows("circumstances/claims.json", machine_verdicts)?;
+    let section = cite.and_then(|cite| cite.section.as_deref()).unwrap_or_default();
+    let exhibits =
+        experiment.tables.iter().map(|request| request.exhibit(&findings, &experiment.tables));
     let tables: Vec<ReportTable> =
-        experiment.tables.iter().map(|request| tables::table(&findings, request, plan)).collect();
+        exhibits.map(|exhibit| ReportTable::of(exhibit, section, trials_a_cell(plan))).collect();
     let figures = figures(bundle, plan, &findings);
     let headline = headline(bundle, plan, &records);
     let circumstance = bundle.circumstance();
@@ -76,6 +79,11 @@ pub fn content_of(
     })
 }
 
+/// Trials that were planned for a cell: fewer than the manifest's where `--trials` asked for fewer.
+fn trials_a_cell(plan: &Plan) -> usize {
+    plan.trials.chunk_by(|a, b| a.condition == b.condition).map(<[_]>::len).max().unwrap_or(0)
+}
+
 fn headline(bundle: &Bundle, plan: &Plan, records: &[TrialRecord]) -> Headline {
     let mut outcomes: Vec<OutcomeCount> = Vec::new();
     for record in records {
@@ -106,7 +114,7 @@ fn figures(bundle: &Bundle, plan: &Plan, findings: &Findings<'_>) -> Vec<Figure>
         .filter_map(|request| {
             let file = format!("figures/{}.svg", request.id);
             let bytes = bundle.result(&file)?;
-            let drawn = drawings::draw(plan, findings, request)?;
+            let drawn = request.draw(findings, &plan.experiment.tables)?;
             Some(Figure {
                 id: request.id.clone(),
                 title: request.title.clone(),

@@ -138,9 +138,10 @@ fn counted(n: usize, one: &str, several: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{ReportCell, content_of};
+    use super::super::content_of;
     use super::*;
-    use crate::bundle::{Bundle, Limits, assemble, figures};
+    use crate::bundle::{Bundle, Limits, assemble};
+    use crate::studies::GridCell;
     use crate::verify::plan_of;
 
     /// The published quickstart: ten trials without and ten with a floor plan, nothing claimed.
@@ -164,7 +165,7 @@ mod tests {
         records[0].outcome = Outcome::PANICKED;
         records[1].outcome = Outcome::STUCK;
         let mut tables = content_of(&bundle, &plan, &selection).unwrap().tables;
-        let silent = |cell: &mut ReportCell, why| {
+        let silent = |cell: &mut GridCell, why| {
             (cell.ours, cell.agreement) = (None, Agreement::Silent(why));
         };
         silent(&mut tables[0].rows[0].cells[0], Silence::NotReached);
@@ -202,7 +203,7 @@ mod tests {
         let factors = assemble::factors(&plan);
         let request = &plan.experiment.figures[0];
         let drawn = |records: &[TrialRecord]| {
-            figures::draw(&plan, &assemble::findings(&plan, records, &factors), request)
+            request.draw(&assemble::findings(&plan, records, &factors), &plan.experiment.tables)
         };
         let none = |record: &TrialRecord| record.condition().value("prior") == Some("none");
         let half: Vec<TrialRecord> = records.iter().filter(|r| none(r)).cloned().collect();

@@ -22,15 +22,14 @@ mod recorded;
 pub mod replay;
 pub mod show;
 mod still;
-mod tables;
 mod template;
 
 pub use bag::{Bag, BagError, bag, bag_under_banner};
 pub use banner::{drawing_under_banner, page_under_banner};
 pub use claim::{ClaimRow, ComparisonRow, NoVerdicts};
 pub use content::{
-    Assumption, Citation, Figure, FlipRow, Headline, Measured, OutcomeCount, ReportCell,
-    ReportContent, ReportRow, ReportTable, Tried,
+    Assumption, Citation, Figure, FlipRow, Headline, OutcomeCount, ReportContent, ReportTable,
+    Tried,
 };
 pub use difference::difference_page;
 pub use evaluation::{Badge, Command, Evaluation};

@@ -1,6 +1,8 @@
-//! What every column of every table of a study says: factors, what all studies share, and each study's own.
+//! What every column of the tables of trials and of inputs says: factors, what all studies share, and each study's own.
+//! Requested tables declare their own columns.
 
-use super::{Outcome, StudyKind, TableLayout, TableRequest, deadline, outcomes, prior_map};
+use super::columns::of_factor;
+use super::{Outcome, StudyKind, deadline};
 use crate::claims::Judgement;
 use crate::claims::metric::WALL_TIME_COLUMNS;
 use crate::table::{Column, unit_of};
@@ -46,24 +48,6 @@ impl Dictionary<'_> {
             "coverage-percent" => Some(Column::percent(name, "Coverage then")),
             _ => self.trial_or_factor(name),
         }
-    }
-
-    /// A column of the tidy form of a requested table.
-    pub fn of_table(&self, request: &TableRequest, name: &str) -> Option<Column> {
-        let own = match &request.layout {
-            TableLayout::CoverageTable(wanted) => {
-                prior_map::columns::of_coverage_table(wanted, name)
-            }
-            TableLayout::AgreementTable(_) => prior_map::columns::of_agreement_table(name),
-            TableLayout::EffectsTable(wanted) => prior_map::columns::of_effects_table(wanted, name),
-            TableLayout::MeasuresTable(wanted) => {
-                prior_map::columns::of_measures_table(wanted, name)
-            }
-            TableLayout::OutcomeTable(wanted) => outcomes::of_outcome_table(wanted, name),
-            TableLayout::ManeuverTable(_) => deadline::columns::of_maneuver_table(name),
-        };
-        // A factor that is called like a column of numbers would be taken for one; its column comes first in the table.
-        self.factor(name).or(own)
     }
 
     /// A column of `circumstances/wall-times.csv`.
@@ -144,9 +128,7 @@ impl Dictionary<'_> {
     }
 
     fn factor(&self, name: &str) -> Option<Column> {
-        let (_, values) = self.factors.iter().find(|(known, _)| known == name)?;
-        let meaning = "Factor of the design: study.yaml says what each value stands for";
-        Some(Column::of_values(name, unit_of(name), meaning, values))
+        of_factor(self.factors, name)
     }
 
     fn outcome(&self) -> Column {

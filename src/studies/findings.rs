@@ -1,7 +1,8 @@
 //! From records to what a reader sees, as far as all studies share it: the trials table and how cells are chosen.
 
+use super::columns::of_factor;
 use super::{Condition, Setup, TrialRecord};
-use crate::stats::compatibility::{Agreement, Method, Silence, absence};
+use crate::stats::compatibility::{Silence, absence};
 use crate::table::{Column, Table, Value};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -133,6 +134,11 @@ impl<'a> Findings<'a> {
         table.rows.iter().find(fits).map(|row| (table, row.as_slice()))
     }
 
+    /// What a column of the factor `name` says.
+    pub(super) fn factor_column(&self, name: &str) -> Column {
+        of_factor(self.factors, name).unwrap_or_else(|| Column::unknown(name))
+    }
+
     /// The values of `condition` in the order of the factors, as a table holds them.
     pub(super) fn factor_values(&self, condition: &Condition) -> Vec<Value> {
         self.factors
@@ -145,59 +151,4 @@ impl<'a> Findings<'a> {
 /// Six significant digits: more would only be noise in a table.
 pub(super) fn rounded(x: f64) -> f64 {
     format!("{x:.5e}").parse().unwrap_or(x)
-}
-
-/// The columns of a tidy table that tell how a cell agrees with the paper's.
-pub(super) const AGREEMENT: [&str; 5] = [
-    "agreement",
-    "agreement-method",
-    "agreement-low",
-    "agreement-high",
-    "agreement-relative-percent",
-];
-
-/// The values of those columns.
-pub(super) fn agreement_values(agreement: Agreement) -> [Value; 5] {
-    let difference = agreement.difference();
-    [
-        agreement.name().into(),
-        agreement.method().map(|method| method.name().to_owned()).into(),
-        difference.map(|d| rounded(d.low)).into(),
-        difference.map(|d| rounded(d.high)).into(),
-        agreement.relative_percent().map(rounded).into(),
-    ]
-}
-
-/// One of those columns, described; `unit` is that of the cell.
-pub(super) fn agreement_column(name: &str, unit: &str) -> Option<Column> {
-    let one_of = |meaning: &str, names: &[&str]| {
-        let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
-        Column::of_values(name, "", meaning, &names)
-    };
-    let end = |which: &str| {
-        Column::number(
-            name,
-            unit,
-            &format!("{which} end of the 95 % interval of ours less the paper's, by that method"),
-        )
-        .empty_where("nothing is compared, or by the relative difference")
-    };
-    let methods = Method::ALL.map(Method::name);
-    Some(match AGREEMENT.iter().position(|known| *known == name)? {
-        0 => one_of(
-            "Whether ours agrees with the paper's: compatible where the interval holds 0, apart where not; without spread \
-             only how near it is; or why nothing is compared",
-            &Agreement::NAMES,
-        ),
-        1 => one_of(
-            "How they were compared: shares by Newcombe's interval of the difference, means by the paper's prediction \
-             interval, others by the relative difference",
-            &methods,
-        )
-        .empty_where("nothing is compared"),
-        2 => end("Lower"),
-        3 => end("Upper"),
-        _ => Column::number(name, "%", "Ours less the paper's, in percent of the paper's")
-            .empty_where("the method is another, or the paper prints 0"),
-    })
 }

@@ -3,10 +3,15 @@
 //! A study is a folder here and an entry in [`STUDIES`] ([`Study`] says what that takes); no two import one another. What
 //! all of them share, the trial's identity and its record, is in this module.
 
+mod columns;
 pub mod deadline;
 mod dictionary;
+mod drawn;
+mod exhibit;
 mod factor_value;
 mod findings;
+#[cfg(test)]
+pub(crate) mod fixture;
 mod outcome;
 pub mod outcomes;
 pub mod prior_map;
@@ -18,7 +23,10 @@ mod state_chain;
 mod study;
 pub mod wander;
 
+pub use columns::Columns;
 pub use dictionary::Dictionary;
+pub use drawn::Drawn;
+pub use exhibit::{Exhibit, Grid, GridCell, GridRow, Layout, Lines, Measured, Set, Source};
 pub use factor_value::FactorValue;
 pub use findings::Findings;
 pub use outcome::{End, Outcome};

@@ -1,5 +1,6 @@
 //! The paper's numbers against ours, one point per cell of a table.
 
+use super::Drawn;
 use super::findings::Findings;
 use super::outcomes::{OutcomeTable, Quantity, named, published_share};
 use super::prior_map::CoverageTable;
@@ -56,9 +57,26 @@ struct Pair {
     ours_interval: Option<(f64, f64)>,
 }
 
+impl PublishedScatter {
+    /// Draws the figure, where there are points.
+    pub(super) fn draw(
+        &self,
+        title: &str,
+        findings: &Findings<'_>,
+        tables: &[TableRequest],
+    ) -> Option<Drawn> {
+        let chart = findings.scatter_figure(title, self, tables);
+        let caption = "One point for each number that the paper prints; on the dashed line ours is the same. Those farthest \
+                       from it are named.";
+        (!chart.is_empty()).then(|| {
+            Drawn::new(("Scatter chart", title), chart.to_svg(), chart.in_words(), caption)
+        })
+    }
+}
+
 impl Findings<'_> {
     /// A requested figure: a scatter of the table it names among `tables`; without points where there is none.
-    pub fn scatter_figure(
+    pub(super) fn scatter_figure(
         &self,
         title: &str,
         wanted: &PublishedScatter,

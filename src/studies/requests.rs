@@ -1,6 +1,6 @@
 //! What a manifest may ask to see: tables and figures in its study's layouts.
 
-use super::{PublishedScatter, deadline, outcomes, prior_map};
+use super::{Drawn, Exhibit, Findings, PublishedScatter, deadline, outcomes, prior_map};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -18,10 +18,28 @@ pub struct TableRequest {
     pub layout: TableLayout,
 }
 
-/// The layouts of tables.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum TableLayout {
+/// The layouts of tables, each a variant of [`TableLayout`] that holds what a manifest says of it.
+macro_rules! table_layouts {
+    ($($(#[$doc:meta])* $name:ident($wanted:ty),)*) => {
+        /// The layouts of tables.
+        #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+        #[serde(rename_all = "kebab-case")]
+        pub enum TableLayout {
+            $($(#[$doc])* $name($wanted),)*
+        }
+
+        impl TableRequest {
+            /// Makes the table of `findings`; `tables` are all that the manifest asks for.
+            pub fn exhibit(&self, findings: &Findings<'_>, tables: &[Self]) -> Exhibit {
+                match &self.layout {
+                    $(TableLayout::$name(wanted) => Exhibit::of(self, wanted, findings, tables),)*
+                }
+            }
+        }
+    };
+}
+
+table_layouts! {
     /// Prior map: mean and standard deviation of a metric at levels of coverage, as in Tables 1 to 10.
     CoverageTable(prior_map::CoverageTable),
     /// Prior map: slope, correlation and distance of log ratios to the baseline, ours against the paper's.
@@ -36,17 +54,13 @@ pub enum TableLayout {
     ManeuverTable(deadline::ManeuverTable),
 }
 
-/// The coverage tables among `tables`, each with its id.
+/// Returns the coverage tables among `tables`, each with its id.
 pub fn coverage_tables(tables: &[TableRequest]) -> Vec<(&str, &prior_map::CoverageTable)> {
     tables
         .iter()
         .filter_map(|request| match &request.layout {
             TableLayout::CoverageTable(table) => Some((request.id.as_str(), table)),
-            TableLayout::AgreementTable(_)
-            | TableLayout::EffectsTable(_)
-            | TableLayout::MeasuresTable(_)
-            | TableLayout::OutcomeTable(_)
-            | TableLayout::ManeuverTable(_) => None,
+            _ => None,
         })
         .collect()
 }
@@ -84,6 +98,23 @@ pub enum FigureLayout {
     PublishedScatter(PublishedScatter),
     /// Deadline: policies on the toposemantic graph of the building, from a start to the goal.
     PolicyGraph(deadline::PolicyGraph),
+}
+
+impl FigureRequest {
+    /// Draws the figure of `findings`; `tables` are all that the manifest asks for. `None` where no trial that was run has
+    /// anything to show in it, as a partial run may leave it: axes alone would look like a result.
+    pub fn draw(&self, findings: &Findings<'_>, tables: &[TableRequest]) -> Option<Drawn> {
+        let title = self.title.as_str();
+        match &self.layout {
+            FigureLayout::CoverageCurve(wanted) => wanted.draw(title, findings, tables),
+            FigureLayout::WorldPlan(wanted) => Some(wanted.draw(title, findings)),
+            FigureLayout::PriorOverWorld(wanted) => Some(wanted.draw_with_prior(title, findings)),
+            FigureLayout::OutcomeBars(wanted) => wanted.draw(title, findings),
+            FigureLayout::OutcomeShares(wanted) => wanted.draw(title, findings),
+            FigureLayout::PublishedScatter(wanted) => wanted.draw(title, findings, tables),
+            FigureLayout::PolicyGraph(wanted) => Some(wanted.draw(title, findings)),
+        }
+    }
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use super::execution::{Executed, Execution, Times, jobs};
 use super::locked::{self, Held};
-use super::{probe, tables, verdicts};
+use super::{exhibit, probe, verdicts};
 use crate::bundle::wall_time;
 use crate::bundle::{Additions, Form, Sealed, assemble, capsule, format, seal_with};
 use crate::claims::ClaimVerdict;
@@ -141,9 +141,10 @@ impl Done {
         text.push('\n');
         let factors = assemble::factors(&self.plan);
         let findings = assemble::findings(&self.plan, &self.records, &factors);
-        for request in &self.plan.experiment.tables {
-            let tables = &self.plan.experiment.tables;
-            text.push_str(&tables::table(&findings, request, tables, terminal.columns()));
+        let tables = &self.plan.experiment.tables;
+        for request in tables {
+            let exhibit = request.exhibit(&findings, tables);
+            text.push_str(&exhibit::in_lines(&exhibit, terminal.columns()));
             text.push('\n');
         }
         let verdicts = verdicts::in_words(&self.verdicts, &self.machine_verdicts);

@@ -1,5 +1,5 @@
-//! The meaning of a trial's measures, and the columns of this study's tables: one place for the data dictionary and for
-//! the names that claims and tables may use.
+//! The meaning of a trial's measures, and the columns of its calibration: one place for the data dictionary and for the
+//! names that claims and tables may use.
 
 use super::calibration::{MOTIONS, SPEEDS, maneuver_name};
 use crate::table::{Column, unit_of};
@@ -86,34 +86,6 @@ pub fn measure(name: &str) -> Option<Column> {
                 _ => number(&format!("Simulated time of those that arrived, summed up ({maneuver})")),
             }
         }
-    })
-}
-
-/// Describes a column of a table of maneuvers.
-pub fn of_maneuver_table(name: &str) -> Option<Column> {
-    let time = |meaning| Column::number(name, "s", meaning).at_least(0.0);
-    let failure = |meaning| Column::percent(name, meaning).empty_where("none was finished");
-    let names: Vec<String> = MOTIONS
-        .iter()
-        .flat_map(|motion| SPEEDS.map(|speed| maneuver_name(*motion, speed)))
-        .collect();
-    let uncalibrated = "there was no calibration";
-    Some(match name {
-        "maneuver" => Column::of_values(name, "", "Motion and speed", &names),
-        "expected-time-s" => time("Mean duration in the calibration: what the planner expects")
-            .empty_where(uncalibrated),
-        "time-s" => {
-            time("Mean duration in this study of those that arrived").empty_where("none arrived")
-        }
-        "expected-failure-percent" => {
-            failure("Share that failed in the calibration: what the planner expects")
-                .empty_where(uncalibrated)
-        }
-        "failure-percent" => failure("Share of finished ones that ended in contact in this study"),
-        "failure-low-percent" => failure("Lower end of its 95 % interval (Wilson)"),
-        "failure-high-percent" => failure("Upper end of its 95 % interval (Wilson)"),
-        "passages" => Column::count(name, "Times that it was begun in this study"),
-        _ => return None,
     })
 }
 

@@ -4,9 +4,10 @@ use super::Setup;
 use super::calibration::{Calibration, MOTIONS, Pair, SPEEDS, maneuver_name};
 use super::requests::ManeuverTable;
 use crate::stats::proportion::{Proportion, wilson};
-use crate::studies::TrialRecord;
-use crate::studies::findings::{Findings, rounded};
-use crate::table::{Table, Value};
+use crate::studies::columns::Columns;
+use crate::studies::exhibit::{Grid, GridCell, GridRow, Layout, Lines, Measured, Set, Source};
+use crate::studies::{Findings, TableRequest, TrialRecord};
+use crate::table::{Column, Table, Value};
 
 /// One maneuver, expected and observed.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,33 +52,139 @@ impl Findings<'_> {
             })
             .collect()
     }
+}
 
-    /// Returns the six maneuvers as a table.
-    pub fn maneuver_table(&self, request: &ManeuverTable) -> Table {
-        let mut table = Table::new([
-            "maneuver",
-            "expected-time-s",
-            "time-s",
-            "expected-failure-percent",
-            "failure-percent",
-            "failure-low-percent",
-            "failure-high-percent",
-            "passages",
-        ]);
-        for row in self.maneuver_rows(request) {
-            table.push(vec![
-                row.name.into(),
-                row.expected_time_s.map(rounded).into(),
-                row.met_time_s.map(rounded).into(),
-                row.expected_failure_percent.map(rounded).into(),
-                row.met_failure_percent.map(rounded).into(),
-                row.met_failure_interval.map(|i| rounded(i.0)).into(),
-                row.met_failure_interval.map(|i| rounded(i.1)).into(),
-                Value::from(i64::try_from(row.passages).unwrap_or(i64::MAX)),
-            ]);
-        }
-        table
+impl Layout for ManeuverTable {
+    type Cell = ManeuverRow;
+
+    fn cells(&self, findings: &Findings<'_>, _: &[TableRequest]) -> Vec<ManeuverRow> {
+        findings.maneuver_rows(self)
     }
+
+    fn columns<'a>(&'a self, _: &Findings<'_>) -> Columns<'a, ManeuverRow> {
+        let time = |name: &str, meaning: &str, empty: &str| {
+            Column::number(name, "s", meaning).at_least(0.0).empty_where(empty)
+        };
+        let failure = |name: &str, meaning: &str, empty: &str| {
+            Column::percent(name, meaning).empty_where(empty)
+        };
+        let (unfinished, uncalibrated) = ("none was finished", "there was no calibration");
+        let names: Vec<String> = MOTIONS
+            .iter()
+            .flat_map(|motion| SPEEDS.map(|speed| maneuver_name(*motion, speed)))
+            .collect();
+        Columns::<ManeuverRow>::none()
+            .with(Column::of_values("maneuver", "", "Motion and speed", &names), |row| {
+                row.name.clone()
+            })
+            .number(
+                time(
+                    "expected-time-s",
+                    "Mean duration in the calibration: what the planner expects",
+                    uncalibrated,
+                ),
+                |row| row.expected_time_s,
+            )
+            .number(
+                time("time-s", "Mean duration in this study of those that arrived", "none arrived"),
+                |row| row.met_time_s,
+            )
+            .number(
+                failure(
+                    "expected-failure-percent",
+                    "Share that failed in the calibration: what the planner expects",
+                    uncalibrated,
+                ),
+                |row| row.expected_failure_percent,
+            )
+            .number(
+                failure(
+                    "failure-percent",
+                    "Share of finished ones that ended in contact in this study",
+                    unfinished,
+                ),
+                |row| row.met_failure_percent,
+            )
+            .number(
+                failure(
+                    "failure-low-percent",
+                    "Lower end of its 95 % interval (Wilson)",
+                    unfinished,
+                ),
+                |row| row.met_failure_interval.map(|(low, _)| low),
+            )
+            .number(
+                failure(
+                    "failure-high-percent",
+                    "Upper end of its 95 % interval (Wilson)",
+                    unfinished,
+                ),
+                |row| row.met_failure_interval.map(|(_, high)| high),
+            )
+            .count("passages", "Times that it was begun in this study", |row| row.passages)
+    }
+
+    /// Sets one line a maneuver. On the page the calibration's numbers stand where the paper's would: a cell compares what was expected with what
+    /// was met.
+    fn set(&self, cells: &[ManeuverRow], _: &Findings<'_>) -> Set {
+        Set {
+            grid: Grid {
+                quantity: "in the study's own trials".to_owned(),
+                beside: "calibration",
+                source: Source::Other("the calibration experiment"),
+                decimals: 2,
+                of_trials: false,
+                row_header: "maneuver".to_owned(),
+                columns: vec!["time (s)".to_owned(), "failure (%)".to_owned()],
+                rows: cells.iter().map(grid_row).collect(),
+            },
+            print: None,
+            lines: Lines::all(lines(cells), 1, [0]),
+            legend: vec!["expected: by the calibration; the others: in these trials".to_owned()],
+            more: 0,
+        }
+    }
+}
+
+fn grid_row(row: &ManeuverRow) -> GridRow {
+    let measured = |mean: f64, n: u64| Measured { mean, sd: None, n: Some(n) };
+    let cell = |expected: Option<f64>, met: Option<f64>, n: u64| GridCell {
+        ours: met.map(|met| measured(met, n)),
+        published: expected.map(|expected| measured(expected, row.calibration_passages)),
+        ..GridCell::default()
+    };
+    GridRow {
+        label: row.name.clone(),
+        cells: vec![
+            cell(row.expected_time_s, row.met_time_s, row.arrived),
+            cell(row.expected_failure_percent, row.met_failure_percent, row.passages),
+        ],
+    }
+}
+
+/// Returns what the planner expects of each maneuver, and what became of it.
+fn lines(rows: &[ManeuverRow]) -> Table {
+    let columns =
+        ["maneuver", "expected time", "time", "expected failure", "failure", "95 %", "passages"];
+    let mut table = Table::new(columns);
+    for row in rows {
+        let with =
+            |unit: &str, x: Option<f64>| x.map_or("-".to_owned(), |x| format!("{x:.1} {unit}"));
+        let interval = row
+            .met_failure_interval
+            .map_or("-".to_owned(), |(low, high)| format!("{low:.1} to {high:.1} %"));
+        let texts = [
+            row.name.clone(),
+            with("s", row.expected_time_s),
+            with("s", row.met_time_s),
+            with("%", row.expected_failure_percent),
+            with("%", row.met_failure_percent),
+            interval,
+            row.passages.to_string(),
+        ];
+        table.push(texts.map(Value::from).to_vec());
+    }
+    table
 }
 
 fn row(name: String, pair: Option<Pair>, trials: &[&TrialRecord]) -> ManeuverRow {

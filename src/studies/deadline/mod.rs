@@ -28,7 +28,7 @@ pub mod toposemantic_map;
 pub use calibration::{Calibration, CalibrationError};
 pub use in_situ::ManeuverRow;
 pub use intersection_detection::{IntersectionDetectionSystem, Perception};
-pub use mission::{policy_chart, run, tag_scheme};
+pub use mission::{run, tag_scheme};
 pub use parameters::{ErrorShape, Hiding, Mission, Parameters, Passage, Sensing, Task};
 pub use passages::{Passages, PlannedPassages};
 pub use requests::{ManeuverTable, PolicyGraph};

@@ -1,12 +1,11 @@
 //! From records to the deadline study's Tables 1 and 2, and to whatever else is asked by condition.
 
 use super::{OutcomeTable, Percent, Quantity};
-use crate::stats::compatibility::{Agreement, Ours, Printed, printed_share, rules};
+use crate::stats::compatibility::{Agreement, Ours, Printed, printed_share};
 use crate::stats::proportion::{Proportion, wilson};
 use crate::stats::summary::Summary;
-use crate::studies::findings::{AGREEMENT, Findings, agreement_values, rounded};
-use crate::studies::{Outcome, TrialRecord};
-use crate::table::{Table, Value};
+use crate::studies::{Findings, Outcome, TrialRecord};
+use crate::table::Value;
 
 /// Confidence of the intervals.
 const CONFIDENCE: f64 = 0.95;
@@ -103,90 +102,6 @@ impl Findings<'_> {
             ours: estimate(&request.show, &trials),
             published,
             agreement: Agreement::between(found, paper),
-        }
-    }
-
-    /// A requested table, tidy: one row a cell.
-    pub fn outcome_table(&self, request: &OutcomeTable) -> Table {
-        let mut columns = request.rows.clone();
-        columns.push(request.by.clone());
-        let numbers = ["value", "low", "high", "sd", "n", "trials", "published", "published-n"];
-        columns.extend(numbers.map(str::to_owned));
-        columns.extend(AGREEMENT.map(str::to_owned));
-        let mut table = Table::new(columns);
-        let whole = |n: u64| i64::try_from(n).unwrap_or(i64::MAX);
-        for cell in self.outcome_cells(request) {
-            let mut row: Vec<Value> = cell.rows.iter().map(|(_, v)| v.as_str().into()).collect();
-            row.push(cell.by.as_str().into());
-            let interval = cell.ours.and_then(|e| e.interval);
-            row.push(cell.ours.map(|e| rounded(e.value)).into());
-            row.push(interval.map(|i| rounded(i.0)).into());
-            row.push(interval.map(|i| rounded(i.1)).into());
-            row.push(cell.ours.and_then(|e| e.sd).map(rounded).into());
-            row.push(cell.ours.map_or(0, |e| whole(e.n)).into());
-            row.push(whole(cell.trials).into());
-            row.push(cell.published.map(|p| p.0).into());
-            row.push(cell.published.and_then(|p| p.1).map(whole).into());
-            row.extend(agreement_values(cell.agreement));
-            table.push(row);
-        }
-        table
-    }
-
-    /// What the marks of a table mean: the methods that occur in it.
-    pub fn outcome_rules(&self, request: &OutcomeTable) -> Option<String> {
-        rules(self.outcome_cells(request).into_iter().map(|cell| cell.agreement))
-    }
-
-    /// A requested table as people read it: the values side by side, ours and the paper's.
-    pub fn outcome_table_in_print(&self, request: &OutcomeTable) -> Table {
-        let side_by_side = self.columns_of(request);
-        let published = request.published.is_some();
-        let mut columns = request.rows.clone();
-        for value in &side_by_side {
-            columns.push(value.clone());
-            columns.extend(published.then(|| format!("{value} (paper)")));
-        }
-        let mut table = Table::new(columns);
-        for line in self.outcome_cells(request).chunks(side_by_side.len().max(1)) {
-            let Some(first) = line.first() else { continue };
-            let mut row: Vec<Value> = first.rows.iter().map(|(_, v)| v.as_str().into()).collect();
-            for cell in line {
-                row.push(cell.in_print().into());
-                row.extend(published.then(|| Value::from(cell.published_in_print())));
-            }
-            table.push(row);
-        }
-        table
-    }
-}
-
-impl OutcomeCell {
-    /// Ours as text: `54 [40, 67]` (percent and interval) or `12.3 ± 4.5` (mean and standard deviation).
-    pub fn in_print(&self) -> String {
-        let Some(ours) = self.ours else {
-            return match self.agreement {
-                Agreement::Silent(silence) if self.trials == 0 => silence.words().to_owned(),
-                _ => format!("none of {}", self.trials),
-            };
-        };
-        let mut text = match (ours.sd, ours.interval) {
-            (Some(sd), _) => format!("{:.1} ± {sd:.1}", ours.value),
-            (None, Some((low, high))) => format!("{:.1} [{low:.1}, {high:.1}]", ours.value),
-            (None, None) => format!("{:.1}", ours.value),
-        };
-        if ours.sd.is_some() && ours.n < self.trials {
-            text.push_str(&format!(" ({} of {})", ours.n, self.trials));
-        }
-        text
-    }
-
-    /// The paper's as text, after the mark of its agreement; empty where it prints none.
-    pub fn published_in_print(&self) -> String {
-        let Some((value, _)) = self.published else { return String::new() };
-        match self.agreement.mark() {
-            "" => format!("{value}"),
-            mark => format!("{mark} {value}"),
         }
     }
 }

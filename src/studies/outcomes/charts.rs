@@ -7,7 +7,7 @@ use super::{
 use crate::figure::{Estimate, EstimateChart, Look, Panel, PanelLine, Part, ShareChart, Shares};
 use crate::stats::summary::quantile;
 use crate::studies::findings::Findings;
-use crate::studies::{End, Outcome};
+use crate::studies::{Drawn, End, Outcome};
 use crate::table::Value;
 
 /// The factor that limits the time of trials, where there is one.
@@ -74,9 +74,43 @@ fn lines<C, R>(
     lines
 }
 
+impl OutcomeTable {
+    /// Draws the figure of estimates, where trials have any.
+    pub(in crate::studies) fn draw(&self, title: &str, findings: &Findings<'_>) -> Option<Drawn> {
+        let chart = findings.outcome_figure(title, self);
+        if chart.is_empty() {
+            return None;
+        }
+        let (kind, caption) = if chart.boxes.is_empty() {
+            (
+                "Bar chart",
+                "Bars are ours; hollow diamonds under them the paper's. Lines are 95 % intervals.",
+            )
+        } else {
+            (
+                "Dot chart",
+                "Dots are our means with 95 % intervals, boxes the middle half of our trials, n their number; hollow \
+                 diamonds under them are the paper's means.",
+            )
+        };
+        Some(Drawn::new((kind, title), chart.to_svg(), chart.in_words(), caption))
+    }
+}
+
+impl OutcomeShares {
+    /// Draws the figure of shares, where trials have ended.
+    pub(in crate::studies) fn draw(&self, title: &str, findings: &Findings<'_>) -> Option<Drawn> {
+        let chart = findings.shares_figure(title, self);
+        let caption = "How trials ended, in percent of all of a condition: thick bars are ours, thin ones under them the \
+                       paper's.";
+        (!chart.is_empty())
+            .then(|| Drawn::new(("Stacked bars", title), chart.to_svg(), chart.in_words(), caption))
+    }
+}
+
 impl Findings<'_> {
     /// A requested figure: estimates with intervals, the paper's numbers under ours.
-    pub fn outcome_figure(&self, title: &str, request: &OutcomeTable) -> EstimateChart {
+    fn outcome_figure(&self, title: &str, request: &OutcomeTable) -> EstimateChart {
         let names = self.columns_of(request);
         let cells = self.outcome_cells(request);
         let is_mean = matches!(request.show, Quantity::Mean(_));
@@ -127,7 +161,7 @@ impl Findings<'_> {
     }
 
     /// A requested figure: how the ways in which trials ended add up, the paper's shares in thin bars under ours.
-    pub fn shares_figure(&self, title: &str, request: &OutcomeShares) -> ShareChart {
+    fn shares_figure(&self, title: &str, request: &OutcomeShares) -> ShareChart {
         let table = OutcomeTable {
             show: Quantity::Share(Vec::new()),
             by: request.by.clone(),

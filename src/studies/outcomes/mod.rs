@@ -3,12 +3,11 @@
 
 mod cells;
 mod charts;
-mod columns;
+mod layout;
 
 pub use cells::{Estimate, OutcomeCell};
 pub(super) use cells::{measured, published_share};
 pub(super) use charts::named;
-pub(super) use columns::of_outcome_table;
 
 use crate::studies::{FactorValue, Outcome};
 use schemars::JsonSchema;

@@ -1,16 +1,16 @@
 //! How our tables agree with the paper's: by the log ratios of cells to their baseline, never by counting signs, and by
 //! the intervals that the paper's own spread and number of runs put around its means.
 
+mod layout;
+
 use super::requests::{AgreementTable, CoverageTable};
 use super::results::CoverageCell;
 use crate::math::ln;
-use crate::stats::Interval;
 use crate::stats::agreement::{Line, line, log_ratio_half_width, rmse, skill_over_constant};
 use crate::stats::compatibility::{Agreement, Method};
 use crate::stats::rank::{pearson, spearman};
 use crate::stats::summary::{Summary, mean};
-use crate::studies::findings::{Findings, rounded};
-use crate::table::{Table, Value};
+use crate::studies::Findings;
 
 /// Confidence of every interval here.
 const CONFIDENCE: f64 = 0.95;
@@ -123,106 +123,6 @@ impl Findings<'_> {
         }
         found.retain(|part| part.ratios > 0 || part.scope == "all");
         found
-    }
-
-    /// The same, tidy: one row a part.
-    pub fn agreement_table(
-        &self,
-        wanted: &AgreementTable,
-        tables: &[(&str, &CoverageTable)],
-    ) -> Table {
-        let mut table = Table::new([
-            "table",
-            "scope",
-            "ratios",
-            "missing",
-            "censored",
-            "blocks",
-            "slope",
-            "slope-low",
-            "slope-high",
-            "intercept",
-            "intercept-low",
-            "intercept-high",
-            "pearson",
-            "spearman",
-            "rmse-log-ratio",
-            "skill-over-mean-ratio",
-            "mean-log-ratio",
-            "published-mean-log-ratio",
-            "ratios-with-interval",
-            "ratios-inside",
-            "cells-with-interval",
-            "cells-inside",
-        ]);
-        for part in self.agreement(wanted, tables) {
-            let count = |n: u64| Value::from(i64::try_from(n).unwrap_or(i64::MAX));
-            let number = |x: f64| Value::from(rounded(x));
-            let (slope, intercept) = part.line.intervals.unzip();
-            let ends = |interval: Option<Interval>| {
-                [interval.map(|i| rounded(i.low)).into(), interval.map(|i| rounded(i.high)).into()]
-            };
-            let mut row: Vec<Value> = vec![part.table.into(), part.scope.into()];
-            row.extend([part.ratios, part.missing, part.censored, part.blocks].map(count));
-            row.push(number(part.line.slope));
-            row.extend(ends(slope));
-            row.push(number(part.line.intercept));
-            row.extend(ends(intercept));
-            row.extend(
-                [
-                    part.pearson,
-                    part.spearman,
-                    part.rmse,
-                    part.skill,
-                    part.mean,
-                    part.published_mean,
-                ]
-                .map(number),
-            );
-            let ((inside, known), (cells_inside, cells_known)) =
-                (part.ratios_inside, part.cells_inside);
-            row.extend([known, inside, cells_known, cells_inside].map(count));
-            table.push(row);
-        }
-        table
-    }
-
-    /// The same as people read it, in 80 columns where names are short: each table, then its parts.
-    pub fn agreement_table_in_print(
-        &self,
-        wanted: &AgreementTable,
-        tables: &[(&str, &CoverageTable)],
-    ) -> Table {
-        let columns = ["part", "ratios", "slope", "Pearson", "rmse", "skill", "in", "cells in"];
-        let mut table = Table::new(columns);
-        for part in self.agreement(wanted, tables) {
-            let number = |x: f64| {
-                Value::from(if x.is_finite() { format!("{x:.2}") } else { "-".to_owned() })
-            };
-            let slope = match part.line.intervals {
-                Some((slope, _)) => {
-                    format!("{:.2} [{:.2}, {:.2}]", part.line.slope, slope.low, slope.high)
-                }
-                None if part.line.slope.is_finite() => format!("{:.2}", part.line.slope),
-                None => "-".to_owned(),
-            };
-            let of = |(inside, known): (u64, u64)| Value::from(format!("{inside}/{known}"));
-            let ratios = match part.missing {
-                0 => part.ratios.to_string(),
-                missing => format!("{} (-{missing})", part.ratios),
-            };
-            table.push(vec![
-                part.name.into(),
-                ratios.into(),
-                slope.into(),
-                number(part.pearson),
-                number(part.rmse),
-                number(part.skill),
-                of(part.ratios_inside),
-                of(part.cells_inside),
-            ]);
-        }
-        table
     }
 }
 

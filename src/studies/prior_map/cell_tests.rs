@@ -6,23 +6,12 @@ use super::results::CoverageCell;
 use crate::stats::effect::hedges_g;
 use crate::stats::means::welch;
 use crate::stats::summary::Summary;
-use crate::studies::findings::{Findings, rounded};
-use crate::table::Value;
+use crate::studies::Findings;
+use crate::studies::columns::{Columns, whole};
+use crate::table::Column;
 
 /// Number of runs taken for the paper's where a cell prints none: what all of its tables have.
 const PAPERS_RUNS: u64 = 10;
-
-/// The columns of [`CellTests`] in a tidy table.
-pub(super) const COLUMNS: [&str; 8] = [
-    "hedges-g",
-    "welch-p",
-    "first-n",
-    "first-n-reached",
-    "first-n-hedges-g",
-    "first-n-welch-p",
-    "published-hedges-g",
-    "published-welch-p",
-];
 
 /// Effect (Hedges' g, cell less baseline) and two-sided p of Welch's test; `None` where a side has fewer than two runs or
 /// nothing varies.
@@ -49,18 +38,73 @@ pub struct CellTests {
     pub published: Option<Difference>,
 }
 
-impl CellTests {
-    /// In the order of [`COLUMNS`].
-    pub(super) fn values(tests: Option<Self>) -> Vec<Value> {
-        let whole = |n: u64| Value::from(i64::try_from(n).unwrap_or(i64::MAX));
-        let pair = |difference: Option<Difference>| -> [Value; 2] {
-            [difference.map(|d| rounded(d.g)).into(), difference.map(|d| rounded(d.p)).into()]
-        };
-        let Some(tests) = tests else { return vec![Value::Missing; COLUMNS.len()] };
-        let counts = [whole(tests.first_n), whole(tests.first_reached)];
-        let parts = [pair(tests.all), counts, pair(tests.first), pair(tests.published)];
-        parts.into_iter().flatten().collect()
-    }
+/// Adds to `columns` those of the tests against `baseline`.
+pub(super) fn columns<'a>(
+    columns: Columns<'a, CoverageCell>,
+    baseline: &str,
+) -> Columns<'a, CoverageCell> {
+    let itself = "it is the baseline itself";
+    let tested = "it is the baseline itself, or one of both has fewer than two runs that got there";
+    let unprinted = "the paper prints no pair of means with deviations";
+    let number = |name: &str, meaning: &str| Column::number(name, "", meaning);
+    let tests =
+        |of: fn(CellTests) -> Option<f64>| move |cell: &CoverageCell| cell.tests.and_then(of);
+    let counts = |of: fn(CellTests) -> u64| {
+        move |cell: &CoverageCell| cell.tests.map(|tests| whole(of(tests)))
+    };
+    let all = format!("Effect against `{baseline}`: Hedges' g, all runs that got there");
+    columns
+        .number(number("hedges-g", &all).empty_where(tested), tests(|t| t.all.map(|d| d.g)))
+        .number(
+            Column::probability(
+                "welch-p",
+                "Two-sided p of Welch's test against the baseline, all runs that got there",
+            )
+            .empty_where(tested),
+            tests(|t| t.all.map(|d| d.p)),
+        )
+        .with(
+            Column::count("first-n", "The paper's number of runs, or 10 where it prints none")
+                .empty_where(itself),
+            counts(|t| t.first_n),
+        )
+        .with(
+            Column::count("first-n-reached", "How many of the first `first-n` trials got there")
+                .empty_where(itself),
+            counts(|t| t.first_reached),
+        )
+        .number(
+            number(
+                "first-n-hedges-g",
+                "Hedges' g against the baseline, the first `first-n` trials only",
+            )
+            .empty_where(tested),
+            tests(|t| t.first.map(|d| d.g)),
+        )
+        .number(
+            Column::probability(
+                "first-n-welch-p",
+                "p of Welch's test against the baseline, the first `first-n` trials only",
+            )
+            .empty_where(tested),
+            tests(|t| t.first.map(|d| d.p)),
+        )
+        .number(
+            number(
+                "published-hedges-g",
+                "Hedges' g against the baseline from the paper's printed means and deviations",
+            )
+            .empty_where(unprinted),
+            tests(|t| t.published.map(|d| d.g)),
+        )
+        .number(
+            Column::probability(
+                "published-welch-p",
+                "p of Welch's test against the baseline from the paper's printed numbers",
+            )
+            .empty_where(unprinted),
+            tests(|t| t.published.map(|d| d.p)),
+        )
 }
 
 impl Findings<'_> {

@@ -1,19 +1,17 @@
 //! What an unstated choice moves: the main effect of a factor's level on a metric, in percent, over conditions that differ
 //! in nothing else. A level that exists only together with another factor's is compared where both exist.
 
+mod layout;
+
 use super::requests::EffectsTable;
 use crate::math::{exp, ln};
 use crate::stats::means::{TTest, welch_matched};
 use crate::stats::summary::Summary;
-use crate::studies::findings::{Findings, rounded};
-use crate::table::{Table, Value};
+use crate::studies::Findings;
 use std::collections::BTreeMap;
 
 /// Confidence of the intervals. Each stands alone: of a hundred effects of nothing, five miss 0.
 const CONFIDENCE: f64 = 0.95;
-
-/// Lines of the printed table; the tidy one has all.
-const PRINTED: usize = 25;
 
 /// One side of a comparison, over all matched conditions.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -202,82 +200,6 @@ impl Findings<'_> {
         fixed.push(("coverage-percent".to_owned(), percent.to_string()));
         let (table, row) = self.published_row(wanted.published.as_ref()?, &fixed)?;
         table.value(row, "value").as_f64()
-    }
-
-    /// The effects, tidy: one row a level of a factor and a cell.
-    pub fn effects_table(&self, wanted: &EffectsTable) -> Table {
-        let mut columns = ["factor", "level", "against"].map(str::to_owned).to_vec();
-        columns.extend(wanted.within.iter().cloned());
-        columns.extend(
-            [
-                "coverage-percent",
-                "effect-percent",
-                "effect-low",
-                "effect-high",
-                "p",
-                "matched-conditions",
-                "compared-conditions",
-                "n",
-                "trials",
-                "against-n",
-                "against-trials",
-                "against-geometric-mean",
-                "published",
-                "gap-percent",
-                "share-of-gap",
-            ]
-            .map(str::to_owned),
-        );
-        let mut table = Table::new(columns);
-        let count = |n: u64| Value::from(i64::try_from(n).unwrap_or(i64::MAX));
-        for effect in self.effects(wanted) {
-            let (low, high) = effect.interval_percent().unzip();
-            let number = |x: Option<f64>| Value::from(x.map(rounded));
-            let mut row: Vec<Value> =
-                [&effect.factor, &effect.level, &effect.against].map(|s| s.as_str().into()).into();
-            row.extend(effect.within.iter().map(|(_, value)| Value::from(value.as_str())));
-            row.push(i64::from(effect.percent).into());
-            row.extend([effect.percent_moved(), low, high].map(number));
-            row.push(number(effect.test.map(|test| test.tails.two_sided)));
-            row.extend([effect.matched, effect.compared].map(count));
-            let (here, there) = (effect.runs, effect.runs_against);
-            row.extend([here.reached, here.trials, there.reached, there.trials].map(count));
-            row.push(number(effect.mean_against));
-            row.push(effect.published.into());
-            row.extend([effect.gap_percent(), effect.share_of_gap()].map(number));
-            table.push(row);
-        }
-        table
-    }
-
-    /// The largest effects as people read them, whichever way they point, and how many more the tidy table has.
-    pub fn effects_table_in_print(&self, wanted: &EffectsTable) -> (Table, usize) {
-        let mut effects = self.effects(wanted);
-        let size = |effect: &Effect| effect.log_ratio.map_or(-1.0, f64::abs);
-        // Stable: equal effects stay in the order of the request.
-        effects.sort_by(|a, b| size(b).total_cmp(&size(a)));
-        let more = effects.len().saturating_sub(PRINTED);
-        let columns = ["level", "in", "at", "effect", "95 %", "runs", "paper"];
-        let mut table = Table::new(columns);
-        for effect in effects.iter().take(PRINTED) {
-            let within: Vec<&str> = effect.within.iter().map(|(_, value)| value.as_str()).collect();
-            let points = |x: Option<f64>| x.map_or("-".to_owned(), |x| format!("{x:+.0} %"));
-            let interval = effect
-                .interval_percent()
-                .map_or("-".to_owned(), |(low, high)| format!("{low:+.0} to {high:+.0}"));
-            let (here, there) = (effect.runs, effect.runs_against);
-            table.push(vec![
-                format!("{} {} for {}", effect.factor, effect.level, effect.against).into(),
-                within.join(", ").into(),
-                format!("{} %", effect.percent).into(),
-                points(effect.percent_moved()).into(),
-                interval.into(),
-                format!("{}/{}, {}/{}", here.reached, here.trials, there.reached, there.trials)
-                    .into(),
-                points(effect.gap_percent()).into(),
-            ]);
-        }
-        (table, more)
     }
 }
 

@@ -1,10 +1,14 @@
 //! From records to a table of whole trials' measures, as the numbers of section 4.5.
 
 use super::requests::MeasuresTable;
-use crate::stats::compatibility::{Agreement, Ours, Printed, rules};
+use crate::stats::compatibility::{Agreement, Ours, Printed};
 use crate::stats::summary::Summary;
-use crate::studies::findings::{AGREEMENT, Findings, agreement_values, rounded};
-use crate::table::{Table, Value};
+use crate::studies::columns::{Columns, whole};
+use crate::studies::exhibit::{
+    Abreast, Grid, GridCell, Layout, Lines, Measured, Set, Source, values,
+};
+use crate::studies::{Findings, TableRequest};
+use crate::table::Column;
 
 /// Mean and spread of one measure in one cell of the design, beside the paper's.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,47 +61,92 @@ impl Findings<'_> {
         let rows = self.ran(&request.rows);
         rows.iter().flat_map(|rows| request.measures.iter().map(|m| cell(rows, m))).collect()
     }
+}
 
-    /// A requested table, tidy: one row a cell.
-    pub fn measures_table(&self, wanted: &MeasuresTable) -> Table {
-        let mut columns = wanted.rows.clone();
-        let numbers =
-            ["measure", "mean", "sd", "n", "trials", "published", "published-sd", "published-n"];
-        columns.extend(numbers.map(str::to_owned));
-        columns.extend(AGREEMENT.map(str::to_owned));
-        let mut table = Table::new(columns);
-        for cell in self.measure_cells(wanted) {
-            let whole = |n: u64| i64::try_from(n).unwrap_or(i64::MAX);
-            let mut row: Vec<Value> = cell.rows.iter().map(|(_, v)| v.as_str().into()).collect();
-            row.push(cell.measure.as_str().into());
-            row.push(cell.ours.map(|s| rounded(s.mean)).into());
-            row.push(cell.ours.filter(|s| s.n > 1).map(|s| rounded(s.sd)).into());
-            row.push(cell.ours.map_or(0, |s| whole(s.n)).into());
-            row.push(whole(cell.trials).into());
-            row.push(cell.published.map(|p| p.value).into());
-            row.push(cell.published.and_then(|p| p.sd).into());
-            row.push(cell.published.and_then(|p| p.n).map(whole).into());
-            row.extend(agreement_values(cell.agreement));
-            table.push(row);
-        }
-        table
+impl Layout for MeasuresTable {
+    type Cell = MeasureCell;
+
+    fn cells(&self, findings: &Findings<'_>, _: &[TableRequest]) -> Vec<MeasureCell> {
+        findings.measure_cells(self)
     }
 
-    /// What the marks of a table mean: the methods that occur in it.
-    pub fn measures_rules(&self, wanted: &MeasuresTable) -> Option<String> {
-        rules(self.measure_cells(wanted).into_iter().map(|cell| cell.agreement))
+    fn columns<'a>(&'a self, findings: &Findings<'_>) -> Columns<'a, MeasureCell> {
+        let unit = "that of measure";
+        let number = |name: &str, meaning: &str| Column::number(name, unit, meaning);
+        let unprinted = "the paper prints none";
+        Columns::<MeasureCell>::none()
+            .factors(&self.rows, findings, |cell| &cell.rows)
+            .with(
+                Column::of_values(
+                    "measure",
+                    "",
+                    "The column of results/trials.csv that is summed up",
+                    &self.measures,
+                ),
+                |cell| cell.measure.clone(),
+            )
+            .number(
+                number("mean", "Mean over trials").empty_where("no trial has the measure"),
+                |cell| cell.ours.map(|s| s.mean),
+            )
+            .number(
+                number("sd", "Standard deviation over trials (n - 1)")
+                    .at_least(0.0)
+                    .empty_where("fewer than two trials have the measure"),
+                |cell| cell.ours.filter(|s| s.n > 1).map(|s| s.sd),
+            )
+            .count("n", "Trials that have the measure; mean and sd are of these", |cell| {
+                cell.ours.map_or(0, |s| s.n)
+            })
+            .count("trials", "All trials of the cell", |cell| cell.trials)
+            .with(
+                number("published", "The mean that the paper prints").empty_where(unprinted),
+                |cell| cell.published.map(|p| p.value),
+            )
+            .with(
+                number("published-sd", "The standard deviation that the paper prints")
+                    .at_least(0.0)
+                    .empty_where(unprinted),
+                |cell| cell.published.and_then(|p| p.sd),
+            )
+            .with(
+                Column::count("published-n", "The paper's number of runs").empty_where(unprinted),
+                |cell| cell.published.and_then(|p| p.n).map(whole),
+            )
+            .agreement(unit, |cell| cell.agreement)
     }
 
-    /// A requested table as people read it: the measures side by side, the paper's in parentheses.
-    pub fn measures_table_in_print(&self, wanted: &MeasuresTable) -> Table {
-        let mut table = Table::new(wanted.rows.iter().chain(&wanted.measures).cloned());
-        for line in self.measure_cells(wanted).chunks(wanted.measures.len().max(1)) {
-            let Some(first) = line.first() else { continue };
-            let mut row: Vec<Value> = first.rows.iter().map(|(_, v)| v.as_str().into()).collect();
-            row.extend(line.iter().map(|cell| Value::from(in_print(cell))));
-            table.push(row);
+    /// One line a cell of the design; the measures stand side by side, the paper's in parentheses.
+    fn set(&self, cells: &[MeasureCell], _: &Findings<'_>) -> Set {
+        let abreast = Abreast { cells, of: self.measures.len(), label: |cell| values(&cell.rows) };
+        let heads = self.rows.iter().chain(&self.measures).cloned().collect();
+        let table = abreast.table(heads, |cell| [in_print(cell)]);
+        let is_compared = cells.iter().any(|cell| cell.agreement.method().is_some());
+        let papers = is_compared.then_some("in parentheses: the paper's");
+        let legend = ["mean ± standard deviation of trials"].into_iter().chain(papers);
+        let measured =
+            |s: Summary| Measured { mean: s.mean, sd: (s.n > 1).then_some(s.sd), n: Some(s.n) };
+        Set {
+            grid: Grid {
+                quantity: "measures of whole trials".to_owned(),
+                beside: "paper",
+                source: Source::of(self.published.as_ref()),
+                decimals: 1,
+                of_trials: false,
+                row_header: self.rows.join(", "),
+                columns: self.measures.clone(),
+                rows: abreast.rows(|cell| GridCell {
+                    ours: cell.ours.map(measured),
+                    published: cell.published.map(Measured::from),
+                    agreement: cell.agreement,
+                    ..GridCell::default()
+                }),
+            },
+            print: Some(table.clone()),
+            lines: Lines::all(table, self.rows.len(), 0..self.rows.len()),
+            legend: legend.map(str::to_owned).collect(),
+            more: 0,
         }
-        table
     }
 }
 
@@ -126,6 +175,7 @@ mod tests {
     use super::*;
     use crate::digest::{Sha256Digest, TrialKey};
     use crate::studies::{Outcome, TrialRecord};
+    use crate::table::Table;
     use std::collections::BTreeMap;
 
     fn record(prior: &str, noise: &str, trial: u32, distance: Option<f64>) -> TrialRecord {
@@ -166,12 +216,12 @@ mod tests {
             rows: vec!["prior".to_owned(), "noise".to_owned()],
             published: Some("section".to_owned()),
         };
-        let print = findings.measures_table_in_print(&wanted).to_csv();
+        let cells = findings.measure_cells(&wanted);
         assert_eq!(
-            print,
+            wanted.set(&cells, &findings).print.unwrap().to_csv(),
             "prior,noise,distance-m\nnone,0,400.0 [1 of 2]\ngraph,0,250.0 ± 14.1 (≈ 239.0)\ngraph,4,390.0\n"
         );
-        let tidy = findings.measures_table(&wanted).to_csv();
+        let tidy = wanted.columns(&findings).table(&cells).to_csv();
         assert!(tidy.contains("graph,0,distance-m,250,14.1421,2,2,239,,,within-10-percent,relative-difference,,,4.60251\n"), "{tidy}");
     }
 }

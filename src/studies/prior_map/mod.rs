@@ -44,7 +44,7 @@ use tour::TopoMetricMap;
 pub use mission::columns;
 pub use mission::{
     FURTHER_AT_MILESTONES, MILESTONES, POSE_ERRORS, Prepared, SharedReference,
-    coverage_at_distance, explored_map, is_coverage_at_distance, plan_figure, run,
+    coverage_at_distance, explored_map, is_coverage_at_distance, run,
 };
 
 /// Everything that a trial of this study needs.

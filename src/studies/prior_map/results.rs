@@ -1,12 +1,13 @@
-//! From records to what a reader sees: the curves, the paper's tables and figures.
+//! From records to what a reader sees: the curves, the cells of the paper's tables, and figures.
 
-use super::cell_tests::{self, CellTests, Difference};
+mod layout;
+
+use super::cell_tests::CellTests;
 use super::requests::{CoverageCurve, CoverageTable, Metric};
 use crate::figure::{LineChart, PublishedPoint, Series};
-use crate::stats::compatibility::{Agreement, Ours, Printed, Silence, rules};
+use crate::stats::compatibility::{Agreement, Ours, Printed};
 use crate::stats::summary::{Summary, median, quantile};
-use crate::studies::findings::{AGREEMENT, Findings, agreement_values, rounded};
-use crate::studies::{Outcome, SeriesPoint};
+use crate::studies::{Drawn, Findings, Outcome, SeriesPoint, TableRequest, coverage_tables};
 use crate::table::{Table, Value};
 
 /// Mean and spread of one cell of a table, beside the paper's.
@@ -32,6 +33,23 @@ pub struct CoverageCell {
     pub agreement: Agreement,
     /// Tests against the baseline, where the request asks for them.
     pub tests: Option<CellTests>,
+}
+
+impl CoverageCurve {
+    /// Draws the figure, where trials have curves.
+    pub(in crate::studies) fn draw(
+        &self,
+        title: &str,
+        findings: &Findings<'_>,
+        tables: &[TableRequest],
+    ) -> Option<Drawn> {
+        let tables: Vec<_> = coverage_tables(tables).into_iter().map(|(_, table)| table).collect();
+        let chart = findings.coverage_figure(title, self, &tables);
+        let caption = "Median of the trials with a band from the 10th to the 90th percentile; hollow markers are the paper's \
+                       means with one standard deviation.";
+        (!chart.is_empty())
+            .then(|| Drawn::new(("Line chart", title), chart.to_svg(), chart.in_words(), caption))
+    }
 }
 
 impl Findings<'_> {
@@ -123,84 +141,9 @@ impl Findings<'_> {
         }
     }
 
-    /// A requested table, tidy: one row a cell.
-    pub fn coverage_table(&self, wanted: &CoverageTable) -> Table {
-        let mut columns = wanted.rows.clone();
-        columns.extend(["coverage-percent".to_owned(), wanted.by.clone()]);
-        columns.extend(
-            [
-                "mean",
-                "sd",
-                "n",
-                "trials",
-                "difference-percent",
-                "published",
-                "published-sd",
-                "published-n",
-                "published-difference-percent",
-            ]
-            .map(str::to_owned),
-        );
-        columns.extend(AGREEMENT.map(str::to_owned));
-        if wanted.tests {
-            columns.extend(cell_tests::COLUMNS.map(str::to_owned));
-        }
-        let mut table = Table::new(columns);
-        for cell in self.coverage_cells(wanted) {
-            let mut row: Vec<Value> = cell.rows.iter().map(|(_, v)| v.as_str().into()).collect();
-            row.push(i64::from(cell.percent).into());
-            row.push(cell.by.as_str().into());
-            let whole = |n: u64| i64::try_from(n).unwrap_or(i64::MAX);
-            row.push(cell.ours.map(|s| rounded(s.mean)).into());
-            row.push(cell.ours.filter(|s| s.n > 1).map(|s| rounded(s.sd)).into());
-            row.push(cell.ours.map_or(0, |s| whole(s.n)).into());
-            row.push(whole(cell.trials).into());
-            row.push(cell.difference_percent.map(rounded).into());
-            row.push(cell.published.map(|p| p.0).into());
-            row.push(cell.published.and_then(|p| p.1).into());
-            row.push(cell.published.and_then(|p| p.2).into());
-            row.push(cell.published_difference_percent.map(rounded).into());
-            row.extend(agreement_values(cell.agreement));
-            if wanted.tests {
-                row.extend(CellTests::values(cell.tests));
-            }
-            table.push(row);
-        }
-        table
-    }
-
-    /// A requested table as people read it: the values side by side, ours and the paper's.
-    pub fn coverage_table_in_print(&self, wanted: &CoverageTable) -> Table {
-        let cells = self.coverage_cells(wanted);
-        let side_by_side = self.values_of(&wanted.by);
-        let mut columns = wanted.rows.clone();
-        columns.push("coverage".to_owned());
-        for value in &side_by_side {
-            columns.push(value.clone());
-            columns.push(format!("{value} (paper)"));
-        }
-        let mut table = Table::new(columns);
-        for line in cells.chunks(side_by_side.len().max(1)) {
-            let Some(first) = line.first() else { continue };
-            let mut row: Vec<Value> = first.rows.iter().map(|(_, v)| v.as_str().into()).collect();
-            row.push(format!("{} %", first.percent).into());
-            for cell in line {
-                row.push(ours_in_print(cell).into());
-                row.push(published_in_print(cell).into());
-            }
-            table.push(row);
-        }
-        table
-    }
-
-    /// What the marks of a table mean: the methods that occur in it.
-    pub fn coverage_rules(&self, wanted: &CoverageTable) -> Option<String> {
-        rules(self.coverage_cells(wanted).into_iter().map(|cell| cell.agreement))
-    }
-
     /// A requested figure: median coverage with a band from the 10th to the 90th percentile of trials, and the
     /// paper's points where a table of the same metric has them.
-    pub fn coverage_figure(
+    fn coverage_figure(
         &self,
         title: &str,
         wanted: &CoverageCurve,
@@ -298,49 +241,4 @@ fn add_differences(line: &mut [CoverageCell], baseline: Option<&str>) {
             cell.published_difference_percent = Some(100.0 * (ours.0 / theirs.0 - 1.0));
         }
     }
-}
-
-fn ours_in_print(cell: &CoverageCell) -> String {
-    let Some(ours) = &cell.ours else {
-        return match cell.agreement {
-            Agreement::Silent(silence) if silence != Silence::NotReached => silence.words().into(),
-            _ => format!("not reached (0 of {})", cell.trials),
-        };
-    };
-    let mut text = if ours.n > 1 {
-        format!("{:.2} ± {:.2}", ours.mean, ours.sd)
-    } else {
-        format!("{:.2}", ours.mean)
-    };
-    if let Some(difference) = cell.difference_percent {
-        text.push_str(&format!(" ({difference:+.0} %)"));
-    }
-    if ours.n < cell.trials {
-        text.push_str(&format!(" [{} of {}]", ours.n, cell.trials));
-    }
-    if let Some(tests) = cell.tests {
-        text.push_str(&tests_in_print(&tests));
-    }
-    text
-}
-
-/// Effects with p at all runs, and at the paper's number of them.
-fn tests_in_print(tests: &CellTests) -> String {
-    let words = |difference: Option<Difference>| {
-        difference.map_or_else(|| "-".to_owned(), |d| format!("{:+.2}, p {:.1e}", d.g, d.p))
-    };
-    format!("; g {}; first {}: {}", words(tests.all), tests.first_n, words(tests.first))
-}
-
-fn published_in_print(cell: &CoverageCell) -> String {
-    let Some((mean, sd, _)) = cell.published else { return String::new() };
-    let mut text = match cell.agreement.mark() {
-        "" => String::new(),
-        mark => format!("{mark} "),
-    };
-    text += &sd.map_or_else(|| format!("{mean:.2}"), |sd| format!("{mean:.2} ± {sd:.2}"));
-    if let Some(difference) = cell.published_difference_percent {
-        text.push_str(&format!(" ({difference:+.0} %)"));
-    }
-    text
 }

@@ -10,8 +10,6 @@ mod tally;
 #[cfg(test)]
 mod tests;
 
-pub use policy_chart::policy_chart;
-
 use super::{Setup, Task};
 use crate::geometry::Outline;
 use crate::robot::Lidar;

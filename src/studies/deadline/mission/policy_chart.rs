@@ -9,11 +9,13 @@
 
 use super::Prepared;
 use crate::figure::{PolicyChart, PolicyMove, PolicyPanel, PolicyVertex};
-use crate::studies::deadline::Setup;
 use crate::studies::deadline::build_cmdp::Place;
 use crate::studies::deadline::intersection::{Exit, Intersection, Opening};
 use crate::studies::deadline::planner::{Plan, Status};
 use crate::studies::deadline::toposemantic_map::{End, ToposemanticMap, VertexId};
+use crate::studies::deadline::{PolicyGraph, Setup};
+use crate::studies::drawn::{NO_CONDITION, words_alone};
+use crate::studies::{Drawn, Findings};
 use crate::world::RegionKind;
 use crate::world::topology::{self, Topology};
 use std::collections::VecDeque;
@@ -21,12 +23,37 @@ use std::collections::VecDeque;
 /// Largest distance (m) of a start from its place of the graph.
 const NEAR: f64 = 3.0;
 
+impl PolicyGraph {
+    /// Draws the policies of the first condition that it speaks of; words where there are none.
+    pub(in crate::studies) fn draw(&self, title: &str, findings: &Findings<'_>) -> Drawn {
+        let found = findings.first(&self.only).and_then(|(_, setup)| setup.of::<Setup>());
+        let chart = found
+            .ok_or_else(|| NO_CONDITION.to_owned())
+            .and_then(|setup| policy_chart(title, setup, &self.within_s));
+        let (svg, words) = match chart {
+            Ok(chart) => (chart.to_svg(), chart.in_words()),
+            Err(why) => (words_alone(title, &why), why),
+        };
+        Drawn::new(
+            ("Graph", title),
+            svg,
+            words,
+            "The building's whole toposemantic graph, which no robot of the study knows at first, and the policy that the \
+             study's planner makes on it for one leg from the start to the goal within t_d.",
+        )
+    }
+}
+
 /// Plans the policies for legs from the start of `setup` to the goal within each of `within_s` (s), or where it is
 /// empty within the deadlines that the schedule sets at its three steps.
 ///
 /// # Errors
 /// Where the setup has no calibration, no such places or no such plans, in words.
-pub fn policy_chart(title: &str, setup: &Setup, within_s: &[f64]) -> Result<PolicyChart, String> {
+pub(super) fn policy_chart(
+    title: &str,
+    setup: &Setup,
+    within_s: &[f64],
+) -> Result<PolicyChart, String> {
     // 1. The map.
     let prepared: &Prepared = setup.prepared()?;
     let calibration = setup.calibration.as_ref().ok_or("the planner has no calibration")?;

@@ -1,5 +1,6 @@
 //! Whole trials in the engineering building and in a generated one.
 
+use super::policy_chart::policy_chart;
 use super::*;
 use crate::digest::{Sha256Digest, TrialKey};
 use crate::document::Source;

@@ -1,8 +1,9 @@
 //! Agreement and tests of cells on made-up runs around the paper's own numbers.
 
 use super::*;
-use crate::studies::TrialRecord;
 use crate::studies::prior_map::Metric;
+use crate::studies::{Layout, TrialRecord};
+use crate::table::{Table, Value};
 use std::collections::BTreeMap;
 
 /// Printed distances at 80 and 95 %.
@@ -89,11 +90,7 @@ fn found(records: &[TrialRecord], with_sd: impl Fn(&str) -> bool) -> Vec<TableAg
     let findings = Findings::new(&factors, records, &published);
     let wanted = AgreementTable { tables: vec!["distance".to_owned()] };
     let table = request(false);
-    let tidy = findings.agreement_table(&wanted, &[("distance", &table), ("other", &table)]);
-    let print = findings.agreement_table_in_print(&wanted, &[("distance", &table)]);
-    let parts = findings.agreement(&wanted, &[("distance", &table), ("other", &table)]);
-    assert_eq!((tidy.rows.len(), print.rows.len()), (parts.len(), parts.len()));
-    parts
+    findings.agreement(&wanted, &[("distance", &table), ("other", &table)])
 }
 
 #[test]
@@ -157,12 +154,12 @@ fn cells_are_tested_at_all_runs_and_at_the_papers_number() {
     let printed = tests.published.unwrap();
     // Welch of 405 ± 40.5 and 430 ± 43, ten each: t = -1.33836 at 17.9358 df, its tails integrated numerically.
     assert!((printed.p - 0.197_498).abs() < 1e-5, "{}", printed.p);
-    let plain = findings.coverage_table(&request(false));
-    let tested = findings.coverage_table(&request(true));
+    let tidy = |wanted: CoverageTable| wanted.columns(&findings).table(&cells);
+    let (plain, tested) = (tidy(request(false)), tidy(request(true)));
     assert_eq!(tested.columns.len(), plain.columns.len() + 8);
     assert_eq!(tested.columns[..plain.columns.len()], plain.columns[..]);
     // A combination that the design leaves out is no row that was not reached.
-    let print = findings.coverage_table_in_print(&request(true));
+    let print = request(true).set(&cells, &findings).print.unwrap();
     let basic = &print.rows[0];
     assert_eq!(*print.value(basic, "bounding-box"), Value::from("not in the design"));
 }
@@ -201,5 +198,6 @@ fn every_reading_that_was_run_has_its_own_score() {
     assert!((score("gain=released, stop=uneven") - off(0.8)).abs() < 1e-9);
     assert!((score("gain=released, stop=even") - off(0.5)).abs() < 1e-9);
     assert_eq!(part("gain=released, stop=even").name, "released, even");
-    assert_eq!(findings.coverage_table(&table).columns[..3], ["environment", "gain", "stop"]);
+    let tidy = table.columns(&findings).table(&[]);
+    assert_eq!(tidy.columns[..3], ["environment", "gain", "stop"]);
 }

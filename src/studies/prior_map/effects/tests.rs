@@ -4,6 +4,7 @@ use super::*;
 use crate::stats::assert_close;
 use crate::studies::TrialRecord;
 use crate::studies::prior_map::Metric;
+use crate::table::Table;
 
 /// Gain, ray stop, noise, and ln(distance at 80 %) of each run; `None` never got there.
 type Cell = (&'static str, &'static str, &'static str, &'static [Option<f64>]);
@@ -61,7 +62,7 @@ fn published() -> BTreeMap<String, Table> {
     [("distance-m".to_owned(), table)].into()
 }
 
-fn request(factors: &[&str], within: &[&str], at: &[u32]) -> EffectsTable {
+pub(super) fn request(factors: &[&str], within: &[&str], at: &[u32]) -> EffectsTable {
     let owned = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect();
     EffectsTable {
         metric: Metric::DistanceM,
@@ -73,7 +74,7 @@ fn request(factors: &[&str], within: &[&str], at: &[u32]) -> EffectsTable {
 }
 
 /// `check` sees the findings of [`records`].
-fn with_findings(check: impl Fn(&Findings<'_>)) {
+pub(super) fn with_findings(check: impl Fn(&Findings<'_>)) {
     let (factors, records, published) = (factors(), records(), published());
     let findings = Findings::new(&factors, &records, &published);
     check(&findings);
@@ -116,35 +117,5 @@ fn conditions_that_nobody_finished_are_counted_and_not_compared() {
         assert_eq!((missing.matched, missing.compared), (1, 0));
         assert_eq!((missing.runs.reached, missing.runs.trials), (0, 2));
         assert_eq!((missing.log_ratio, missing.test), (None, None));
-    });
-}
-
-#[test]
-fn the_print_ranks_by_size_and_says_how_many_it_leaves_out() {
-    with_findings(|findings| {
-        let wanted = request(&["noise", "gain", "ray-stop"], &["environment"], &[70, 80]);
-        let tidy = findings.effects_table(&wanted);
-        let (print, more) = findings.effects_table_in_print(&wanted);
-        assert_eq!((tidy.rows.len(), print.rows.len(), more), (6, 6, 0));
-        let first: Vec<String> = tidy.rows.iter().map(|row| row[0].to_string()).collect();
-        assert_eq!(first, ["noise", "noise", "gain", "gain", "ray-stop", "ray-stop"]);
-        let levels: Vec<String> =
-            print.rows.iter().map(|row| format!("{} at {}", row[0], row[2])).collect();
-        assert_eq!(
-            levels,
-            [
-                "ray-stop even for uneven at 80 %",
-                "noise 0.01 for 0.1 at 80 %",
-                "gain released for paper at 80 %",
-                "noise 0.01 for 0.1 at 70 %",
-                "gain released for paper at 70 %",
-                "ray-stop even for uneven at 70 %",
-            ]
-        );
-        assert_eq!(print.value(&print.rows[2], "runs").to_string(), "4/5, 4/4");
-        assert_eq!(print.value(&print.rows[2], "paper").to_string(), "-45 %");
-        let many: Vec<u32> = (0..30).map(|_| 80).collect();
-        let (print, more) = findings.effects_table_in_print(&request(&["gain"], &[], &many));
-        assert_eq!((print.rows.len(), more), (PRINTED, 5));
     });
 }

@@ -22,7 +22,6 @@ mod start;
 mod tests;
 mod trace;
 
-pub use plan_figure::plan_figure;
 pub use pose_errors::POSE_ERRORS;
 pub use reference::SharedReference;
 pub use trace::{MILESTONES, coverage_at_distance, is_coverage_at_distance};
