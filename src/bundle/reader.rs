@@ -201,7 +201,7 @@ impl Bundle {
                     }
                     Err(problem) => {
                         let place = BundlePath::records(&condition.slug).line(i + 1);
-                        faults.push(Fault::new(place, "a trial record", problem));
+                        faults.push(Fault::new(place, "a trial record", problem.to_string()));
                     }
                 }
             }

@@ -115,7 +115,7 @@ impl Account {
                     Err(problem) => faults.push(Fault::new(
                         BundlePath::records(&entry.slug).line(i + 1),
                         "a trial record",
-                        problem,
+                        problem.to_string(),
                     )),
                 }
             }

@@ -3,6 +3,7 @@
 //! A study is a folder here and an entry in [`STUDIES`] ([`Study`] says what that takes); no two import one another. What
 //! all of them share, the trial's identity and its record, is in this module.
 
+mod cannot_begin;
 mod columns;
 pub mod deadline;
 mod dictionary;
@@ -23,6 +24,7 @@ mod state_chain;
 mod study;
 pub mod wander;
 
+pub use cannot_begin::CannotBegin;
 pub use columns::Columns;
 pub use dictionary::Dictionary;
 pub use drawn::Drawn;
@@ -31,7 +33,9 @@ pub use factor_value::FactorValue;
 pub use findings::Findings;
 pub use outcome::{End, Outcome};
 pub use published_scatter::{PublishedScatter, Scale};
-pub use record::{CHAIN_STEP_S, SeriesPoint, TrialRecord, first_divergence, records_digest};
+pub use record::{
+    CHAIN_STEP_S, RecordError, SeriesPoint, TrialRecord, first_divergence, records_digest,
+};
 pub use requests::{FigureLayout, FigureRequest, TableLayout, TableRequest, coverage_tables};
 pub use study::{
     ConditionAsWritten, Prior, Remark, Setup, Stopwatch, Study, StudyKind, StudySetup, Surroundings,

@@ -98,6 +98,26 @@ pub struct TrialRecord {
     pub chain: Vec<String>,
 }
 
+/// The reason why a line is no record of a trial.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum RecordError {
+    /// No trial has so much to say.
+    #[error("a line of {bytes} bytes (at most {LONGEST_LINE} allowed)")]
+    Long {
+        /// Its length.
+        bytes: usize,
+    },
+    /// It is not the JSON of a record; what the reader of JSON says.
+    #[error("{0}")]
+    NoRecord(String),
+    /// An entry of the state chain is none.
+    #[error("no state hash of 16 hex digits at /chain/{at}")]
+    NoStateHash {
+        /// Its place in the chain, from 0.
+        at: usize,
+    },
+}
+
 impl TrialRecord {
     /// The record of a trial that panicked with `cause`.
     pub fn panicked(spec: &super::TrialSpec, cause: String) -> Self {
@@ -127,17 +147,18 @@ impl TrialRecord {
     /// Reads a line of whatever origin.
     ///
     /// # Errors
-    /// Where it is not the JSON of a record, or one that no trial can have, in words.
-    pub fn from_line(line: &str) -> Result<Self, String> {
+    /// Where it is not the JSON of a record, or one that no trial can have.
+    pub fn from_line(line: &str) -> Result<Self, RecordError> {
         if line.len() > LONGEST_LINE {
-            return Err(format!("a line of {} bytes (at most {LONGEST_LINE} allowed)", line.len()));
+            return Err(RecordError::Long { bytes: line.len() });
         }
-        let record: Self = serde_json::from_str(line).map_err(|e| e.to_string())?;
+        let record: Self =
+            serde_json::from_str(line).map_err(|e| RecordError::NoRecord(e.to_string()))?;
         let is_hash = |hash: &String| {
             hash.len() == 16 && hash.bytes().all(|b| matches!(b, b'0'..=b'9' | b'a'..=b'f'))
         };
         match record.chain.iter().position(|hash| !is_hash(hash)) {
-            Some(i) => Err(format!("no state hash of 16 hex digits at /chain/{i}")),
+            Some(at) => Err(RecordError::NoStateHash { at }),
             None => Ok(record),
         }
     }
@@ -197,7 +218,7 @@ mod tests {
                 "0".repeat(64)
             )
         };
-        let refusal = |line: String| TrialRecord::from_line(&line).unwrap_err();
+        let refusal = |line: String| TrialRecord::from_line(&line).unwrap_err().to_string();
         assert!(TrialRecord::from_line(&line("\"0123456789abcdef\"", "")).is_ok());
         assert_eq!(
             refusal(line("\"0123456789abcdef\",\"\"", "")),

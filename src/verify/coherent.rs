@@ -200,7 +200,7 @@ fn records(
         let record = match TrialRecord::from_line(line) {
             Ok(record) => record,
             Err(problem) => {
-                faults.push(Fault::new(place, "a trial record", problem));
+                faults.push(Fault::new(place, "a trial record", problem.to_string()));
                 next += 1;
                 continue;
             }

@@ -37,6 +37,7 @@ pub use study::Deadline;
 
 use crate::geometry::Pose;
 use crate::robot::Robot;
+use crate::studies::CannotBegin;
 use crate::world::World;
 use mission::Prepared;
 use std::sync::{Arc, OnceLock};
@@ -54,7 +55,7 @@ pub struct Setup {
     pub calibration: Option<Arc<Calibration>>,
     /// Everything else.
     pub parameters: Parameters,
-    prepared: OnceLock<Result<Prepared, String>>,
+    prepared: OnceLock<Result<Prepared, CannotBegin>>,
 }
 
 impl Setup {
@@ -73,7 +74,7 @@ impl Setup {
     ///
     /// # Errors
     /// Where the setup cannot run at all, which resolution refuses with a better message.
-    pub fn prepared(&self) -> Result<&Prepared, String> {
+    pub fn prepared(&self) -> Result<&Prepared, CannotBegin> {
         self.prepared.get_or_init(|| Prepared::new(self)).as_ref().map_err(Clone::clone)
     }
 }

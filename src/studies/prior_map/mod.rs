@@ -37,13 +37,14 @@ pub use requests::{
 use crate::geometry::Pose;
 use crate::grid::OccupancyGrid;
 use crate::robot::Robot;
+use crate::studies::CannotBegin;
 use crate::world::World;
 use std::sync::{Arc, OnceLock};
 use tour::TopoMetricMap;
 
 pub use mission::columns;
 pub use mission::{
-    FURTHER_AT_MILESTONES, MILESTONES, POSE_ERRORS, Prepared, SharedReference,
+    FURTHER_AT_MILESTONES, MILESTONES, NoMap, POSE_ERRORS, Prepared, SharedReference,
     coverage_at_distance, explored_map, is_coverage_at_distance, run,
 };
 
@@ -64,7 +65,7 @@ pub struct Setup {
     pub parameters: Parameters,
     /// The reference of coverage, perhaps shared with other setups.
     reference: SharedReference,
-    prepared: OnceLock<Result<Prepared, String>>,
+    prepared: OnceLock<Result<Prepared, CannotBegin>>,
 }
 
 impl Setup {
@@ -116,7 +117,7 @@ impl Setup {
     ///
     /// # Errors
     /// Where the setup cannot run at all, which resolution refuses with a better message.
-    pub fn prepared(&self) -> Result<&Prepared, String> {
+    pub fn prepared(&self) -> Result<&Prepared, CannotBegin> {
         self.prepared.get_or_init(|| Prepared::new(self)).as_ref().map_err(Clone::clone)
     }
 }

@@ -15,7 +15,7 @@ use crate::geometry::Outline;
 use crate::robot::Lidar;
 use crate::studies::recording::Recording;
 use crate::studies::state_chain::StateChain;
-use crate::studies::{Outcome, Stopwatch, TrialRecord, TrialSpec};
+use crate::studies::{CannotBegin, Outcome, Stopwatch, TrialRecord, TrialSpec};
 use crate::units::{Seconds, Tick};
 use crate::world::topology::{TagScheme, Topology};
 use std::collections::BTreeMap;
@@ -36,17 +36,16 @@ impl Prepared {
     /// # Errors
     /// A robot without scanner, camera or compass, or tags that make no graph: resolution refuses them with better
     /// messages.
-    pub fn new(setup: &Setup) -> Result<Self, String> {
+    pub fn new(setup: &Setup) -> Result<Self, CannotBegin> {
         let robot = &setup.robot;
-        let own = robot.lidar.as_ref().ok_or("the robot has no range scanner")?;
-        robot.camera.as_ref().ok_or("the robot has no logical camera")?;
-        robot.compass.as_ref().ok_or("the robot has no compass")?;
+        let own = robot.lidar.as_ref().ok_or(CannotBegin::NoScanner)?;
+        robot.camera.as_ref().ok_or(CannotBegin::NoCamera)?;
+        robot.compass.as_ref().ok_or(CannotBegin::NoCompass)?;
         let sensing = &setup.parameters.sensing;
         let noise_sd = sensing.range_noise_sd_m.unwrap_or(own.noise_sd);
         let lidar = Lidar { noise_sd, ..own.clone() };
-        let topology = Topology::read(&setup.world.tags, &tag_scheme(setup)).map_err(|faults| {
-            faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
-        })?;
+        let topology =
+            Topology::read(&setup.world.tags, &tag_scheme(setup)).map_err(CannotBegin::NoGraph)?;
         Ok(Self {
             visible: setup.world.slice(lidar.height),
             solid: setup.world.contact(robot.body_z[0], robot.body_z[1]),
@@ -80,7 +79,7 @@ pub fn run(
 ) -> TrialRecord {
     let prepared = match setup.prepared() {
         Ok(prepared) => prepared,
-        Err(cause) => return TrialRecord::panicked(spec, cause),
+        Err(why) => return TrialRecord::panicked(spec, why.to_string()),
     };
     match setup.parameters.mission.task {
         Task::Exploration => exploration::run(spec, setup, prepared, recording, watch),

@@ -11,11 +11,11 @@ use super::Prepared;
 use crate::figure::{PolicyChart, PolicyMove, PolicyPanel, PolicyVertex};
 use crate::studies::deadline::build_cmdp::Place;
 use crate::studies::deadline::intersection::{Exit, Intersection, Opening};
-use crate::studies::deadline::planner::{Plan, Status};
-use crate::studies::deadline::toposemantic_map::{End, ToposemanticMap, VertexId};
+use crate::studies::deadline::planner::{Plan, PlanError, Status};
+use crate::studies::deadline::toposemantic_map::{End, MapError, ToposemanticMap, VertexId};
 use crate::studies::deadline::{PolicyGraph, Setup};
 use crate::studies::drawn::{NO_CONDITION, words_alone};
-use crate::studies::{Drawn, Findings};
+use crate::studies::{CannotBegin, Drawn, Findings};
 use crate::world::RegionKind;
 use crate::world::topology::{self, Topology};
 use std::collections::VecDeque;
@@ -23,13 +23,40 @@ use std::collections::VecDeque;
 /// Largest distance (m) of a start from its place of the graph.
 const NEAR: f64 = 3.0;
 
+/// The reason why there is nothing to draw.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum NoChart {
+    /// The design leaves the condition out.
+    #[error("{NO_CONDITION}")]
+    NoCondition,
+    /// No trial of the condition can begin.
+    #[error(transparent)]
+    CannotBegin(#[from] CannotBegin),
+    /// Isolated passages are not planned.
+    #[error("the planner has no calibration")]
+    NoCalibration,
+    /// The robot starts away from every vertex.
+    #[error("the start is at no place of the graph")]
+    NoStart,
+    /// No way leads to it.
+    #[error("the goal cannot be reached")]
+    NoGoal,
+    /// The tags contradict themselves.
+    #[error(transparent)]
+    Map(#[from] MapError),
+    /// There is no policy.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+}
+
 impl PolicyGraph {
     /// Draws the policies of the first condition that it speaks of; words where there are none.
     pub(in crate::studies) fn draw(&self, title: &str, findings: &Findings<'_>) -> Drawn {
         let found = findings.first(&self.only).and_then(|(_, setup)| setup.of::<Setup>());
         let chart = found
-            .ok_or_else(|| NO_CONDITION.to_owned())
-            .and_then(|setup| policy_chart(title, setup, &self.within_s));
+            .ok_or(NoChart::NoCondition)
+            .and_then(|setup| policy_chart(title, setup, &self.within_s))
+            .map_err(|why| why.to_string());
         let (svg, words) = match chart {
             Ok(chart) => (chart.to_svg(), chart.in_words()),
             Err(why) => (words_alone(title, &why), why),
@@ -48,23 +75,21 @@ impl PolicyGraph {
 /// empty within the deadlines that the schedule sets at its three steps.
 ///
 /// # Errors
-/// Where the setup has no calibration, no such places or no such plans, in words.
+/// Where the setup has no calibration, no such places or no such plans.
 pub(super) fn policy_chart(
     title: &str,
     setup: &Setup,
     within_s: &[f64],
-) -> Result<PolicyChart, String> {
+) -> Result<PolicyChart, NoChart> {
     // 1. The map.
     let prepared: &Prepared = setup.prepared()?;
-    let calibration = setup.calibration.as_ref().ok_or("the planner has no calibration")?;
+    let calibration = setup.calibration.as_ref().ok_or(NoChart::NoCalibration)?;
     let truth = &prepared.topology;
-    let start = truth
-        .vertex_near(setup.start.position(), NEAR)
-        .ok_or("the start is at no place of the graph")?;
+    let start = truth.vertex_near(setup.start.position(), NEAR).ok_or(NoChart::NoStart)?;
     let (map, place_of) = known(truth, start)?;
-    let goal = map.ids().find(|v| map.is_goal(*v)).ok_or("the goal cannot be reached")?;
+    let goal = map.ids().find(|v| map.is_goal(*v)).ok_or(NoChart::NoGoal)?;
     let from = VertexId::first();
-    let edges = map.distances(from)[goal.index()].ok_or("the goal cannot be reached")?;
+    let edges = map.distances(from)[goal.index()].ok_or(NoChart::NoGoal)?;
     // 2. The deadlines.
     let rules = &setup.parameters.rules;
     let mut legs: Vec<(f64, Vec<&str>)> = Vec::new();
@@ -86,8 +111,7 @@ pub(super) fn policy_chart(
     let mut panels: Vec<PolicyPanel> = Vec::new();
     for (seconds, steps) in legs {
         let maneuvers = calibration.maneuvers();
-        let plan = Plan::new(&map, from, goal, seconds, &rules.planner, &maneuvers)
-            .map_err(|e| e.to_string())?;
+        let plan = Plan::new(&map, from, goal, seconds, &rules.planner, &maneuvers)?;
         let when = match steps.as_slice() {
             [] => String::new(),
             steps => format!(" (time {})", steps.join(" or ")),
@@ -139,15 +163,15 @@ pub(super) fn policy_chart(
 }
 
 /// Grows the map of all that can be reached from place `start`, breadth first, and returns which place each vertex is.
-fn known(truth: &Topology, start: usize) -> Result<(ToposemanticMap, Vec<usize>), String> {
+fn known(truth: &Topology, start: usize) -> Result<(ToposemanticMap, Vec<usize>), MapError> {
     let mut map = ToposemanticMap::new();
-    let first = map.begin(&seen(truth, start)).map_err(|e| e.to_string())?;
+    let first = map.begin(&seen(truth, start))?;
     let mut place_of = vec![start];
     let mut queue = VecDeque::from([(first, start)]);
     while let Some((v, place)) = queue.pop_front() {
         for exit in &truth.vertices[place].exits {
             let here = seen(truth, exit.to);
-            let (to, _) = map.arrive(v, exit.direction, &here).map_err(|e| e.to_string())?;
+            let (to, _) = map.arrive(v, exit.direction, &here)?;
             if to.index() == place_of.len() {
                 place_of.push(exit.to);
                 queue.push_back((to, exit.to));

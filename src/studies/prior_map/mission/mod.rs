@@ -35,7 +35,7 @@ use crate::grid::{Cell, GridFrame, Occupancy, OccupancyGrid};
 use crate::robot::{Lidar, Odometry, Scan};
 use crate::sim::{Distribution, DriveNoise, OdometryNoise, Scene, Simulator, Stepping};
 use crate::studies::recording::Recording;
-use crate::studies::{Outcome, Stopwatch, TrialRecord, TrialSpec};
+use crate::studies::{CannotBegin, Outcome, Stopwatch, TrialRecord, TrialSpec};
 use crate::units::{Seconds, Tick};
 use pose_errors::PoseErrors;
 use recorder::Recorder;
@@ -62,8 +62,8 @@ impl Prepared {
     ///
     /// # Errors
     /// Where the robot has no range scanner, which resolution refuses with a better message.
-    pub fn new(setup: &Setup) -> Result<Self, String> {
-        let own = setup.robot.lidar.as_ref().ok_or("the robot has no range scanner")?;
+    pub fn new(setup: &Setup) -> Result<Self, CannotBegin> {
+        let own = setup.robot.lidar.as_ref().ok_or(CannotBegin::NoScanner)?;
         let sensing = &setup.parameters.sensing;
         let lidar = Lidar {
             max_range: sensing.range_m.unwrap_or(own.max_range),
@@ -91,24 +91,37 @@ pub fn run(
 ) -> TrialRecord {
     match setup.prepared() {
         Ok(prepared) => enact(spec, setup, prepared, recording, watch).0,
-        Err(cause) => TrialRecord::panicked(spec, cause),
+        Err(why) => TrialRecord::panicked(spec, why.to_string()),
     }
 }
 
 /// Runs the trial and returns the map with which its robot ends, in the world's frame and cut to its known part.
 ///
 /// # Errors
-/// Where the setup cannot run, or the robot starts turned against the world's axes, in words.
-pub fn explored_map(spec: &TrialSpec, setup: &Setup) -> Result<OccupancyGrid, String> {
+/// Where the setup cannot run, the robot starts turned against the world's axes, or it maps nothing.
+pub fn explored_map(spec: &TrialSpec, setup: &Setup) -> Result<OccupancyGrid, NoMap> {
     if setup.start.heading != 0.0 {
-        let degrees = setup.start.heading.to_degrees();
-        return Err(format!(
-            "a start that faces along x is needed, and this is turned by {degrees} degrees"
-        ));
+        return Err(NoMap::Turned { degrees: setup.start.heading.to_degrees() });
     }
     let (_, mind) = enact(spec, setup, setup.prepared()?, None, &mut ());
-    known_part(mind.map().grid(), setup.start.position())
-        .ok_or_else(|| "its robot mapped nothing".to_owned())
+    known_part(mind.map().grid(), setup.start.position()).ok_or(NoMap::Empty)
+}
+
+/// The reason why a trial leaves no map that another may be given.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum NoMap {
+    /// Its cells would not be those of the world's axes.
+    #[error("a start that faces along x is needed, and this is turned by {degrees} degrees")]
+    Turned {
+        /// Heading of the start (degrees).
+        degrees: f64,
+    },
+    /// No trial of this condition can begin.
+    #[error(transparent)]
+    CannotBegin(#[from] CannotBegin),
+    /// No cell is known at the end.
+    #[error("its robot mapped nothing")]
+    Empty,
 }
 
 /// Returns the smallest part of `map` that holds all its known cells, its origin moved by `shift`.
