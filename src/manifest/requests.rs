@@ -35,34 +35,23 @@ pub(super) fn check_requests(
         }
     }
     for (i, table) in doc.tables.iter().enumerate() {
+        let pointer = format!("/tables/{i}/{}", table.layout.key());
+        foreign(doc, &pointer, faults);
         match &table.layout {
             TableLayout::CoverageTable(table) => {
-                let pointer = format!("/tables/{i}/coverage-table");
-                foreign(doc, &pointer, faults);
                 check_table(table, &pointer, doc, factors, published, faults);
             }
-            TableLayout::AgreementTable(wanted) => {
-                let pointer = format!("/tables/{i}/agreement-table");
-                foreign(doc, &pointer, faults);
-                check_agreement(wanted, &pointer, doc, faults);
-            }
+            TableLayout::AgreementTable(wanted) => check_agreement(wanted, &pointer, doc, faults),
             TableLayout::EffectsTable(wanted) => {
-                let pointer = format!("/tables/{i}/effects-table");
-                foreign(doc, &pointer, faults);
                 check_effects(wanted, &pointer, doc, factors, published, faults);
             }
             TableLayout::MeasuresTable(wanted) => {
-                let pointer = format!("/tables/{i}/measures-table");
-                foreign(doc, &pointer, faults);
                 check_measures(wanted, &pointer, doc, factors, published, faults);
             }
             TableLayout::OutcomeTable(table) => {
-                let pointer = format!("/tables/{i}/outcome-table");
                 check_outcomes(table, &pointer, doc, factors, published, faults);
             }
             TableLayout::ManeuverTable(table) => {
-                let pointer = format!("/tables/{i}/maneuver-table");
-                foreign(doc, &pointer, faults);
                 check_only(&table.only, &pointer, factors, faults);
             }
         }

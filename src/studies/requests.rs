@@ -20,12 +20,20 @@ pub struct TableRequest {
 
 /// The layouts of tables, each a variant of [`TableLayout`] that holds what a manifest says of it.
 macro_rules! table_layouts {
-    ($($(#[$doc:meta])* $name:ident($wanted:ty),)*) => {
+    ($($(#[$doc:meta])* $name:ident $key:literal ($wanted:ty),)*) => {
         /// The layouts of tables.
         #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-        #[serde(rename_all = "kebab-case")]
         pub enum TableLayout {
-            $($(#[$doc])* $name($wanted),)*
+            $($(#[$doc])* #[serde(rename = $key)] $name($wanted),)*
+        }
+
+        impl TableLayout {
+            /// Returns its key in manifests.
+            pub fn key(&self) -> &'static str {
+                match self {
+                    $(Self::$name(_) => $key,)*
+                }
+            }
         }
 
         impl TableRequest {
@@ -41,17 +49,17 @@ macro_rules! table_layouts {
 
 table_layouts! {
     /// Prior map: mean and standard deviation of a metric at levels of coverage, as in Tables 1 to 10.
-    CoverageTable(prior_map::CoverageTable),
+    CoverageTable "coverage-table" (prior_map::CoverageTable),
     /// Prior map: slope, correlation and distance of log ratios to the baseline, ours against the paper's.
-    AgreementTable(prior_map::AgreementTable),
+    AgreementTable "agreement-table" (prior_map::AgreementTable),
     /// Prior map: how much each level of a factor moves a metric, over matched conditions.
-    EffectsTable(prior_map::EffectsTable),
+    EffectsTable "effects-table" (prior_map::EffectsTable),
     /// Prior map: measures of whole trials side by side, as the numbers of section 4.5.
-    MeasuresTable(prior_map::MeasuresTable),
+    MeasuresTable "measures-table" (prior_map::MeasuresTable),
     /// Deadline: shares of outcomes, means and ratios by condition, as in Tables 1 and 2.
-    OutcomeTable(outcomes::OutcomeTable),
+    OutcomeTable "outcome-table" (outcomes::OutcomeTable),
     /// Deadline: the six maneuvers as calibrated and as they went in the study's own trials.
-    ManeuverTable(deadline::ManeuverTable),
+    ManeuverTable "maneuver-table" (deadline::ManeuverTable),
 }
 
 /// Returns the coverage tables among `tables`, each with its id.
