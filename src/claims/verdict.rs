@@ -56,7 +56,8 @@ pub type Name = Cow<'static, str>;
 
 /// How a number of `claims.json` is written and read.
 mod number {
-    use super::{Deserialize, Deserializer, Serialize, Serializer, rounded};
+    use crate::claims::verdict::rounded;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
     #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over references")]
     pub(super) fn serialize<S: Serializer>(x: &f64, serializer: S) -> Result<S::Ok, S::Error> {
