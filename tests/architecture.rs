@@ -86,7 +86,7 @@ const MIND: &[&str] = &["mapping/", "navigation/", "cmdp/"];
 const TRUTH: &[&str] = &["sim", "world"];
 
 /// Rooms whose modules name one another without a circle: each names those below it, and never what its own parent holds.
-const WITHOUT_CIRCLES: &[&str] = &["claims"];
+const WITHOUT_CIRCLES: &[&str] = &["claims", "manifest"];
 
 #[derive(Debug, PartialEq, Eq)]
 struct Violation {
