@@ -228,5 +228,8 @@ fn the_policy_chart_knows_the_whole_building_and_tells_equal_policies_once() {
         None,
         Parameters::default(),
     );
-    assert_eq!(policy_chart("Policy", &alone, &[]).unwrap_err(), "the planner has no calibration");
+    assert_eq!(
+        policy_chart("Policy", &alone, &[]).unwrap_err().to_string(),
+        "the planner has no calibration"
+    );
 }
