@@ -12,7 +12,7 @@ use super::phase::{Decided, Journey, Phase};
 use super::tour::Tour;
 use super::utility::ranked;
 use crate::geometry::{Point, Pose};
-use crate::grid::{Cell, GridFrame, Occupancy, OccupancyGrid};
+use crate::grid::{Cell, GridFrame, Occupancy};
 use crate::mapping::{Change, Mapper, OccupancyMap};
 use crate::math;
 use crate::navigation::{
@@ -50,6 +50,8 @@ pub struct Explorer {
     operator: Operator,
     phase: Phase,
     inflated: InflatedMap,
+    /// Cells of the lattice that changed since the map was inflated last.
+    uninflated: Vec<Cell>,
     wave: Option<Wavefront>,
     steering: Option<Steering>,
     keyframe_wanted: bool,
@@ -95,6 +97,7 @@ impl Explorer {
             parameters: parameters.clone(),
             phase: Phase::Choosing,
             inflated: InflatedMap::new(navigation.inflation_radius_cells),
+            uninflated: Vec::new(),
             wave: None,
             steering: None,
             keyframe_wanted: false,
@@ -135,7 +138,8 @@ impl Explorer {
         self.keyframe_wanted = false;
         self.map_changed = true;
         let before = self.mapper.pose(odometry.pose);
-        self.mapper.integrate(odometry.pose, scan);
+        let changes = self.mapper.integrate(odometry.pose, scan);
+        self.uninflated.extend(changes.iter().map(|change| change.cell));
         let after = self.mapper.pose(odometry.pose);
         if let Phase::Driving(journey) = &mut self.phase
             && before.position().distance(after.position()) > PROGRESS
@@ -202,7 +206,12 @@ impl Explorer {
     pub fn open_frontiers(&self, odometry: Pose) -> usize {
         let pose = self.mapper.pose(odometry);
         let radius = self.parameters.navigation.inflation_radius_cells;
-        let costs = inflate(&self.map_with_place(pose), radius);
+        let mut map = self.map().grid().clone();
+        let frame = *map.frame();
+        for cell in place(&frame, pose) {
+            map.set(cell, Occupancy::Free);
+        }
+        let costs = inflate(&map, radius);
         self.chooser.frontiers(Sight { map: self.map(), costs: &costs, pose }).len()
     }
 
@@ -423,20 +432,11 @@ impl Explorer {
 
     /// Returns the map inflated, with the place where the robot stands free.
     fn costs(&mut self, pose: Pose) -> Arc<CostGrid> {
-        let map = self.map_with_place(pose);
-        self.inflated.update(map)
-    }
-
-    /// Returns the map with the place where the robot stands free (prior-map facts, section 4).
-    fn map_with_place(&self, pose: Pose) -> OccupancyGrid {
-        let mut map = self.map().grid().clone();
-        let robot = map.frame().cell_at(pose.position());
-        for y in -2..=1 {
-            for x in -2..=1 {
-                map.set(Cell::new(robot.x + x, robot.y + y), Occupancy::Free);
-            }
-        }
-        map
+        let map = self.mapper.map();
+        let offset = map.offset();
+        let lattice = |cell: Cell| Cell::new(cell.x + offset.x, cell.y + offset.y);
+        let place: Vec<Cell> = place(map.grid().frame(), pose).map(lattice).collect();
+        self.inflated.update(map.grid(), offset, &place, self.uninflated.drain(..))
     }
 
     fn wave_to(
@@ -455,6 +455,12 @@ impl Explorer {
     fn cell_at(&self, pose: Pose) -> Cell {
         self.map().grid().frame().cell_at(pose.position())
     }
+}
+
+/// Returns the cells on which the robot stands, which are taken for free (prior-map facts, section 4).
+fn place(frame: &GridFrame, pose: Pose) -> impl Iterator<Item = Cell> {
+    let robot = frame.cell_at(pose.position());
+    (-2..=1).flat_map(move |y| (-2..=1).map(move |x| Cell::new(robot.x + x, robot.y + y)))
 }
 
 /// Returns the bearing (rad) of `point` from the robot's heading.
