@@ -490,6 +490,7 @@ mod tests {
                 for (x, y, cost) in changes {
                     costs.set(Cell::new(x, y), cost);
                 }
+                costs.set(goal, 0);
                 wave = Wavefront::instead_of(Some(wave), Arc::new(costs.clone()), goal, 75, 10.0);
                 let mut whole = wave.clone();
                 for (index, distance) in by_relaxation(&costs, goal, 75).into_iter().enumerate() {
