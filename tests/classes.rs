@@ -10,7 +10,7 @@ use reenact::bundle::{
     Archive, Bundle, Class, Form, Limits, Tree, archive, class_of, results_digest,
 };
 use reenact::document::Source;
-use reenact::manifest::{self, Calibrated, Experiment, InputError, Inputs, WrittenIn};
+use reenact::manifest::{self, CalibrationTrials, Experiment, InputError, Inputs, WrittenIn};
 use reenact::studies::TrialSpec;
 use reenact::verify::{
     Finding, Level, Options, Reenactment, Report, Rows, Severity, climb, plan_of,
@@ -92,8 +92,8 @@ impl Inputs for Beside {
         fs::read(self.0.join(as_written)).map_err(InputError::other)
     }
 
-    fn calibrate(&self, _: &Experiment, _: &str) -> Result<Calibrated, InputError> {
-        Ok(Calibrated::StandIn)
+    fn calibrate(&self, _: &Experiment, _: &str) -> Result<CalibrationTrials, InputError> {
+        Ok(CalibrationTrials::StandIn)
     }
 
     fn explore(

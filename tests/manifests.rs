@@ -4,7 +4,7 @@ use crate::sandbox::repository;
 use proptest::prelude::*;
 use reenact::bundle::assemble;
 use reenact::document::{Diagnostic, Source};
-use reenact::manifest::{self, Calibrated, Experiment, InputError, Inputs, WrittenIn};
+use reenact::manifest::{self, CalibrationTrials, Experiment, InputError, Inputs, WrittenIn};
 use reenact::plan::{ENGINE_VERSION, Plan, ResolvedStudy, Selection};
 use reenact::studies::{StudyKind, TrialRecord, TrialSpec};
 use std::collections::BTreeMap;
@@ -26,8 +26,8 @@ impl Inputs for Beside {
     }
 
     /// Numbers that stand in for a run.
-    fn calibrate(&self, _: &Experiment, _: &str) -> Result<Calibrated, InputError> {
-        Ok(Calibrated::StandIn)
+    fn calibrate(&self, _: &Experiment, _: &str) -> Result<CalibrationTrials, InputError> {
+        Ok(CalibrationTrials::StandIn)
     }
 
     /// Floor plans that stand in for explorations.

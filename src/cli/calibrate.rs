@@ -1,14 +1,13 @@
-//! What an experiment needs of runs before its own: the passages by which a deadline study's planner knows what to expect of
-//! its maneuvers, driven here or taken from the store; and the maps of earlier explorations.
+//! What an experiment needs of runs before its own: the trials of its calibration, run here or taken from the store; and the
+//! maps of earlier explorations.
 
 use super::progress::Progress;
 use super::terminal::Terminal;
-use crate::manifest::{self, Calibrated, Experiment, ExploreError};
+use crate::manifest::{self, CalibrationTrials, Experiment, ExploreError};
 use crate::plan::Plan;
 use crate::runner::{RunError, Scheduler, StoreError, TrialStore};
 use crate::store::DirectoryStore;
-use crate::studies::deadline::{CalibrationError, PlannedPassages};
-use crate::studies::{self, TrialRecord, TrialSpec};
+use crate::studies::{self, CalibrationError, TrialRecord, TrialSpec, planned_calibration};
 
 /// Why there are no passages.
 #[derive(Debug, thiserror::Error)]
@@ -40,14 +39,14 @@ pub(super) enum Calibrator<'a> {
 }
 
 impl Calibrator<'_> {
-    /// The passages of `calibration`.
-    pub(super) fn passages(
+    /// Returns what the trials of `calibration` showed.
+    pub(super) fn trials(
         self,
         calibration: &Experiment,
         terminal: Terminal,
-    ) -> Result<Calibrated, Unmeasured> {
+    ) -> Result<CalibrationTrials, Unmeasured> {
         if matches!(self, Self::StandIn) {
-            return Ok(Calibrated::StandIn);
+            return Ok(CalibrationTrials::StandIn);
         }
         let plan = Plan::of(calibration.clone());
         let records = match self {
@@ -62,9 +61,9 @@ impl Calibrator<'_> {
                 records?
             }
         };
-        let planned = PlannedPassages::of(plan.experiment.design(), plan.experiment.trials);
-        let passages = planned.and_then(|planned| planned.showed(&records))?;
-        Ok(Calibrated::Passages(passages.to_csv().into_bytes()))
+        let Experiment { kind, trials, .. } = plan.experiment;
+        let planned = planned_calibration(kind, plan.experiment.design(), trials)?;
+        Ok(CalibrationTrials::Csv(planned.showed(&records)?.to_csv().into_bytes()))
     }
 
     /// The map that the robot of `spec` ends with, as a descriptor and an image. One exploration takes about a second, so

@@ -7,7 +7,7 @@ use super::terminal::Terminal;
 use crate::bundle::archive::{Archive, Limits};
 use crate::bundle::{Resolved, format, names};
 use crate::document::{Severity, Source};
-use crate::manifest::{self, Calibrated, Experiment, InputError, Inputs, WrittenIn};
+use crate::manifest::{self, CalibrationTrials, Experiment, InputError, Inputs, WrittenIn};
 use crate::plan::{Plan, Selection};
 use crate::store::{self, reason};
 use crate::studies::TrialSpec;
@@ -199,8 +199,12 @@ impl Inputs for Folder<'_> {
         .map_err(InputError::other)
     }
 
-    fn calibrate(&self, calibration: &Experiment, _: &str) -> Result<Calibrated, InputError> {
-        self.calibrator.passages(calibration, self.terminal).map_err(InputError::other)
+    fn calibrate(
+        &self,
+        calibration: &Experiment,
+        _: &str,
+    ) -> Result<CalibrationTrials, InputError> {
+        self.calibrator.trials(calibration, self.terminal).map_err(InputError::other)
     }
 
     fn explore(

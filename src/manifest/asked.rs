@@ -5,7 +5,7 @@ use super::lint;
 use super::parts::Parts;
 use super::resolver::Resolver;
 use crate::digest::MeaningDigest;
-use crate::studies::deadline::Calibration;
+use crate::studies::Expectations;
 use crate::studies::prior_map::{Parameters, SharedReference};
 use crate::studies::{Condition, ConditionAsWritten, Prior, Remark, Surroundings};
 use serde_json::{Value, json};
@@ -68,7 +68,7 @@ impl ConditionAsWritten for Asked<'_, '_> {
         self.resolver.library.references.entry(key).or_default().clone()
     }
 
-    fn calibration(&mut self) -> Option<Arc<Calibration>> {
+    fn calibration(&mut self) -> Option<Expectations> {
         self.resolver.calibration()
     }
 

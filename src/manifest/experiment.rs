@@ -6,8 +6,7 @@ use super::names::Factor;
 use crate::claims::{Claim, Sensitivity};
 use crate::digest::MeaningDigest;
 use crate::document::Tree;
-use crate::studies::deadline::Passages;
-use crate::studies::{Condition, Setup, StudyKind};
+use crate::studies::{Calibrated, Condition, Setup, StudyKind};
 use crate::studies::{FigureRequest, TableRequest};
 use crate::table::Table;
 use serde::{Deserialize, Serialize};
@@ -88,14 +87,14 @@ pub struct Robustness {
     pub table: Sensitivity,
 }
 
-/// An experiment of isolated passages and what it showed.
+/// An experiment that others rest on, and what it showed.
 #[derive(Debug, Clone)]
 pub struct CalibrationRun {
     /// The experiment.
     pub experiment: Experiment,
-    /// Its passages in plan order, one a trial; `None` where numbers stand in that nobody measured.
-    pub passages: Option<Passages>,
-    /// The path by which bundles know the passages.
+    /// What its trials showed; `None` where numbers stand in that nobody measured.
+    pub showed: Option<Arc<dyn Calibrated>>,
+    /// The path by which bundles know its trials.
     pub sealed_as: String,
 }
 

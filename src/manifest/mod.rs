@@ -12,16 +12,16 @@
 //! | `resolver` | those three and the manifest: what the rooms below work with |
 //! | `parts` `worlds` `models` | robot, world and start of a condition |
 //! | `knowledge` `priors` `previous` | its prior knowledge |
-//! | `deadline` `lint` | what is particular to a study; what is wrong or suspicious about a condition |
+//! | `calibration` `lint` | what trials rest on; what is wrong or suspicious about a condition |
 //! | `numbers` `requests` `figures` `claims` `sensitivity` | what the paper prints, and what is asked of results |
 //! | `settings` `overrides` `crossing` | the manifest before its conditions, and those |
 //! | `resolve` | the way through all of them, to an `experiment` |
 
 mod asked;
+mod calibration;
 mod choice;
 mod claims;
 mod crossing;
-mod deadline;
 mod document;
 mod experiment;
 mod faults;
@@ -59,7 +59,7 @@ pub use experiment::{
     Assumption, CalibrationRun, Experiment, Meanings, ResolvedCondition, Robustness,
 };
 pub use input::{Input, InputKind, WrittenIn};
-pub use library::{Calibrated, InputError, Inputs};
+pub use library::{CalibrationTrials, InputError, Inputs};
 pub use names::Factor;
 pub use parameters::ParametersDoc;
 pub use pinned::{PinnedDoc, PinnedFileDoc};

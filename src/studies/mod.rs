@@ -3,6 +3,7 @@
 //! A study is a folder here and an entry in [`STUDIES`] ([`Study`] says what that takes); no two import one another. What
 //! all of them share, the trial's identity and its record, is in this module.
 
+mod calibrating;
 mod cannot_begin;
 mod columns;
 pub mod deadline;
@@ -24,6 +25,10 @@ mod state_chain;
 mod study;
 pub mod wander;
 
+pub use calibrating::{
+    Calibrated, Calibrating, CalibrationError, Design, Expectations, PlannedCalibration,
+    planned_calibration,
+};
 pub use cannot_begin::CannotBegin;
 pub use columns::Columns;
 pub use dictionary::Dictionary;

@@ -4,10 +4,9 @@
 //! manifest's condition, how its trials run and end, and what they measure. Nothing outside its folder names it, but for the
 //! layouts of tables and figures that are its own.
 
-use super::deadline::Calibration;
 use super::prior_map::{self, SharedReference, tour::TopoMetricMap};
 use super::recording::Recording;
-use super::{Outcome, STUDIES, TrialRecord, TrialSpec};
+use super::{Calibrating, Expectations, Outcome, STUDIES, TrialRecord, TrialSpec};
 use crate::geometry::Pose;
 use crate::grid::OccupancyGrid;
 use crate::robot::Robot;
@@ -63,6 +62,11 @@ pub trait Study: Sync {
         false
     }
 
+    /// Returns how it learns from calibrations; `None` where its trials rest on none.
+    fn calibrating(&self) -> Option<&'static dyn Calibrating> {
+        None
+    }
+
     /// Returns whether trials have curves: points of time, distance and coverage.
     fn has_series(&self) -> bool {
         false
@@ -115,8 +119,8 @@ pub trait ConditionAsWritten {
     /// start.
     fn reference(&mut self, parameters: &Value) -> SharedReference;
 
-    /// Returns what the manifest's `calibration` measured.
-    fn calibration(&mut self) -> Option<Arc<Calibration>>;
+    /// Returns what follows from what the manifest's `calibration` measured.
+    fn calibration(&mut self) -> Option<Expectations>;
 
     /// Tells what is wrong or looks it.
     fn tell(&mut self, remark: Remark);

@@ -6,12 +6,11 @@ use crate::bundle::{Bundle, BundleContent, BundlePath, Fault, assemble, format};
 use crate::claims::sensitivity::{Run, in_words};
 use crate::digest::Sha256Digest;
 use crate::document::Source;
-use crate::manifest::{self, Calibrated, Experiment, InputError, Inputs, WrittenIn};
+use crate::manifest::{self, CalibrationTrials, Experiment, InputError, Inputs, WrittenIn};
 use crate::plan::{ENGINE_VERSION, Plan, Selection};
 use crate::rng::Seeds;
 use crate::runner::{Observer, RunError, Scheduler, Silent};
-use crate::studies::deadline::{Passages, PlannedPassages};
-use crate::studies::{self, TrialRecord, TrialSpec, records_digest};
+use crate::studies::{self, TrialRecord, TrialSpec, planned_calibration, records_digest};
 use std::cell::RefCell;
 
 /// This program's own pipeline.
@@ -129,8 +128,8 @@ impl Inputs for Sealed<'_> {
         bytes.ok_or_else(|| InputError::other(NotSealed))
     }
 
-    fn calibrate(&self, _: &Experiment, sealed_as: &str) -> Result<Calibrated, InputError> {
-        self.read(sealed_as, WrittenIn::Calibration).map(Calibrated::Passages)
+    fn calibrate(&self, _: &Experiment, sealed_as: &str) -> Result<CalibrationTrials, InputError> {
+        self.read(sealed_as, WrittenIn::Calibration).map(CalibrationTrials::Csv)
     }
 
     fn explore(&self, _: &TrialSpec, sealed_as: &[String; 2]) -> Result<[Vec<u8>; 2], InputError> {
@@ -169,7 +168,7 @@ impl Inputs for Afresh<'_> {
         &self,
         calibration: &Experiment,
         sealed_as: &str,
-    ) -> Result<Calibrated, InputError> {
+    ) -> Result<CalibrationTrials, InputError> {
         let Some((seed, study)) = self.fresh else {
             return self.sealed.calibrate(calibration, sealed_as);
         };
@@ -179,10 +178,10 @@ impl Inputs for Afresh<'_> {
         seeded.seed = seed;
         let plan = Plan::of(seeded);
         let records = study.run(&plan.trials).map_err(InputError::other)?;
-        let planned = PlannedPassages::of(plan.experiment.design(), plan.experiment.trials);
-        planned
+        let Experiment { kind, trials, .. } = plan.experiment;
+        planned_calibration(kind, plan.experiment.design(), trials)
             .and_then(|planned| planned.showed(&records))
-            .map(|passages| Calibrated::Passages(passages.to_csv().into_bytes()))
+            .map(|showed| CalibrationTrials::Csv(showed.to_csv().into_bytes()))
             .map_err(InputError::other)
     }
 
@@ -229,14 +228,14 @@ impl Study<'_> {
     fn drive_again(&self, indices: &[usize]) -> Result<Vec<Option<Fault>>, MakeAgainError> {
         let run = self.plan.experiment.calibration.as_deref();
         let run = run.ok_or(MakeAgainError::NoCalibration)?;
-        let sealed = run.passages.as_ref().ok_or(MakeAgainError::NoPassages)?;
+        let sealed = run.showed.as_ref().ok_or(MakeAgainError::NoPassages)?;
         let path = BundlePath::input(file_name(&run.sealed_as));
         let plan = Plan::of(run.experiment.clone());
         let spec = |&i: &usize| plan.trials.get(i).cloned().ok_or(MakeAgainError::NoPassage(i));
         let trials = indices.iter().map(spec).collect::<Result<Vec<TrialSpec>, _>>()?;
         let records = self.run(&trials)?;
         let compared = indices.iter().zip(&records).map(|(&index, record)| {
-            let expected = Passages::told_of(record);
+            let expected = sealed.told_of(record);
             let found = sealed.told(index).ok_or(MakeAgainError::NoPassage(index))?;
             let fault = Fault::new(
                 // Below the header.
@@ -339,7 +338,7 @@ impl Replanned for Study<'_> {
             BundlePath::input(input.map_or(as_written, |input| &input.name)).into()
         };
         let passages = self.plan.experiment.calibration.iter().filter_map(|run| {
-            let units = vec![1; run.passages.as_ref()?.len()];
+            let units = vec![1; run.showed.as_ref()?.trials()];
             Some(Earlier { made: Made::Passages, path: path(&run.sealed_as), units })
         });
         let robustness = self.plan.experiment.sensitivity.iter().map(|known| {

@@ -1,6 +1,6 @@
 //! The files a manifest names: asked for once each, by their path as written.
 
-use super::inputs::{Calibrated, InputError, Inputs};
+use super::inputs::{CalibrationTrials, InputError, Inputs};
 use crate::digest::{FileDigest, Sha256Digest};
 use crate::manifest::experiment::Experiment;
 use crate::manifest::input::{Input, InputKind, WrittenIn};
@@ -67,9 +67,9 @@ impl<'a> InputFiles<'a> {
         &mut self,
         calibration: &Experiment,
         sealed_as: &str,
-    ) -> Result<Calibrated, InputError> {
+    ) -> Result<CalibrationTrials, InputError> {
         let measured = self.source.calibrate(calibration, sealed_as)?;
-        if let Calibrated::Passages(bytes) = &measured {
+        if let CalibrationTrials::Csv(bytes) = &measured {
             self.made(sealed_as, InputKind::Passages, bytes);
         }
         Ok(measured)

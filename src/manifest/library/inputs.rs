@@ -38,7 +38,7 @@ pub trait Inputs {
     /// Why there are none.
     fn read(&self, as_written: &str, written_in: WrittenIn) -> Result<Vec<u8>, InputError>;
 
-    /// Returns the passages of the experiment `calibration`, one row a trial; in bundles they are sealed as `sealed_as`.
+    /// Returns what the experiment `calibration` showed, one row a trial; in bundles they are sealed as `sealed_as`.
     ///
     /// # Errors
     /// Why there are none.
@@ -46,7 +46,7 @@ pub trait Inputs {
         &self,
         calibration: &Experiment,
         sealed_as: &str,
-    ) -> Result<Calibrated, InputError> {
+    ) -> Result<CalibrationTrials, InputError> {
         let _ = sealed_as;
         Err(InputError::NoCalibration(calibration.name.clone()))
     }
@@ -71,11 +71,11 @@ pub trait Inputs {
     }
 }
 
-/// What calibrating gave.
+/// The trials of a calibration.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Calibrated {
-    /// The passages, as `studies::deadline::Passages` writes them.
-    Passages(Vec<u8>),
+pub enum CalibrationTrials {
+    /// What they showed, as [`crate::studies::Calibrated::to_csv`] writes it.
+    Csv(Vec<u8>),
     /// Nothing was measured: numbers stand in that enter no result.
     StandIn,
 }

@@ -8,7 +8,7 @@ mod inputs;
 mod paths;
 mod pins;
 
-pub use inputs::{Calibrated, InputError, Inputs};
+pub use inputs::{CalibrationTrials, InputError, Inputs};
 pub(super) use paths::{joined, normalised, relative_to};
 
 use super::faults::Faults;
@@ -17,7 +17,7 @@ use super::pinned::PinnedDoc;
 use crate::digest::{MeaningDigest, Sha256Digest};
 use crate::grid::OccupancyGrid;
 use crate::robot::Robot;
-use crate::studies::deadline::Calibration;
+use crate::studies::Expectations;
 use crate::studies::prior_map::SharedReference;
 use crate::world::World;
 use files::InputFiles;
@@ -42,7 +42,7 @@ pub(super) struct Library<'a> {
     /// What coverage is measured against.
     pub(super) references: Made<SharedReference>,
     /// What planners expect; `None` where it could not be had, which has been told.
-    pub(super) calibrations: Made<Option<Arc<Calibration>>>,
+    pub(super) calibrations: Made<Option<Expectations>>,
 }
 
 /// Why a file could not be had as it should be.

@@ -4,9 +4,9 @@
 use crate::stats::distribution::student_t_quantile;
 use crate::stats::proportion::{Proportion, wilson};
 use crate::stats::summary::Summary;
-use crate::studies::Outcome;
 use crate::studies::deadline::build_cmdp::{Expectation, Maneuvers, Motion, Speed};
 use crate::studies::findings::rounded;
+use crate::studies::{CalibrationError, Outcome};
 use crate::table::{Table, Value};
 use serde_json::{Value as Json, json};
 
@@ -68,17 +68,6 @@ pub struct Driven {
     pub outcome: Outcome,
     /// Its duration (s), where it arrived.
     pub time_s: Option<f64>,
-}
-
-/// Why passages are no calibration.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("calibration: {0}")]
-pub struct CalibrationError(String);
-
-impl CalibrationError {
-    pub(super) fn of(what: String) -> Self {
-        Self(what)
-    }
 }
 
 impl Calibration {
@@ -191,7 +180,7 @@ fn pair<'a>(
     }
     let reached = times.len() as u64;
     if passages < LEAST_PASSAGES || reached < 2 {
-        return Err(CalibrationError(format!(
+        return Err(CalibrationError::of(format!(
             "expected at least {LEAST_PASSAGES} passages of {} {} and 2 that arrive, found {passages} and {reached}",
             motion.name(),
             speed.name()

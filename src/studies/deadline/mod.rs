@@ -25,12 +25,12 @@ pub mod strategy;
 mod study;
 pub mod toposemantic_map;
 
-pub use calibration::{Calibration, CalibrationError};
+pub use calibration::Calibration;
 pub use in_situ::ManeuverRow;
 pub use intersection_detection::{IntersectionDetectionSystem, Perception};
 pub use mission::{run, tag_scheme};
 pub use parameters::{ErrorShape, Hiding, Mission, Parameters, Passage, Sensing, Task};
-pub use passages::{Passages, PlannedPassages};
+use passages::Isolated;
 pub use requests::{ManeuverTable, PolicyGraph};
 pub use rules::{Rules, UnplannedSpeed};
 pub use study::Deadline;

@@ -1,12 +1,16 @@
 //! The isolated passages on which a calibration rests, one row per trial: sealed beside the pairs that follow from
 //! them, so that anyone who doubts a pair can count again, and drive any passage again.
 
-use super::calibration::{Calibration, CalibrationError, Driven};
+use super::calibration::{Calibration, Driven};
 use super::parameters::Task;
 use crate::digest::Sha256Digest;
 use crate::studies::deadline::build_cmdp::{Motion, Speed};
-use crate::studies::{Condition, Outcome, Setup, TrialRecord};
+use crate::studies::{
+    Calibrated, Calibrating, CalibrationError, Condition, Design, Expectations, Outcome,
+    PlannedCalibration, Setup, TrialRecord,
+};
 use crate::table::{Table, Value};
+use std::sync::Arc;
 
 const COLUMNS: [&str; 6] = ["motion", "speed", "trial", "outcome", "time-s", "record"];
 
@@ -14,9 +18,42 @@ const COLUMNS: [&str; 6] = ["motion", "speed", "trial", "outcome", "time-s", "re
 const OUTCOMES: [Outcome; 5] =
     [Outcome::REACHED, Outcome::COLLIDED, Outcome::LATE, Outcome::STALLED, Outcome::PANICKED];
 
+/// How this study learns from calibrations: by isolated passages.
+#[derive(Debug)]
+pub(super) struct Isolated;
+
+impl Calibrating for Isolated {
+    fn planned(
+        &self,
+        design: &Design<'_>,
+        trials: u32,
+    ) -> Result<Box<dyn PlannedCalibration>, CalibrationError> {
+        Ok(Box::new(PlannedPassages::of(design, trials)?))
+    }
+}
+
+fn expectations(calibration: Calibration) -> Expectations {
+    let csv = calibration.to_csv();
+    Expectations::new(calibration, csv)
+}
+
+impl PlannedCalibration for PlannedPassages {
+    fn showed(&self, records: &[TrialRecord]) -> Result<Arc<dyn Calibrated>, CalibrationError> {
+        Ok(Arc::new(self.passages_of(records)?))
+    }
+
+    fn read(&self, text: &str) -> Result<Arc<dyn Calibrated>, CalibrationError> {
+        Ok(Arc::new(self.passages_in(text)?))
+    }
+
+    fn stand_in(&self) -> Expectations {
+        expectations(Calibration::stand_in())
+    }
+}
+
 /// The passages of a calibration experiment, in plan order.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Passages {
+struct Passages {
     rows: Vec<Row>,
 }
 
@@ -31,7 +68,7 @@ struct Row {
 
 /// The passages that an experiment plans: the maneuver of each condition, and trials per condition.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct PlannedPassages {
+struct PlannedPassages {
     maneuvers: Vec<(Motion, Speed)>,
     trials: u32,
 }
@@ -41,11 +78,9 @@ impl PlannedPassages {
     ///
     /// # Errors
     /// Where a condition is something other than isolated passages.
-    pub fn of<'a>(
-        conditions: impl IntoIterator<Item = (&'a Condition, &'a Setup)>,
-        trials: u32,
-    ) -> Result<Self, CalibrationError> {
-        let maneuver = |(condition, setup): (&Condition, &Setup)| match setup.of::<super::Setup>() {
+    fn of(design: &Design<'_>, trials: u32) -> Result<Self, CalibrationError> {
+        let maneuver = |(condition, setup): &(&Condition, &Setup)| match setup.of::<super::Setup>()
+        {
             Some(setup) if setup.parameters.mission.task == Task::Passage => {
                 Ok((setup.parameters.passage.motion, setup.parameters.passage.speed))
             }
@@ -54,12 +89,12 @@ impl PlannedPassages {
                 condition.slug()
             ))),
         };
-        let maneuvers = conditions.into_iter().map(maneuver).collect::<Result<_, _>>()?;
+        let maneuvers = design.iter().map(maneuver).collect::<Result<_, _>>()?;
         Ok(Self { maneuvers, trials })
     }
 
     /// Returns how many there are.
-    pub fn count(&self) -> u64 {
+    fn count(&self) -> u64 {
         self.maneuvers.len() as u64 * u64::from(self.trials)
     }
 
@@ -75,7 +110,7 @@ impl PlannedPassages {
     ///
     /// # Errors
     /// Where there are more or fewer records.
-    pub fn showed(&self, records: &[TrialRecord]) -> Result<Passages, CalibrationError> {
+    fn passages_of(&self, records: &[TrialRecord]) -> Result<Passages, CalibrationError> {
         if records.len() as u64 != self.count() {
             let (expected, found) = (self.count(), records.len());
             let what = format!("expected the records of {expected} passages, found {found}");
@@ -93,7 +128,7 @@ impl PlannedPassages {
     ///
     /// # Errors
     /// Where it is something else, naming the line.
-    pub fn read(&self, text: &str) -> Result<Passages, CalibrationError> {
+    fn passages_in(&self, text: &str) -> Result<Passages, CalibrationError> {
         let fault = |what: String| CalibrationError::of(what);
         let lines = text.lines().count() as u64;
         // Counted before they are read: a manifest of a few words can request millions.
@@ -132,27 +167,12 @@ impl PlannedPassages {
     }
 }
 
-impl Passages {
-    /// Returns how many there are.
-    pub fn len(&self) -> usize {
+impl Calibrated for Passages {
+    fn trials(&self) -> usize {
         self.rows.len()
     }
 
-    /// Returns whether there are none.
-    pub fn is_empty(&self) -> bool {
-        self.rows.is_empty()
-    }
-
-    /// Computes the pairs of the maneuvers from the passages.
-    ///
-    /// # Errors
-    /// Where a maneuver has too few passages or none that arrived.
-    pub fn calibration(&self) -> Result<Calibration, CalibrationError> {
-        Calibration::measure(self.rows.iter().map(|row| row.passage))
-    }
-
-    /// Writes the table that is sealed as an input: one row per passage.
-    pub fn to_csv(&self) -> String {
+    fn to_csv(&self) -> String {
         let mut table = Table::new(COLUMNS);
         for row in &self.rows {
             table.push(fields(row));
@@ -160,19 +180,23 @@ impl Passages {
         table.to_csv()
     }
 
-    /// Returns the row of the passage `index` for display, without its first three fields, which the plan gives.
-    pub fn told(&self, index: usize) -> Option<String> {
+    /// The first three fields are what the plan gives.
+    fn told(&self, index: usize) -> Option<String> {
         self.rows.get(index).map(|row| joined(&fields(row)[3..]))
     }
 
-    /// Returns the same of `record`, whichever passage it belongs to.
-    pub fn told_of(record: &TrialRecord) -> String {
+    fn told_of(&self, record: &TrialRecord) -> String {
         let time: Value = record.measures.get("time-s").copied().flatten().into();
         joined(&[
             record.outcome.name().into(),
             time,
             Sha256Digest::of(record.to_line()).hex().into(),
         ])
+    }
+
+    /// Computes the pairs of the maneuvers; an error where a maneuver has too few passages or none that arrived.
+    fn expectations(&self) -> Result<Expectations, CalibrationError> {
+        Calibration::measure(self.rows.iter().map(|row| row.passage)).map(expectations)
     }
 }
 
@@ -228,8 +252,8 @@ mod tests {
                 digest(1)
             )
         );
-        assert_eq!(planned().read(&text).unwrap(), showed);
-        assert_eq!(showed.told(1).unwrap(), Passages::told_of(&records()[1]));
+        assert_eq!(planned().read(&text).unwrap().to_csv(), text);
+        assert_eq!(showed.told(1).unwrap(), showed.told_of(&records()[1]));
     }
 
     #[test]

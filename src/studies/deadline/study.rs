@@ -1,14 +1,14 @@
 //! The deadline study behind the interface of a study.
 
 use super::mission::{self, lints};
-use super::{Parameters, Setup, Task, columns};
+use super::{Calibration, Isolated, Parameters, Setup, Task, columns};
 use crate::geometry::Pose;
 use crate::robot::Robot;
 use crate::studies::recording::Recording;
 use crate::studies::study::parameters;
 use crate::studies::{
-    ConditionAsWritten, End, Outcome, Setup as AnySetup, Stopwatch, Study, StudySetup, TrialRecord,
-    TrialSpec,
+    Calibrating, ConditionAsWritten, End, Outcome, Setup as AnySetup, Stopwatch, Study, StudySetup,
+    TrialRecord, TrialSpec,
 };
 use crate::table::Column;
 use crate::world::World;
@@ -66,6 +66,10 @@ impl Study for Deadline {
         &[Outcome::REACHED, Outcome::COLLIDED, Outcome::LATE, Outcome::STALLED]
     }
 
+    fn calibrating(&self) -> Option<&'static dyn Calibrating> {
+        Some(&Isolated)
+    }
+
     fn measures(&self) -> Vec<String> {
         columns::measures()
     }
@@ -82,7 +86,7 @@ impl Study for Deadline {
         };
         let around = condition.surroundings()?;
         let calibration = match calibration {
-            Some(needed) => Some(needed?),
+            Some(expected) => Some(expected?.of::<Calibration>()?),
             None => None,
         };
         let setup = Setup::new(around.world, around.robot, around.start, calibration, parameters);

@@ -1,23 +1,23 @@
-//! `calibration: FILE`: the manifest whose isolated passages measure what a planner expects of its maneuvers.
+//! `calibration: FILE`: the manifest whose trials measure what the mind of another expects.
 
 use super::experiment::{CalibrationRun, Experiment};
 use super::input::{Input, InputKind, WrittenIn};
-use super::library::{Calibrated, InputError, Inputs, Library, joined, normalised};
+use super::library::{CalibrationTrials, InputError, Inputs, Library, joined, normalised};
 use super::resolve::resolve;
 use super::resolver::Resolver;
-use crate::studies::deadline::{Calibration, CalibrationError, PlannedPassages};
+use crate::studies::{CalibrationError, Expectations, planned_calibration};
 use std::cell::RefCell;
 use std::string::FromUtf8Error;
 use std::sync::Arc;
 
 impl Resolver<'_> {
-    /// The planner's expectations, measured by the calibration manifest or read from the bundle that holds them.
-    pub(super) fn calibration(&mut self) -> Option<Arc<Calibration>> {
+    /// Returns what is expected, as measured by the calibration manifest or read from the bundle that holds it.
+    pub(super) fn calibration(&mut self) -> Option<Expectations> {
         let key = self.doc.calibration.clone().unwrap_or_default();
         self.once(|library| &mut library.calibrations, key, Self::read_calibration)
     }
 
-    fn read_calibration(&mut self) -> Option<Arc<Calibration>> {
+    fn read_calibration(&mut self) -> Option<Expectations> {
         let Some(path) = &self.doc.calibration else {
             let fault = self
                 .faults
@@ -41,14 +41,14 @@ impl Resolver<'_> {
         let stem = path.strip_suffix(".yaml").unwrap_or(&path);
         let [sealed_as, pairs] = ["passages", "maneuvers"].map(|what| format!("{stem}.{what}.csv"));
         match self.measured(experiment, sealed_as) {
-            Ok((run, calibration)) => {
-                // What follows from the passages is sealed beside them, for people.
-                if run.passages.is_some() {
-                    let csv = calibration.to_csv();
-                    self.library.files.made(&pairs, InputKind::Maneuvers, csv.as_bytes());
+            Ok((run, expected)) => {
+                // What follows from the trials is sealed beside them, for people.
+                if run.showed.is_some() {
+                    let csv = expected.csv().as_bytes();
+                    self.library.files.made(&pairs, InputKind::Maneuvers, csv);
                 }
                 self.calibration_run = Some(Arc::new(run));
-                Some(Arc::new(calibration))
+                Some(expected)
             }
             Err(problem) => {
                 let message = format!("`{path}` gives no calibration");
@@ -83,26 +83,27 @@ impl Resolver<'_> {
         }
     }
 
-    /// Returns what the passages of `experiment` show.
+    /// Returns what the trials of `experiment` show.
     fn measured(
         &mut self,
         experiment: Experiment,
         sealed_as: String,
-    ) -> Result<(CalibrationRun, Calibration), Unmeasured> {
-        let passages = PlannedPassages::of(experiment.design(), experiment.trials)?;
-        let measured = match self.library.files.calibrate(&experiment, &sealed_as)? {
-            Calibrated::StandIn => None,
-            Calibrated::Passages(bytes) => {
+    ) -> Result<(CalibrationRun, Expectations), Unmeasured> {
+        let study = self.doc.study;
+        let planned = planned_calibration(study, experiment.design(), experiment.trials)?;
+        let showed = match self.library.files.calibrate(&experiment, &sealed_as)? {
+            CalibrationTrials::StandIn => None,
+            CalibrationTrials::Csv(bytes) => {
                 let text = String::from_utf8(bytes)?;
-                let read = passages.read(&text);
+                let read = planned.read(&text);
                 Some(read.map_err(|error| Unmeasured::Unread(sealed_as.clone(), error))?)
             }
         };
-        let calibration = match &measured {
-            Some(passages) => passages.calibration()?,
-            None => Calibration::stand_in(),
+        let expected = match &showed {
+            Some(showed) => showed.expectations()?,
+            None => planned.stand_in(),
         };
-        Ok((CalibrationRun { experiment, passages: measured, sealed_as }, calibration))
+        Ok((CalibrationRun { experiment, showed, sealed_as }, expected))
     }
 }
 
