@@ -108,8 +108,7 @@ pub fn verdicts(
     let experiment = &plan.experiment;
     let context =
         claims::Context::new(&experiment.published, &experiment.shared_noise, experiment.seed);
-    let factors = factors(plan);
-    let trials = findings(plan, records, &factors).trials();
+    let trials = findings(plan, records).trials();
     let about_the_study: Vec<_> =
         experiment.claims.iter().filter(|claim| !claim.circumstance).collect();
     if about_the_study.is_empty() {
@@ -123,19 +122,10 @@ pub fn verdicts(
     Ok(judged.collect())
 }
 
-/// Factors with their values, as results name them.
-pub fn factors(plan: &Plan) -> Vec<(String, Vec<String>)> {
-    plan.experiment.factors.iter().map(|f| (f.name.clone(), f.values.clone())).collect()
-}
-
 /// What tables and figures of `plan` are made from.
-pub fn findings<'a>(
-    plan: &'a Plan,
-    records: &'a [TrialRecord],
-    factors: &'a [(String, Vec<String>)],
-) -> Findings<'a> {
+pub fn findings<'a>(plan: &'a Plan, records: &'a [TrialRecord]) -> Findings<'a> {
     let experiment = &plan.experiment;
-    Findings::new(factors, records, &experiment.published).designed(experiment.design())
+    Findings::new(&experiment.factors, records, &experiment.published).designed(experiment.design())
 }
 
 fn sealed_conditions(plan: &Plan, records: &[TrialRecord]) -> Vec<SealedCondition> {
@@ -165,9 +155,8 @@ type Results = (Vec<(String, Vec<u8>)>, Vec<DescribedTable>);
 
 fn results(plan: &Plan, records: &[TrialRecord], verdicts: &[ClaimVerdict]) -> Results {
     let experiment = &plan.experiment;
-    let factors = factors(plan);
-    let findings = findings(plan, records, &factors);
-    let dictionary = Dictionary { kind: experiment.kind, factors: &factors };
+    let findings = findings(plan, records);
+    let dictionary = Dictionary { kind: experiment.kind, factors: &experiment.factors };
     let in_results = |path: &str| format!("{}{path}", format::RESULTS);
     let trials = findings.trials();
     let words = ("Trials", "one trial, in plan order");
@@ -180,7 +169,7 @@ fn results(plan: &Plan, records: &[TrialRecord], verdicts: &[ClaimVerdict]) -> R
     if measures_the_machine(plan) {
         let path = format!("{}wall-times.csv", format::CIRCUMSTANCES);
         let words = ("Wall times", "one trial, in plan order");
-        let columns = wall_time::columns(&factors);
+        let columns = wall_time::columns(&experiment.factors);
         described.push(DescribedTable {
             key: vec!["key".to_owned()],
             ..DescribedTable::of(&Table::new(columns), path, words, |name| {
@@ -247,8 +236,7 @@ fn measures_the_machine(plan: &Plan) -> bool {
 /// What the columns of the inputs in CSV say: the paper's own numbers, the calibration of maneuvers, and what became of the
 /// claims at other values of the assumptions.
 fn described_inputs(plan: &Plan) -> Vec<DescribedTable> {
-    let factors = factors(plan);
-    let dictionary = Dictionary { kind: plan.experiment.kind, factors: &factors };
+    let dictionary = Dictionary { kind: plan.experiment.kind, factors: &plan.experiment.factors };
     let mut described: Vec<DescribedTable> = Vec::new();
     for input in &plan.experiment.inputs {
         let path = format!("{}{}", format::INPUTS, input.name);

@@ -6,7 +6,7 @@ use crate::claims::observations::TrialsTableError;
 use crate::claims::{self, ClaimVerdict};
 use crate::digest::TrialKey;
 use crate::plan::Plan;
-use crate::studies::TrialRecord;
+use crate::studies::{Factor, TrialRecord};
 use crate::table::{Table, Value};
 use std::collections::BTreeMap;
 
@@ -65,10 +65,10 @@ pub fn measured(
 }
 
 /// The columns of the times of trials of a design of `factors`.
-pub(super) fn columns(factors: &[(String, Vec<String>)]) -> Vec<&str> {
+pub(super) fn columns(factors: &[Factor]) -> Vec<&str> {
     ["key"]
         .into_iter()
-        .chain(factors.iter().map(|(name, _)| name.as_str()))
+        .chain(factors.iter().map(|factor| factor.name.as_str()))
         .chain(["trial", "outcome"])
         .chain(WALL_TIME_COLUMNS)
         .collect()
@@ -76,12 +76,12 @@ pub(super) fn columns(factors: &[(String, Vec<String>)]) -> Vec<&str> {
 
 /// One row a trial: key, factors, number, outcome and the columns of [`WALL_TIME_COLUMNS`].
 fn table(plan: &Plan, records: &[TrialRecord], times: &WallTimes) -> Table {
-    let factors = assemble::factors(plan);
-    let mut table = Table::new(columns(&factors));
+    let factors = &plan.experiment.factors;
+    let mut table = Table::new(columns(factors));
     for record in records {
         let condition = record.condition();
         let mut row: Vec<Value> = vec![record.key.hex().into()];
-        row.extend(factors.iter().map(|(name, _)| condition.value(name).map(str::to_owned).into()));
+        row.extend(factors.iter().map(|f| condition.value(&f.name).map(str::to_owned).into()));
         row.push(i64::from(record.trial).into());
         row.push(record.outcome.name().into());
         let time = times.get(&record.key);

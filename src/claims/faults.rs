@@ -2,13 +2,14 @@
 
 use super::cells::{Than, Where};
 use crate::document::{known_or_near, quoted};
+use crate::studies::Factor;
 use std::collections::BTreeSet;
 
 /// What there is to speak of in a study.
 #[derive(Debug, Clone, Copy)]
 pub struct Known<'a> {
     /// The factors and their values.
-    pub factors: &'a [(String, Vec<String>)],
+    pub factors: &'a [Factor],
     /// `success`, `outcome:NAME` and columns of the trials.
     pub metrics: &'a [String],
     /// Names of published tables.
@@ -78,7 +79,7 @@ impl<'a> Faults<'a> {
 
     /// Adds the fault of a factor that does not exist, named by a value or by a key.
     pub(super) fn unknown_factor(&mut self, path: &str, name: &str, at_key: bool) {
-        let known = self.known.factors.iter().map(|(factor, _)| factor.as_str()).collect();
+        let known = self.known.factors.iter().map(|factor| factor.name.as_str()).collect();
         let unknown = Some((name.to_owned(), known));
         let message = format!("unknown factor `{}`", quoted(name));
         let fault = ClaimFault::new(format!("{}{path}", self.base), message);
@@ -86,8 +87,8 @@ impl<'a> Faults<'a> {
     }
 
     pub(super) fn values_of(&self, factor: &str) -> Option<&'a [String]> {
-        let found = self.known.factors.iter().find(|(known, _)| known == factor);
-        found.map(|(_, values)| &values[..])
+        let found = self.known.factors.iter().find(|known| known.name == factor);
+        found.map(|known| &known.values[..])
     }
 
     pub(super) fn selection(&mut self, path: &str, selection: &Where) {

@@ -8,6 +8,7 @@
 //! a number the paper does not print.
 
 use super::cells::{Values, Where};
+use crate::studies::Factor;
 use crate::table::{Table, Value};
 use std::collections::BTreeMap;
 use thiserror::Error;
@@ -129,8 +130,8 @@ pub fn read(table: &Table, factors: &[String]) -> Result<Vec<PublishedCell>, Pub
 }
 
 /// Returns the faults of the published table `name`, for `check`: those of [`read`] and values no factor has.
-pub fn check_table(name: &str, table: &Table, factors: &[(String, Vec<String>)]) -> Vec<String> {
-    let names: Vec<String> = factors.iter().map(|(name, _)| name.clone()).collect();
+pub fn check_table(name: &str, table: &Table, factors: &[Factor]) -> Vec<String> {
+    let names: Vec<String> = factors.iter().map(|factor| factor.name.clone()).collect();
     let cells = match read(table, &names) {
         Ok(cells) => cells,
         Err(fault) => return vec![format!("published table `{name}`: {fault}")],
@@ -138,8 +139,8 @@ pub fn check_table(name: &str, table: &Table, factors: &[(String, Vec<String>)])
     let mut problems = Vec::new();
     for (i, cell) in cells.iter().enumerate() {
         for (factor, value) in &cell.pins {
-            let known = factors.iter().find(|(f, _)| f == factor).map(|(_, values)| values);
-            if known.is_some_and(|values| !values.contains(value)) {
+            let known = factors.iter().find(|known| known.name == *factor);
+            if known.is_some_and(|known| !known.values.contains(value)) {
                 problems.push(format!(
                     "published table `{name}`: row {}: factor `{factor}` has no value `{value}`",
                     i + 1

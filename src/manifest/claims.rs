@@ -10,8 +10,6 @@ use crate::studies::StudyKind;
 /// Collects every fault of the claims.
 pub(super) fn check(resolver: &mut Resolver<'_>, conditions: &[ResolvedCondition]) {
     let doc = resolver.doc;
-    let factors: Vec<_> =
-        resolver.factors.iter().map(|f| (f.name.clone(), f.values.clone())).collect();
     // Those that cannot be read have been told.
     let published: Vec<String> = doc.published.keys().cloned().collect();
     let mut metrics = measures(doc.study);
@@ -25,7 +23,7 @@ pub(super) fn check(resolver: &mut Resolver<'_>, conditions: &[ResolvedCondition
     }
     metrics.sort();
     metrics.dedup();
-    let known = Known { factors: &factors, metrics: &metrics, published: &published };
+    let known = Known { factors: &resolver.factors, metrics: &metrics, published: &published };
     for (i, fault) in claims::check_all(&doc.claims, known) {
         let told = format!("claim `{}`: {}", quoted(&doc.claims[i].id), fault.message);
         let faults = &mut resolver.faults;

@@ -3,8 +3,9 @@
 use super::choice::FactorDoc;
 use super::document::ManifestDoc;
 use super::faults::{Faults, step};
-use super::names::{Factor, is_kebab, kebab};
+use super::names::{is_kebab, kebab};
 use crate::studies::Condition;
+use crate::studies::Factor;
 use crate::studies::FactorValue;
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -2,10 +2,10 @@
 
 use super::document::{Author, Cite};
 use super::input::Input;
-use super::names::Factor;
 use crate::claims::{Claim, Sensitivity};
 use crate::digest::MeaningDigest;
 use crate::document::Tree;
+use crate::studies::Factor;
 use crate::studies::{Calibrated, Condition, Setup, StudyKind};
 use crate::studies::{FigureRequest, TableRequest};
 use crate::table::Table;

@@ -60,7 +60,6 @@ pub use experiment::{
 };
 pub use input::{Input, InputKind, WrittenIn};
 pub use library::{CalibrationTrials, InputError, Inputs};
-pub use names::Factor;
 pub use parameters::ParametersDoc;
 pub use pinned::{PinnedDoc, PinnedFileDoc};
 pub use previous::{ExploreError, explored, unexplored};

@@ -2,17 +2,8 @@
 
 use super::faults::{Faults, step};
 use crate::document::{known_or_near, quoted, suggestion};
-use crate::studies::FactorValue;
+use crate::studies::{Factor, FactorValue};
 use std::collections::BTreeSet;
-
-/// A factor with all values it takes anywhere, in the order written.
-#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub struct Factor {
-    /// Its name.
-    pub name: String,
-    /// Its values.
-    pub values: Vec<String>,
-}
 
 /// A name like `name` that [`is_kebab`], to suggest.
 pub(super) fn kebab(name: &str) -> String {

@@ -1,8 +1,8 @@
 //! The paper's own numbers, read from tidy CSV files.
 
 use super::faults::Faults;
-use super::names::Factor;
 use crate::document::{Diagnostic, Source, known_or_near, listed, suggestion};
+use crate::studies::Factor;
 use crate::studies::StudyKind;
 use crate::table::{Table, Value};
 use std::collections::{BTreeMap, BTreeSet};

@@ -4,8 +4,9 @@ use super::claims::measures;
 use super::document::ManifestDoc;
 use super::experiment::ResolvedCondition;
 use super::faults::{Faults, step};
-use super::names::{Factor, is_kebab, kebab};
+use super::names::{is_kebab, kebab};
 use super::numbers::MEASURE;
+use crate::studies::Factor;
 use crate::studies::outcomes::OutcomeTable;
 use crate::studies::prior_map::{
     AgreementTable, CoverageTable, EffectsTable, MILESTONES, MeasuresTable,

@@ -6,10 +6,10 @@ use super::experiment::CalibrationRun;
 use super::faults::{Faults, step};
 use super::input::{InputKind, WrittenIn};
 use super::library::{Library, Made, Unread, joined, normalised, relative_to};
-use super::names::Factor;
 use crate::digest::MeaningDigest;
 use crate::document::{Diagnostic, Source};
 use crate::studies::Condition;
+use crate::studies::Factor;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 

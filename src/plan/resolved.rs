@@ -9,9 +9,9 @@ use crate::digest::FileDigest;
 use crate::document::Node;
 use crate::json::{self, AsWritten};
 use crate::manifest::{
-    Assumption, Author, Cite, Experiment, Factor, Meanings, ResolvedCondition, WrittenIn,
+    Assumption, Author, Cite, Experiment, Meanings, ResolvedCondition, WrittenIn,
 };
-use crate::studies::{FigureRequest, StudyKind, TableRequest};
+use crate::studies::{Factor, FigureRequest, StudyKind, TableRequest};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;

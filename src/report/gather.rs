@@ -31,8 +31,7 @@ pub fn content_of(
 ) -> Result<ReportContent, UnreadBundle> {
     let records = bundle.records().map_err(UnreadBundle::Records)?;
     let experiment = &plan.experiment;
-    let factors = assemble::factors(plan);
-    let findings = assemble::findings(plan, &records, &factors);
+    let findings = assemble::findings(plan, &records);
     let cite = experiment.cite.as_ref();
     let machine_verdicts =
         bundle.circumstance_files().find(|(path, _)| *path == "claims.json").map(|(_, b)| b);

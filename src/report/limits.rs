@@ -200,10 +200,9 @@ mod tests {
     fn a_figure_of_a_partial_run_shows_what_there_is_or_is_left_out() {
         let (bundle, plan, _) = quickstart();
         let records = bundle.records().unwrap();
-        let factors = assemble::factors(&plan);
         let request = &plan.experiment.figures[0];
         let drawn = |records: &[TrialRecord]| {
-            request.draw(&assemble::findings(&plan, records, &factors), &plan.experiment.tables)
+            request.draw(&assemble::findings(&plan, records), &plan.experiment.tables)
         };
         let none = |record: &TrialRecord| record.condition().value("prior") == Some("none");
         let half: Vec<TrialRecord> = records.iter().filter(|r| none(r)).cloned().collect();

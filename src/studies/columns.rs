@@ -3,6 +3,7 @@
 use super::Findings;
 use super::findings::rounded;
 use crate::stats::compatibility::{Agreement, Method};
+use crate::studies::Factor;
 use crate::table::{Column, Table, Value, unit_of};
 
 /// Columns of a table whose rows are made of cells `C`: CSV and data dictionary both follow from them.
@@ -121,8 +122,8 @@ pub(super) fn whole(n: u64) -> i64 {
 }
 
 /// Returns what a column of the factor `name` says, of these `factors` with their values; `None` where it is none of them.
-pub(super) fn of_factor(factors: &[(String, Vec<String>)], name: &str) -> Option<Column> {
-    let (_, values) = factors.iter().find(|(known, _)| known == name)?;
+pub(super) fn of_factor(factors: &[Factor], name: &str) -> Option<Column> {
+    let Factor { values, .. } = factors.iter().find(|known| known.name == name)?;
     let meaning = "Factor of the design: study.yaml says what each value stands for";
     Some(Column::of_values(name, unit_of(name), meaning, values))
 }

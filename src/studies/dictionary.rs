@@ -5,6 +5,7 @@ use super::columns::of_factor;
 use super::{Outcome, StudyKind, deadline};
 use crate::claims::Judgement;
 use crate::claims::metric::WALL_TIME_COLUMNS;
+use crate::studies::Factor;
 use crate::table::{Column, unit_of};
 
 /// The words for the columns of one experiment's tables.
@@ -13,7 +14,7 @@ pub struct Dictionary<'a> {
     /// Which study.
     pub kind: StudyKind,
     /// Factors with all their values, in the manifest's order.
-    pub factors: &'a [(String, Vec<String>)],
+    pub factors: &'a [Factor],
 }
 
 impl Dictionary<'_> {

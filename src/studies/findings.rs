@@ -3,6 +3,7 @@
 use super::columns::of_factor;
 use super::{Condition, Setup, TrialRecord};
 use crate::stats::compatibility::{Silence, absence};
+use crate::studies::Factor;
 use crate::table::{Column, Table, Value};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,7 +11,7 @@ use std::collections::{BTreeMap, BTreeSet};
 #[derive(Debug, Clone)]
 pub struct Findings<'a> {
     /// Factors and their values, in the manifest's order.
-    pub factors: &'a [(String, Vec<String>)],
+    pub factors: &'a [Factor],
     /// The conditions of the whole design, those that a partial run leaves out too.
     pub design: Vec<(&'a Condition, &'a Setup)>,
     /// The records, in plan order.
@@ -24,7 +25,7 @@ pub struct Findings<'a> {
 impl<'a> Findings<'a> {
     /// The findings of `records`, which stand in plan order.
     pub fn new(
-        factors: &'a [(String, Vec<String>)],
+        factors: &'a [Factor],
         records: &'a [TrialRecord],
         published: &'a BTreeMap<String, Table>,
     ) -> Self {
@@ -47,7 +48,7 @@ impl<'a> Findings<'a> {
         // `...-at-95` after `...-at-50`, and the whole trial's measures after those.
         measures.sort_by_key(|name| (!name.contains("-at-"), *name));
         let mut columns = vec!["key".to_owned()];
-        columns.extend(self.factors.iter().map(|(name, _)| name.clone()));
+        columns.extend(self.factors.iter().map(|factor| factor.name.clone()));
         columns.extend(["trial".to_owned(), "outcome".to_owned()]);
         columns.extend(measures.iter().map(|&m| m.to_owned()));
         let mut table = Table::new(columns);
@@ -64,12 +65,14 @@ impl<'a> Findings<'a> {
 
     /// The values of `factor` that were run, in the manifest's order.
     pub(super) fn values_of(&self, factor: &str) -> Vec<String> {
-        let values = self.factors.iter().find(|(name, _)| name == factor).map(|(_, v)| v.clone());
+        let known = self.factors.iter().find(|known| known.name == factor);
         let ran = |value: &String| {
             self.conditions().any(|c| c.iter().any(|(f, v)| f == factor && v == value))
         };
         // Partial runs leave values out.
-        values.unwrap_or_default().into_iter().filter(ran).collect()
+        known.map_or_else(Vec::new, |known| {
+            known.values.iter().filter(|v| ran(v)).cloned().collect()
+        })
     }
 
     /// Every combination of values of `factors`, the last one fastest.
@@ -143,7 +146,7 @@ impl<'a> Findings<'a> {
     pub(super) fn factor_values(&self, condition: &Condition) -> Vec<Value> {
         self.factors
             .iter()
-            .map(|(name, _)| condition.value(name).map(str::to_owned).into())
+            .map(|factor| condition.value(&factor.name).map(str::to_owned).into())
             .collect()
     }
 }

@@ -4,6 +4,7 @@ use super::deadline::{self, Calibration};
 use super::{Condition, Findings, Outcome, Setup, TableRequest, TrialRecord};
 use crate::geometry::{Outline, Point, Pose};
 use crate::robot::{Drive, DriveKind, Robot};
+use crate::studies::Factor;
 use crate::table::Table;
 use crate::world::World;
 use serde_json::json;
@@ -176,7 +177,7 @@ pub(crate) fn with_findings<T>(ask: impl FnOnce(&Findings<'_>, &[TableRequest]) 
         ("gain", &["paper", "released"]),
         ("stop", &["uneven", "even"]),
     ]
-    .map(|(name, values)| (name.to_owned(), values.iter().map(|v| (*v).to_owned()).collect()));
+    .map(|(name, values)| Factor::new(name, values.iter().copied()));
     let (records, published, setup) = (records(), published(), setup());
     let mut design: Vec<Condition> = records.iter().map(TrialRecord::condition).collect();
     design.dedup();

@@ -1,6 +1,7 @@
 //! The deadline study's claims, judged on the very trials that its Tables 1 and 2 count.
 
 use super::*;
+use crate::studies::Factor;
 
 const MANIFEST: &str = include_str!("../../../manifests/deadline.yaml");
 
@@ -77,9 +78,9 @@ fn the_claims_speak_of_what_there_is() {
     let deadlines: Vec<String> =
         TABLE_1.iter().map(|(_, deadline, _)| deadline.to_string()).collect();
     let factors = [
-        ("start".to_owned(), owned(&["A", "B", "C"])),
-        ("deadline-s".to_owned(), deadlines),
-        ("strategy".to_owned(), owned(&STRATEGIES)),
+        Factor::new("start", owned(&["A", "B", "C"])),
+        Factor::new("deadline-s", deadlines),
+        Factor::new("strategy", owned(&STRATEGIES)),
     ];
     let metrics = owned(&[
         "success",

@@ -1,9 +1,10 @@
 //! What is said of claims before anything runs, and the examples, of which nothing is.
 
 use super::*;
+use crate::studies::Factor;
 
 /// Factors with their values, metrics, published tables.
-pub(super) type Things = (Vec<(String, Vec<String>)>, Vec<String>, Vec<String>);
+pub(super) type Things = (Vec<Factor>, Vec<String>, Vec<String>);
 
 /// A fault on one line: where, numbers of items left out, what, and what may have been meant.
 pub(super) fn told(fault: &ClaimFault<'_>) -> String {
@@ -24,12 +25,12 @@ pub(super) fn faults_among(claim: &Claim, (factors, metrics, published): &Things
 pub(super) fn known() -> Things {
     let owned = |names: &[&str]| names.iter().map(|s| (*s).to_owned()).collect::<Vec<_>>();
     let factors = vec![
-        ("start".to_owned(), owned(&["A", "B", "C"])),
-        ("strategy".to_owned(), owned(&STRATEGIES)),
-        ("deadline-s".to_owned(), owned(&["68", "272", "477", "680"])),
-        ("prior".to_owned(), owned(&["none", "floor-plan", "footprint"])),
-        ("furnished".to_owned(), owned(&["true", "false"])),
-        ("environment".to_owned(), owned(&["basic", "office", "open"])),
+        Factor::new("start", owned(&["A", "B", "C"])),
+        Factor::new("strategy", owned(&STRATEGIES)),
+        Factor::new("deadline-s", owned(&["68", "272", "477", "680"])),
+        Factor::new("prior", owned(&["none", "floor-plan", "footprint"])),
+        Factor::new("furnished", owned(&["true", "false"])),
+        Factor::new("environment", owned(&["basic", "office", "open"])),
     ];
     let metrics = owned(&[
         "success",

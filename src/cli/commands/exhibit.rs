@@ -30,6 +30,7 @@ mod tests {
     use crate::bundle::assemble;
     use crate::digest::{Sha256Digest, TrialKey};
     use crate::report::ReportTable;
+    use crate::studies::Factor;
     use crate::studies::fixture::with_findings;
     use crate::studies::outcomes::{OutcomeTable, Quantity};
     use crate::studies::{Findings, Outcome, TableLayout, TableRequest, TrialRecord};
@@ -60,9 +61,7 @@ mod tests {
 
     #[test]
     fn five_strategies_beside_the_papers_numbers_fit_into_80_columns() {
-        let factor = |name: &str, values: &[&str]| {
-            (name.to_owned(), values.iter().map(|v| (*v).to_owned()).collect::<Vec<_>>())
-        };
+        let factor = |name: &str, values: &[&str]| Factor::new(name, values.iter().copied());
         let factors = [
             factor("start", &["A"]),
             factor("deadline-s", &["680", "68"]),

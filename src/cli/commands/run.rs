@@ -139,8 +139,7 @@ impl Done {
             text.push_str(&wrapped(partial, 0, terminal.columns()));
         }
         text.push('\n');
-        let factors = assemble::factors(&self.plan);
-        let findings = assemble::findings(&self.plan, &self.records, &factors);
+        let findings = assemble::findings(&self.plan, &self.records);
         let tables = &self.plan.experiment.tables;
         for request in tables {
             let exhibit = request.exhibit(&findings, tables);

@@ -237,6 +237,7 @@ impl Findings<'_> {
 mod tests {
     use super::super::PublishedShare;
     use super::*;
+    use crate::studies::Factor;
     use crate::studies::{PublishedScatter, Scale, TableLayout, TableRequest, TrialRecord};
     use crate::table::Table;
     use std::collections::BTreeMap;
@@ -276,7 +277,7 @@ mod tests {
             ("deadline-s", &["90", "30"]),
             ("strategy", &["quick", "slow"]),
         ]
-        .map(|(name, values)| (name.to_owned(), values.iter().map(|v| (*v).to_owned()).collect()));
+        .map(|(name, values)| Factor::new(name, values.iter().copied()));
         let csv = |text: &str| Table::from_csv(text).unwrap();
         let published = BTreeMap::from([
             (

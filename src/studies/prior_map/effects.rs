@@ -7,7 +7,7 @@ use super::requests::EffectsTable;
 use crate::math::{exp, ln};
 use crate::stats::means::{TTest, welch_matched};
 use crate::stats::summary::Summary;
-use crate::studies::Findings;
+use crate::studies::{Factor, Findings};
 use std::collections::BTreeMap;
 
 /// Confidence of the intervals. Each stands alone: of a hundred effects of nothing, five miss 0.
@@ -190,12 +190,13 @@ impl Findings<'_> {
         within: &[(String, String)],
         percent: u32,
     ) -> Option<f64> {
-        let single = self.factors.iter().filter_map(|(name, values)| match values.as_slice() {
-            [only] if !within.iter().any(|(known, _)| known == name) => {
-                Some((name.clone(), only.clone()))
-            }
-            _ => None,
-        });
+        let single =
+            self.factors.iter().filter_map(|Factor { name, values }| match values.as_slice() {
+                [only] if !within.iter().any(|(known, _)| known == name) => {
+                    Some((name.clone(), only.clone()))
+                }
+                _ => None,
+            });
         let mut fixed: Vec<(String, String)> = within.iter().cloned().chain(single).collect();
         fixed.push(("coverage-percent".to_owned(), percent.to_string()));
         let (table, row) = self.published_row(wanted.published.as_ref()?, &fixed)?;

@@ -174,6 +174,7 @@ fn in_print(cell: &MeasureCell) -> String {
 mod tests {
     use super::*;
     use crate::digest::{Sha256Digest, TrialKey};
+    use crate::studies::Factor;
     use crate::studies::{Outcome, TrialRecord};
     use crate::table::Table;
     use std::collections::BTreeMap;
@@ -197,10 +198,8 @@ mod tests {
 
     #[test]
     fn a_row_is_a_cell_that_was_run_with_the_papers_number_beside_it() {
-        let factors =
-            [("prior", &["none", "graph"][..]), ("noise", &["0", "4"])].map(|(name, values)| {
-                (name.to_owned(), values.iter().map(|v| (*v).to_owned()).collect())
-            });
+        let factors = [("prior", &["none", "graph"][..]), ("noise", &["0", "4"])]
+            .map(|(name, values)| Factor::new(name, values.iter().copied()));
         let records = [
             record("none", "0", 0, Some(400.0)),
             record("none", "0", 1, None),

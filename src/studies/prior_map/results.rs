@@ -56,7 +56,7 @@ impl Findings<'_> {
     /// The curves: one row at the first crossing of every whole percent and at every 10 s.
     pub fn series(&self) -> Table {
         let mut columns = vec!["key".to_owned()];
-        columns.extend(self.factors.iter().map(|(name, _)| name.clone()));
+        columns.extend(self.factors.iter().map(|factor| factor.name.clone()));
         columns.extend(["trial", "time-s", "distance-m", "coverage-percent"].map(str::to_owned));
         let mut table = Table::new(columns);
         for record in self.records {

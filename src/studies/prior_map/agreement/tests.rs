@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::studies::prior_map::Metric;
-use crate::studies::{Layout, TrialRecord};
+use crate::studies::{Factor, Layout, TrialRecord};
 use crate::table::{Table, Value};
 use std::collections::BTreeMap;
 
@@ -77,11 +77,11 @@ fn request(tests: bool) -> CoverageTable {
     }
 }
 
-fn factors() -> Vec<(String, Vec<String>)> {
+fn factors() -> Vec<Factor> {
     let values = |values: [&str; 3]| values.map(str::to_owned).to_vec();
     vec![
-        ("environment".to_owned(), values(["basic", "office", "open"])),
-        ("prior".to_owned(), values(["none", "floor-plan", "bounding-box"])),
+        Factor::new("environment", values(["basic", "office", "open"])),
+        Factor::new("prior", values(["none", "floor-plan", "bounding-box"])),
     ]
 }
 
@@ -169,7 +169,7 @@ fn cells_are_tested_at_all_runs_and_at_the_papers_number() {
 fn every_reading_that_was_run_has_its_own_score() {
     let mut factors = factors();
     for (name, values) in [("gain", ["paper", "released"]), ("stop", ["uneven", "even"])] {
-        factors.push((name.to_owned(), values.map(str::to_owned).to_vec()));
+        factors.push(Factor::new(name, values));
     }
     let readings =
         [("paper", "uneven", 1.0), ("released", "uneven", 0.8), ("released", "even", 0.5)];

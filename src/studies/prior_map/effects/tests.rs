@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::stats::assert_close;
-use crate::studies::TrialRecord;
 use crate::studies::prior_map::Metric;
+use crate::studies::{Factor, TrialRecord};
 use crate::table::Table;
 
 /// Gain, ray stop, noise, and ln(distance at 80 %) of each run; `None` never got there.
@@ -43,14 +43,14 @@ fn records() -> Vec<TrialRecord> {
     records
 }
 
-fn factors() -> Vec<(String, Vec<String>)> {
+fn factors() -> Vec<Factor> {
     [
         ("environment", vec!["basic"]),
         ("noise", vec!["0.1", "0.01"]),
         ("gain", vec!["paper", "released"]),
         ("ray-stop", vec!["uneven", "even"]),
     ]
-    .map(|(name, values)| (name.to_owned(), values.into_iter().map(str::to_owned).collect()))
+    .map(|(name, values)| Factor::new(name, values))
     .to_vec()
 }
 
