@@ -15,6 +15,7 @@
 // Layer 0: numbers, bytes and shapes.
 pub mod digest;
 pub mod document;
+pub mod factor;
 pub mod figure;
 pub mod geometry;
 pub mod grid;

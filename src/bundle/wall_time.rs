@@ -5,8 +5,9 @@ use crate::claims::metric::WALL_TIME_COLUMNS;
 use crate::claims::observations::TrialsTableError;
 use crate::claims::{self, ClaimVerdict};
 use crate::digest::TrialKey;
+use crate::factor::Factor;
 use crate::plan::Plan;
-use crate::studies::{Factor, TrialRecord};
+use crate::studies::TrialRecord;
 use crate::table::{Table, Value};
 use std::collections::BTreeMap;
 

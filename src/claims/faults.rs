@@ -2,7 +2,7 @@
 
 use super::cells::{Than, Where};
 use crate::document::{known_or_near, quoted};
-use crate::studies::Factor;
+use crate::factor::Factor;
 use std::collections::BTreeSet;
 
 /// What there is to speak of in a study.

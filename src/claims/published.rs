@@ -8,7 +8,7 @@
 //! a number the paper does not print.
 
 use super::cells::{Values, Where};
-use crate::studies::Factor;
+use crate::factor::Factor;
 use crate::table::{Table, Value};
 use std::collections::BTreeMap;
 use thiserror::Error;

@@ -4,8 +4,8 @@ use super::choice::FactorDoc;
 use super::document::ManifestDoc;
 use super::faults::{Faults, step};
 use super::names::{is_kebab, kebab};
+use crate::factor::Factor;
 use crate::studies::Condition;
-use crate::studies::Factor;
 use crate::studies::FactorValue;
 use std::collections::{BTreeMap, BTreeSet};
 

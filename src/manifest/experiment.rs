@@ -5,7 +5,7 @@ use super::input::Input;
 use crate::claims::{Claim, Sensitivity};
 use crate::digest::MeaningDigest;
 use crate::document::Tree;
-use crate::studies::Factor;
+use crate::factor::Factor;
 use crate::studies::{Calibrated, Condition, Setup, StudyKind};
 use crate::studies::{FigureRequest, TableRequest};
 use crate::table::Table;

@@ -3,7 +3,7 @@
 use super::document::ManifestDoc;
 use super::faults::Faults;
 use super::requests::{check_columns, check_only, check_outcomes, check_published, foreign};
-use crate::studies::Factor;
+use crate::factor::Factor;
 use crate::studies::outcomes::OutcomeShares;
 use crate::studies::{FigureLayout, Outcome, PublishedScatter, TableLayout};
 use crate::table::Table;

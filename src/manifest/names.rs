@@ -2,7 +2,8 @@
 
 use super::faults::{Faults, step};
 use crate::document::{known_or_near, quoted, suggestion};
-use crate::studies::{Factor, FactorValue};
+use crate::factor::Factor;
+use crate::studies::FactorValue;
 use std::collections::BTreeSet;
 
 /// A name like `name` that [`is_kebab`], to suggest.

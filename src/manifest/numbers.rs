@@ -2,7 +2,7 @@
 
 use super::faults::Faults;
 use crate::document::{Diagnostic, Source, known_or_near, listed, suggestion};
-use crate::studies::Factor;
+use crate::factor::Factor;
 use crate::studies::StudyKind;
 use crate::table::{Table, Value};
 use std::collections::{BTreeMap, BTreeSet};

@@ -6,7 +6,7 @@ use super::experiment::ResolvedCondition;
 use super::faults::{Faults, step};
 use super::names::{is_kebab, kebab};
 use super::numbers::MEASURE;
-use crate::studies::Factor;
+use crate::factor::Factor;
 use crate::studies::outcomes::OutcomeTable;
 use crate::studies::prior_map::{
     AgreementTable, CoverageTable, EffectsTable, MILESTONES, MeasuresTable,

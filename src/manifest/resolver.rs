@@ -8,8 +8,8 @@ use super::input::{InputKind, WrittenIn};
 use super::library::{Library, Made, Unread, joined, normalised, relative_to};
 use crate::digest::MeaningDigest;
 use crate::document::{Diagnostic, Source};
+use crate::factor::Factor;
 use crate::studies::Condition;
-use crate::studies::Factor;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 

@@ -7,11 +7,12 @@ use super::key::levels;
 use super::selection::Selection;
 use crate::digest::FileDigest;
 use crate::document::Node;
+use crate::factor::Factor;
 use crate::json::{self, AsWritten};
 use crate::manifest::{
     Assumption, Author, Cite, Experiment, Meanings, ResolvedCondition, WrittenIn,
 };
-use crate::studies::{Factor, FigureRequest, StudyKind, TableRequest};
+use crate::studies::{FigureRequest, StudyKind, TableRequest};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;

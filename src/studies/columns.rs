@@ -2,8 +2,8 @@
 
 use super::Findings;
 use super::findings::rounded;
+use crate::factor::Factor;
 use crate::stats::compatibility::{Agreement, Method};
-use crate::studies::Factor;
 use crate::table::{Column, Table, Value, unit_of};
 
 /// Columns of a table whose rows are made of cells `C`: CSV and data dictionary both follow from them.

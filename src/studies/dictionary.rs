@@ -5,7 +5,7 @@ use super::columns::of_factor;
 use super::{Outcome, StudyKind, deadline};
 use crate::claims::Judgement;
 use crate::claims::metric::WALL_TIME_COLUMNS;
-use crate::studies::Factor;
+use crate::factor::Factor;
 use crate::table::{Column, unit_of};
 
 /// The words for the columns of one experiment's tables.

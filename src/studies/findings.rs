@@ -2,8 +2,8 @@
 
 use super::columns::of_factor;
 use super::{Condition, Setup, TrialRecord};
+use crate::factor::Factor;
 use crate::stats::compatibility::{Silence, absence};
-use crate::studies::Factor;
 use crate::table::{Column, Table, Value};
 use std::collections::{BTreeMap, BTreeSet};
 

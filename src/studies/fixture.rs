@@ -2,9 +2,9 @@
 
 use super::deadline::{self, Calibration};
 use super::{Condition, Findings, Outcome, Setup, TableRequest, TrialRecord};
+use crate::factor::Factor;
 use crate::geometry::{Outline, Point, Pose};
 use crate::robot::{Drive, DriveKind, Robot};
-use crate::studies::Factor;
 use crate::table::Table;
 use crate::world::World;
 use serde_json::json;

@@ -10,7 +10,6 @@ pub mod deadline;
 mod dictionary;
 mod drawn;
 mod exhibit;
-mod factor;
 mod factor_value;
 mod findings;
 #[cfg(test)]
@@ -35,7 +34,6 @@ pub use columns::Columns;
 pub use dictionary::Dictionary;
 pub use drawn::Drawn;
 pub use exhibit::{Exhibit, Grid, GridCell, GridRow, Layout, Lines, Measured, Set, Source};
-pub use factor::Factor;
 pub use factor_value::FactorValue;
 pub use findings::Findings;
 pub use outcome::{End, Outcome};

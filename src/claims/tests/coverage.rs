@@ -188,7 +188,7 @@ fn log_ratios_agree_where_gains_do_whatever_the_levels() {
 
 #[test]
 fn faults_of_the_new_options_are_told() {
-    let factors = [crate::studies::Factor::new("prior", PRIORS)];
+    let factors = [crate::factor::Factor::new("prior", PRIORS)];
     let metrics = ["success", "distance-m-at-80", "distance-m-at-95"].map(str::to_owned);
     let published = ["t".to_owned()];
     let known = Known { factors: &factors, metrics: &metrics, published: &published };

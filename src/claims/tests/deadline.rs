@@ -1,7 +1,7 @@
 //! The deadline study's claims, judged on the very trials that its Tables 1 and 2 count.
 
 use super::*;
-use crate::studies::Factor;
+use crate::factor::Factor;
 
 const MANIFEST: &str = include_str!("../../../manifests/deadline.yaml");
 

@@ -1,7 +1,7 @@
 //! What is said of claims before anything runs, and the examples, of which nothing is.
 
 use super::*;
-use crate::studies::Factor;
+use crate::factor::Factor;
 
 /// Factors with their values, metrics, published tables.
 pub(super) type Things = (Vec<Factor>, Vec<String>, Vec<String>);

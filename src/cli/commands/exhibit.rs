@@ -29,8 +29,8 @@ mod tests {
     use super::*;
     use crate::bundle::assemble;
     use crate::digest::{Sha256Digest, TrialKey};
+    use crate::factor::Factor;
     use crate::report::ReportTable;
-    use crate::studies::Factor;
     use crate::studies::fixture::with_findings;
     use crate::studies::outcomes::{OutcomeTable, Quantity};
     use crate::studies::{Findings, Outcome, TableLayout, TableRequest, TrialRecord};

@@ -237,7 +237,7 @@ impl Findings<'_> {
 mod tests {
     use super::super::PublishedShare;
     use super::*;
-    use crate::studies::Factor;
+    use crate::factor::Factor;
     use crate::studies::{PublishedScatter, Scale, TableLayout, TableRequest, TrialRecord};
     use crate::table::Table;
     use std::collections::BTreeMap;

@@ -4,10 +4,11 @@
 mod layout;
 
 use super::requests::EffectsTable;
+use crate::factor::Factor;
 use crate::math::{exp, ln};
 use crate::stats::means::{TTest, welch_matched};
 use crate::stats::summary::Summary;
-use crate::studies::{Factor, Findings};
+use crate::studies::Findings;
 use std::collections::BTreeMap;
 
 /// Confidence of the intervals. Each stands alone: of a hundred effects of nothing, five miss 0.

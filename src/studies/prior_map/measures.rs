@@ -174,7 +174,7 @@ fn in_print(cell: &MeasureCell) -> String {
 mod tests {
     use super::*;
     use crate::digest::{Sha256Digest, TrialKey};
-    use crate::studies::Factor;
+    use crate::factor::Factor;
     use crate::studies::{Outcome, TrialRecord};
     use crate::table::Table;
     use std::collections::BTreeMap;

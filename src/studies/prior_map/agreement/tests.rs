@@ -1,8 +1,9 @@
 //! Agreement and tests of cells on made-up runs around the paper's own numbers.
 
 use super::*;
+use crate::factor::Factor;
 use crate::studies::prior_map::Metric;
-use crate::studies::{Factor, Layout, TrialRecord};
+use crate::studies::{Layout, TrialRecord};
 use crate::table::{Table, Value};
 use std::collections::BTreeMap;
 

@@ -1,9 +1,10 @@
 //! Effects on made-up runs whose logarithms are round numbers.
 
 use super::*;
+use crate::factor::Factor;
 use crate::stats::assert_close;
+use crate::studies::TrialRecord;
 use crate::studies::prior_map::Metric;
-use crate::studies::{Factor, TrialRecord};
 use crate::table::Table;
 
 /// Gain, ray stop, noise, and ln(distance at 80 %) of each run; `None` never got there.
