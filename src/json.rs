@@ -12,14 +12,14 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-/// The canonical text of `value`, without a final newline.
+/// Writes the canonical text of `value`, without a final newline.
 pub fn canonical(value: &Value) -> String {
     let mut text = String::new();
     write(value, &mut text);
     text
 }
 
-/// The canonical text of anything serialisable.
+/// Writes the canonical text of anything serialisable.
 ///
 /// # Panics
 /// Where `value` cannot be JSON at all (a map with non-string keys); non-finite floats become `null`,
@@ -81,8 +81,8 @@ pub fn indented(canonical: &str) -> String {
     out
 }
 
-/// About how much memory (bytes) the tree of a JSON text takes, never much less: a text of small objects takes a hundred
-/// times its own length. To be asked before text of unknown origin is parsed to a [`Value`].
+/// Estimates how much memory (bytes) the tree of a JSON text takes, never much less: a text of small objects takes a
+/// hundred times its own length. To be asked before text of unknown origin is parsed to a [`Value`].
 pub fn weight(text: &[u8]) -> u64 {
     // What `serde_json` allocates: a node of eleven entries for the smallest map, four elements for the smallest list,
     // and an element (doubled while its list grows) with the start of its text.

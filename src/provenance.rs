@@ -92,7 +92,7 @@ impl Environment {
         })
     }
 
-    /// Where the trial store is.
+    /// Returns where the trial store is.
     ///
     /// # Errors
     /// Where nothing says so, or not in UTF-8.
@@ -115,19 +115,20 @@ impl RunClock {
         Self { started: now(), instant: Instant::now() }
     }
 
-    /// Seconds since the start, whatever the calendar did meanwhile.
+    /// Returns the seconds since the start, whatever the calendar did meanwhile.
     pub fn elapsed_seconds(&self) -> f64 {
         self.instant.elapsed().as_secs_f64()
     }
 
-    /// What the clock shows now, whatever `SOURCE_DATE_EPOCH` says: by this it is judged whether a key is still valid. A clock
-    /// that is set back while the program runs makes no key younger.
+    /// Returns what the clock shows now, whatever `SOURCE_DATE_EPOCH` says: by this it is judged whether a key is still
+    /// valid. A clock that is set back while the program runs makes no key younger.
     pub fn now(&self) -> Moment {
         let elapsed = i64::try_from(self.instant.elapsed().as_secs()).unwrap_or(i64::MAX);
         Moment(self.started.0.saturating_add(elapsed))
     }
 
-    /// The circumstances of a run that ends now with `jobs` threads; under `SOURCE_DATE_EPOCH` nothing but that instant.
+    /// Returns the circumstances of a run that ends now with `jobs` threads; under `SOURCE_DATE_EPOCH` nothing but that
+    /// instant.
     pub fn circumstance(&self, environment: &Environment, jobs: usize) -> Circumstance {
         if let Some(epoch) = environment.source_date_epoch {
             return Circumstance::reproducible(epoch);
@@ -178,26 +179,26 @@ impl Stopwatch for TrialWatch {
     }
 }
 
-/// Now; a clock before 1970 reads as 1970.
+/// Returns the present moment; a clock before 1970 reads as 1970.
 #[expect(clippy::disallowed_methods, reason = "this is the door to the clock")]
 fn now() -> Moment {
     let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |d| d.as_secs());
     Moment(i64::try_from(seconds).unwrap_or(0))
 }
 
-/// How long ago `moment` was by this machine's clock; none where it is yet to come.
+/// Returns how long ago `moment` was by this machine's clock; none where it is yet to come.
 pub fn age(moment: SystemTime) -> Duration {
     moment.elapsed().unwrap_or_default()
 }
 
-/// A name for the kernel that runs, from its start until its end; none where it gives itself none. It says nothing of who
-/// owns the machine.
+/// Returns a name for the running kernel, the same from its start until its end; none where it gives itself none. The
+/// name does not reveal who owns the machine.
 pub fn kernel() -> Option<String> {
     let id = std::fs::read_to_string("/proc/sys/kernel/random/boot_id").ok()?;
     id.get(..8).filter(|id| id.bytes().all(|b| b.is_ascii_hexdigit())).map(str::to_owned)
 }
 
-/// Facts about the host that matter and say nothing of who owns it: no names of users, hosts or folders.
+/// Lists facts about the host that matter and do not reveal who owns it: no names of users, hosts or folders.
 pub fn host() -> Vec<(String, String)> {
     let mut facts = vec![
         ("os".to_owned(), std::env::consts::OS.to_owned()),
@@ -208,17 +209,18 @@ pub fn host() -> Vec<(String, String)> {
     facts
 }
 
-/// Most threads that are started at once, whatever `--jobs` asks for: more of them only wait for one another.
+/// Returns how many threads are started at once at most, whatever `--jobs` asks for: more of them only wait for one
+/// another.
 pub fn most_jobs() -> usize {
     (4 * processors()).max(64)
 }
 
-/// Processors at our disposal: the default of `--jobs`.
+/// Returns how many processors are at our disposal: the default of `--jobs`.
 pub fn processors() -> usize {
     std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
 }
 
-/// A seed nobody could foresee, for the reviewer's sample where none is given.
+/// Draws a seed nobody could foresee, for the reviewer's sample where none is given.
 pub fn unforeseen_seed() -> u64 {
     use std::hash::{BuildHasher as _, Hasher as _};
     // The standard library keys its hashers from the system's randomness.

@@ -31,12 +31,12 @@ pub struct DirectoryStore {
 }
 
 impl DirectoryStore {
-    /// The store at `root`, created when first written to.
+    /// Creates a store at `root`; the folder is made when it is first written to.
     pub fn new(root: impl Into<PathBuf>) -> Self {
         Self { root: root.into(), odd: Arc::default() }
     }
 
-    /// A warning for everything met in a record's place that is no file; each is told once.
+    /// Returns a warning for everything met in a record's place that is no file; each is given once.
     pub fn warnings(&self) -> Vec<String> {
         let odd = std::mem::take(&mut *self.odd.lock().unwrap_or_else(PoisonError::into_inner));
         odd.iter()
@@ -50,7 +50,7 @@ impl DirectoryStore {
             .collect()
     }
 
-    /// Whether something that is no file stands in the place of the record at `path`; it is remembered.
+    /// Returns whether something that is no file stands in the place of the record at `path`; it is remembered.
     fn is_odd(&self, path: &Path) -> bool {
         let Some(found) = kind_of(path) else { return false };
         let mut odd = self.odd.lock().unwrap_or_else(PoisonError::into_inner);
@@ -58,7 +58,7 @@ impl DirectoryStore {
         true
     }
 
-    /// Where it is.
+    /// Returns where the store is.
     pub fn root(&self) -> &Path {
         &self.root
     }
@@ -81,7 +81,7 @@ impl DirectoryStore {
         self.root.join(&hex[..2]).join(format!("{hex}.json"))
     }
 
-    /// Number of records and their bytes.
+    /// Counts the records and their bytes.
     ///
     /// # Errors
     /// Where the directory cannot be read; an absent one is empty.
@@ -155,7 +155,7 @@ impl TrialStore for DirectoryStore {
     }
 }
 
-/// What went wrong, without the numbers of one operating system.
+/// Says what went wrong, without the numbers of one operating system.
 pub fn reason(error: &io::Error) -> String {
     use io::ErrorKind as Kind;
     match error.kind() {
@@ -224,7 +224,7 @@ fn no_file(found: &str) -> io::Error {
     io::Error::new(io::ErrorKind::InvalidInput, format!("expected a file, found {found}"))
 }
 
-/// The bytes of the file at `path`; where they are more than `most`, how many, as far as it says.
+/// Reads the bytes of the file at `path`; where they are more than `most`, returns how many, as far as the file says.
 fn content(path: &Path, most: u64) -> io::Result<Result<Vec<u8>, Option<u64>>> {
     let file = open(path)?;
     let metadata = file.metadata()?;
@@ -253,7 +253,7 @@ fn open(path: &Path) -> io::Result<fs::File> {
     options.open(path)
 }
 
-/// What stands at `path`, where it is something that is no file.
+/// Returns what stands at `path`, where it is something that is no file.
 fn kind_of(path: &Path) -> Option<&'static str> {
     let leads_nowhere = || {
         let link = fs::symlink_metadata(path).ok()?;
@@ -266,7 +266,7 @@ fn kind_of(path: &Path) -> Option<&'static str> {
     }
 }
 
-/// What is no file, in words.
+/// Says in words what `metadata` describes, where it is no file.
 fn odd(metadata: &std::fs::Metadata) -> Option<&'static str> {
     let kind = metadata.file_type();
     if kind.is_file() {

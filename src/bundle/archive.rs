@@ -86,7 +86,7 @@ pub(super) fn store(tree: &Tree, root: &str) -> Vec<u8> {
     pack(named, options().compression_method(CompressionMethod::Stored))
 }
 
-/// What makes an archive depend on nothing but its files.
+/// Returns the options that make an archive depend on nothing but its files.
 fn options() -> SimpleFileOptions {
     SimpleFileOptions::default().last_modified_time(DateTime::default()).unix_permissions(0o644)
 }
@@ -112,7 +112,7 @@ pub fn read(bytes: &[u8], limits: &Limits) -> Result<Archive, Vec<Fault>> {
     locate(files).map_err(|fault| vec![fault])
 }
 
-/// The files of a zip, by the names they have there.
+/// Returns the files of a zip, by the names they have there.
 fn contents(bytes: &[u8], limits: &Limits) -> Result<Vec<(String, Vec<u8>)>, Faults> {
     let directory = Directory::find(bytes)?;
     let entries = directory.headers(bytes, limits)?;
@@ -159,8 +159,8 @@ fn contents(bytes: &[u8], limits: &Limits) -> Result<Vec<(String, Vec<u8>)>, Fau
     faults.or(contents)
 }
 
-/// The same for a folder's files, given by their paths relative to it (with `/`), as `store` lists them. A folder in it
-/// is a path that ends in `/`, without bytes.
+/// Does the same for a folder's files, given by their paths relative to it (with `/`), as `store` lists them. A folder
+/// in it is a path that ends in `/`, without bytes.
 ///
 /// # Errors
 /// Where a name is unsafe, a folder is empty, or the whole is neither a bag nor a crate.
@@ -229,7 +229,7 @@ fn unsafe_names(paths: &[&str], limits: &Limits, faults: &mut Faults) {
     }
 }
 
-/// The folders that hold no file, told together.
+/// Returns one fault for all the folders that hold no file; `None` where there are none.
 fn empty_folders(paths: &[&str]) -> Option<Fault> {
     let files: BTreeSet<&str> = paths.iter().copied().filter(|path| !path.ends_with('/')).collect();
     let holds =

@@ -93,8 +93,8 @@ pub fn assemble_judged(
     }
 }
 
-/// The verdicts on the claims of `plan`'s manifest about the study, as `results/claims.json` holds them: none for
-/// partial runs. Claims about the machine are judged by [`super::wall_time`].
+/// Judges the claims of `plan`'s manifest about the study and returns the verdicts as `results/claims.json` holds them:
+/// none for partial runs. Claims about the machine are judged by [`super::wall_time`].
 ///
 /// # Errors
 /// Where no claim can be judged by such records.
@@ -122,7 +122,7 @@ pub fn verdicts(
     Ok(judged.collect())
 }
 
-/// What tables and figures of `plan` are made from.
+/// Returns what tables and figures of `plan` are made from.
 pub fn findings<'a>(plan: &'a Plan, records: &'a [TrialRecord]) -> Findings<'a> {
     let experiment = &plan.experiment;
     Findings::new(&experiment.factors, records, &experiment.published).designed(experiment.design())
@@ -144,7 +144,7 @@ fn sealed_conditions(plan: &Plan, records: &[TrialRecord]) -> Vec<SealedConditio
     conditions
 }
 
-/// An author's ORCID iD, however a manifest writes it, as the address that identifies a person.
+/// Writes an author's ORCID iD, in whatever form a manifest gives it, as the address that identifies a person.
 fn orcid_address(written: &str) -> String {
     let id = written.rsplit('/').next().unwrap_or(written);
     format!("https://orcid.org/{id}")
@@ -228,13 +228,13 @@ pub(crate) fn in_markdown(exhibit: &Exhibit) -> String {
     text
 }
 
-/// Whether the run measures the machine.
+/// Returns whether the run measures the machine.
 fn measures_the_machine(plan: &Plan) -> bool {
     !plan.partial && plan.experiment.claims.iter().any(|claim| claim.circumstance)
 }
 
-/// What the columns of the inputs in CSV say: the paper's own numbers, the calibration of maneuvers, and what became of the
-/// claims at other values of the assumptions.
+/// Describes the columns of the inputs in CSV: the paper's own numbers, the calibration of maneuvers, and what became
+/// of the claims at other values of the assumptions.
 fn described_inputs(plan: &Plan) -> Vec<DescribedTable> {
     let dictionary = Dictionary { kind: plan.experiment.kind, factors: &plan.experiment.factors };
     let mut described: Vec<DescribedTable> = Vec::new();
@@ -274,7 +274,7 @@ fn described_inputs(plan: &Plan) -> Vec<DescribedTable> {
     described
 }
 
-/// A list of verdicts as bundles hold it.
+/// Writes a list of verdicts as bundles hold it.
 pub(super) fn verdicts_json(verdicts: &[ClaimVerdict]) -> Vec<u8> {
     (crate::json::canonical(&json!(verdicts)) + "\n").into_bytes()
 }

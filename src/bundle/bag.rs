@@ -11,7 +11,7 @@ pub(crate) const AGENT: &str = "Bag-Software-Agent";
 /// The label of the identifier that is made of the manifest's digest.
 pub(crate) const IDENTIFIER: &str = "External-Identifier";
 
-/// Manifest lines of `files`, in their order.
+/// Writes the manifest lines of `files`, in their order.
 pub(super) fn manifest<'a>(files: impl IntoIterator<Item = (&'a String, &'a Vec<u8>)>) -> String {
     let mut text = String::new();
     for (path, bytes) in files {
@@ -55,7 +55,7 @@ pub fn parse_manifest(file: &str, bytes: &[u8]) -> Result<Vec<(String, Sha256Dig
     if faults.is_empty() { Ok(entries) } else { Err(faults) }
 }
 
-/// The first characters of a line that may be long or hostile, quoted.
+/// Returns the first characters of a line that may be long or hostile, quoted.
 fn excerpt(line: &str) -> String {
     let start: String = line.chars().take(40).collect();
     format!("`{}`", start.escape_default())
@@ -73,7 +73,7 @@ const CIRCUMSTANCES: [&str; 4] = ["Bagging-Date", "Run-Ended", "Run-Environment"
 pub struct BagInfo(pub Vec<(String, String)>);
 
 impl BagInfo {
-    /// What this program writes; without circumstances where it bags a payload whose bag was lost.
+    /// Returns the labels that this program writes; without circumstances where it bags a payload whose bag was lost.
     pub(crate) fn of(
         payload: &Tree,
         circumstance: Option<&Circumstance>,
@@ -105,7 +105,7 @@ impl BagInfo {
         Self(labels.into_iter().map(|(label, value)| (label.to_owned(), value)).collect())
     }
 
-    /// The same with the value of `label` replaced.
+    /// Replaces the value of `label`.
     pub(crate) fn set(&mut self, label: &str, value: &str) {
         for (_, known) in self.0.iter_mut().filter(|(known, _)| known == label) {
             value.clone_into(known);
@@ -138,13 +138,14 @@ impl BagInfo {
         Self(labels)
     }
 
-    /// The first value of `label`.
+    /// Returns the first value of `label`.
     pub fn get(&self, label: &str) -> Option<&str> {
         self.0.iter().find(|(name, _)| name == label).map(|(_, value)| value.as_str())
     }
 
-    /// What is wrong with the labels, given those that are right: each of them as often as there, and no other. Whether the
-    /// `version` of the program that bagged matters is said by the caller, for whoever bags a lost crate again may be another.
+    /// Returns what is wrong with the labels, given those that are `right`: each of them must stand as often as there,
+    /// and no other. Whether the `version` of the program that bagged matters is left to the caller, for another
+    /// program may bag a lost crate again.
     pub(crate) fn faults(&self, right: &Self) -> Vec<Fault> {
         let mut faults = Vec::new();
         let values = |info: &Self, label: &str| -> Vec<String> {
@@ -178,19 +179,19 @@ impl BagInfo {
         faults
     }
 
-    /// Whether it tells anything of when and where the run was.
+    /// Returns whether the labels say when or where the run was.
     pub(crate) fn tells_circumstances(&self) -> bool {
         self.0.iter().any(|(label, _)| CIRCUMSTANCES.contains(&label.as_str()))
     }
 
-    /// Takes over what `info` tells of when and where the run was.
+    /// Takes over what `info` says of when and where the run was.
     pub(crate) fn keep_circumstances(&mut self, info: &Self) {
         let told = info.0.iter().filter(|(label, _)| CIRCUMSTANCES.contains(&label.as_str()));
         self.0.extend(told.take(MOST_LABELS).cloned());
     }
 }
 
-/// `text` on one line: control characters would begin another label.
+/// Writes `text` on one line: control characters would begin another label.
 pub(super) fn one_line(text: &str) -> String {
     let line: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     line.trim().to_owned()

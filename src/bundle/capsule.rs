@@ -17,7 +17,7 @@ pub struct Capsule {
     pub bytes: Vec<u8>,
 }
 
-/// This program's own capsule: the same bytes from every build of the same source.
+/// Returns this program's own capsule: the same bytes from every build of the same source.
 pub fn own() -> Capsule {
     let tree: Tree =
         FILES.iter().map(|(path, bytes)| ((*path).to_owned(), bytes.to_vec())).collect();

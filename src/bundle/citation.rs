@@ -28,8 +28,8 @@ enum Name<'a> {
 }
 
 impl<'a> Name<'a> {
-    /// `Family, Given` is taken as written; of `Given Family` the last word is the family name, with the lower-case particles
-    /// before it. One word, or a name with an article, is a group.
+    /// Splits `name` into its parts. `Family, Given` is taken as written; of `Given Family` the last word is the family
+    /// name, with the lower-case particles before it. One word, or a name with an article, is a group.
     fn of(name: &'a str) -> Self {
         if let Some((family, given)) = name.split_once(',') {
             return Self::person(given.trim().to_owned(), family.trim());
@@ -57,7 +57,7 @@ impl<'a> Name<'a> {
         Self::Person { given, particle: particle.join(" "), family: family.join(" ") }
     }
 
-    /// The lines of an entry in a list of authors.
+    /// Returns the lines of an entry in a list of authors.
     fn lines(&self) -> Vec<String> {
         match self {
             Self::Entity(name) => vec![format!("name: {}", quoted(name))],
@@ -70,7 +70,7 @@ impl<'a> Name<'a> {
         }
     }
 
-    /// As Zenodo takes it: `Family, Given`.
+    /// Returns the name as Zenodo takes it: `Family, Given`.
     fn sorted(&self) -> String {
         match self {
             Self::Entity(name) => (*name).to_owned(),
@@ -84,7 +84,7 @@ impl<'a> Name<'a> {
     }
 }
 
-/// Who answers for the bundle: a manifest may name nobody.
+/// Returns those who answer for the bundle: a manifest may name nobody.
 fn authors(content: &BundleContent) -> Vec<Person> {
     if content.authors.is_empty() {
         let name = format!("The authors of {}", content.name);
@@ -98,7 +98,7 @@ fn summary(content: &BundleContent) -> String {
     format!("{}{partial}", content.description)
 }
 
-/// `CITATION.cff`. Every value is quoted as JSON quotes it, which YAML reads alike.
+/// Writes `CITATION.cff`. Every value is quoted as JSON quotes it, which YAML reads alike.
 pub(super) fn cff(
     content: &BundleContent,
     circumstance: &Circumstance,
@@ -159,7 +159,7 @@ pub(super) fn cff(
     text
 }
 
-/// `.zenodo.json`. The publication date is the day of the deposit, which Zenodo fills in.
+/// Writes `.zenodo.json`. The publication date is the day of the deposit, which Zenodo fills in.
 pub(super) fn zenodo(content: &BundleContent, digest: ResultsDigest) -> Vec<u8> {
     let creators: Vec<Value> = authors(content)
         .into_iter()
@@ -203,13 +203,13 @@ fn doi(url: &str) -> Option<&str> {
     url.strip_prefix("https://doi.org/").filter(|doi| doi.starts_with("10."))
 }
 
-/// Whether `license` may be an SPDX identifier: neither an address nor words.
+/// Returns whether `license` may be an SPDX identifier: neither an address nor words.
 fn is_spdx(license: &str) -> bool {
     !license.is_empty() && license.bytes().all(|b| b.is_ascii_alphanumeric() || b"-.+".contains(&b))
 }
 
-/// The authors at the beginning of a reference, each with initials before the family name, and the rest. Where it does not
-/// begin so, the whole is the title.
+/// Splits a reference into the authors at its beginning, each with initials before the family name, and the rest. Where
+/// it does not begin so, the whole is the title.
 fn reference(text: &str) -> (Vec<Name<'_>>, &str) {
     let (mut names, mut rest) = (Vec::new(), text);
     while let Some((part, after)) = rest.split_once(", ") {
@@ -229,7 +229,7 @@ fn reference(text: &str) -> (Vec<Name<'_>>, &str) {
     (names, rest)
 }
 
-/// `lines` as one entry of a list, indented by `depth`.
+/// Writes `lines` as one entry of a list, indented by `depth`.
 fn entry(lines: &[String], depth: usize) -> String {
     let indent = " ".repeat(depth);
     let line = |(i, line): (usize, &String)| {

@@ -16,7 +16,7 @@ pub enum Class {
 }
 
 impl Class {
-    /// The word for it.
+    /// Returns the word for the class.
     pub fn name(self) -> &'static str {
         match self {
             Self::Given => "given",
@@ -109,12 +109,12 @@ const TABLE: &[Row] = &[
     Row(Which::File(format::PREVIEW), Class::Derived(3), "the same"),
 ];
 
-/// The class of the file `path` of `bundle`; `None` where it has none and so does not belong there.
+/// Returns the class of the file `path` of `bundle`; `None` where it has none and so does not belong there.
 pub fn class_of(bundle: &Bundle, path: &str) -> Option<Class> {
     TABLE.iter().find(|Row(which, ..)| fits(which, bundle, path)).map(|Row(_, class, _)| *class)
 }
 
-/// The class of a tag file, which needs no bundle to be told.
+/// Returns whether `path` is a tag file's, which can be said without the bundle.
 pub fn is_tag_file(path: &str) -> bool {
     let is_it = |Row(which, ..): &Row| matches!(which, Which::Tag(name) if *name == path);
     TABLE.iter().any(is_it)
@@ -136,7 +136,7 @@ fn fits(which: &Which, bundle: &Bundle, path: &str) -> bool {
     }
 }
 
-/// The table as `docs/bundle-format.md` prints it.
+/// Writes the table as `docs/bundle-format.md` prints it.
 pub fn table_in_markdown() -> String {
     let mut text =
         "| file | class | level | from, or what it is |\n| --- | --- | --- | --- |\n".to_owned();

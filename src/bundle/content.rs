@@ -139,7 +139,7 @@ pub struct Circumstance {
 }
 
 impl Circumstance {
-    /// The circumstances of a run that must be byte-identical everywhere: nothing but the given instant.
+    /// Returns the circumstances of a run that must be byte-identical everywhere: nothing but the given instant.
     pub fn reproducible(at: Moment) -> Self {
         Self {
             version: super::format::VERSION.to_owned(),

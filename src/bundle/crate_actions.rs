@@ -5,7 +5,7 @@ use super::crate_metadata::Graph;
 use super::{bag, format};
 
 impl Graph<'_> {
-    /// What was done: the run, one action a condition, the analysis, and who had them done.
+    /// Describes what was done: the run, one action a condition, the analysis, and who had them done.
     pub(super) fn actions(&self) -> Vec<Entity> {
         let (runner, simulate, analyze) = self.tools();
         let (content, circumstance) = (self.content, self.circumstance);

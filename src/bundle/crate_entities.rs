@@ -7,26 +7,26 @@ use serde_json::{Map, Value, json};
 pub(super) struct Entity(Map<String, Value>);
 
 impl Entity {
-    /// An entity with its identifier and type or types.
+    /// Creates an entity with its identifier and type or types.
     pub(super) fn new(id: &str, kinds: &[&str]) -> Self {
         let kinds = collapse(kinds.iter().map(|kind| json!(kind)).collect());
         Self(Map::from_iter([("@id".into(), json!(id)), ("@type".into(), kinds)]))
     }
 
-    /// With a text.
+    /// Adds a text.
     #[must_use]
     pub(super) fn text(mut self, key: &str, value: impl Into<String>) -> Self {
         self.0.insert(key.into(), Value::String(value.into()));
         self
     }
 
-    /// With a reference to another entity.
+    /// Adds a reference to another entity.
     #[must_use]
     pub(super) fn refer(self, key: &str, id: &str) -> Self {
         self.refer_all(key, [id])
     }
 
-    /// With references. One-element arrays are flagged by the validator (ro-crate-1.1_24.1), empty ones say nothing.
+    /// Adds references. One-element arrays are flagged by the validator (ro-crate-1.1_24.1), empty ones say nothing.
     #[must_use]
     pub(super) fn refer_all<S: AsRef<str>>(
         mut self,
@@ -40,7 +40,7 @@ impl Entity {
         self
     }
 
-    /// The same through `change` where `wanted` is there.
+    /// Applies `change` where `wanted` is there, and returns the entity as it is otherwise.
     #[must_use]
     pub(super) fn with<T>(self, wanted: Option<T>, change: impl FnOnce(Self, T) -> Self) -> Self {
         match wanted {

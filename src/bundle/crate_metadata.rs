@@ -21,7 +21,7 @@ const PROFILES: [(&str, &str, &str); 4] = [
     ("https://w3id.org/workflowhub/workflow-ro-crate/1.0", "Workflow RO-Crate", "1.0"),
 ];
 
-/// The document for a payload that holds everything but itself and the preview.
+/// Writes the document for a payload that holds everything but itself and the preview.
 pub(super) fn document(
     content: &BundleContent,
     circumstance: &Circumstance,
@@ -65,7 +65,7 @@ pub(super) struct Graph<'a> {
 }
 
 impl Graph<'_> {
-    /// The metadata's own descriptor, the crate and what its identifiers mean.
+    /// Describes the metadata's own descriptor, the crate and what its identifiers mean.
     fn root(&self, results: ResultsDigest, study: StudyDigest) -> Vec<Entity> {
         let content = self.content;
         let parts = self.files.keys().filter(|path| !path.starts_with(format::TRIALS));
@@ -143,7 +143,7 @@ impl Graph<'_> {
             .collect()
     }
 
-    /// The manifest as a workflow of two steps, and the program that carries them out.
+    /// Describes the manifest as a workflow of two steps, and the program that carries them out.
     fn workflow(&self) -> Vec<Entity> {
         let version = &self.circumstance.version;
         let (runner, simulate, analyze) = self.tools();
@@ -275,7 +275,7 @@ impl Graph<'_> {
         entities
     }
 
-    /// Identifiers of the runner and its two tools.
+    /// Returns the identifiers of the runner and its two tools.
     pub(super) fn tools(&self) -> (String, String, String) {
         let (home, version) = (format::HOME, &self.circumstance.version);
         (
@@ -320,7 +320,7 @@ fn described(entity: Entity, path: &str, bytes: &[u8], name: &str, description: 
         .text("sha256", Sha256Digest::of(bytes).hex())
 }
 
-/// Name and description of a payload file.
+/// Returns the name and description of a payload file.
 fn title(path: &str) -> (String, String) {
     let last = path.rsplit('/').next().unwrap_or(path);
     let stem = last.split('.').next().unwrap_or(last);
@@ -382,7 +382,7 @@ fn title(path: &str) -> (String, String) {
     (name, description)
 }
 
-/// Identifier of a licence: its address, or a local one for words.
+/// Returns the identifier of a licence: its address, or a local one for words.
 fn license_id(license: &str) -> String {
     license_address(license)
         .unwrap_or_else(|| format!("#license-{}", Sha256Digest::of(license).short()))

@@ -42,7 +42,7 @@ impl People {
         Self { authors, organizations }
     }
 
-    /// Who answers for the bundle.
+    /// Returns the identifier of who answers for the bundle.
     pub(super) fn publisher(&self, content: &BundleContent) -> &str {
         let first = content.authors.first();
         first.map_or(&self.authors[0], |author| &self.organizations[affiliation(author)].0)

@@ -7,7 +7,7 @@ use crate::digest::{ResultsDigest, Sha256Digest};
 use crate::table::{Column, DescribedTable, Kind};
 use serde_json::{Map, Value, json};
 
-/// `datapackage.json` of a payload that holds the described files.
+/// Writes `datapackage.json` of a payload that holds the described files.
 pub(super) fn package(
     content: &BundleContent,
     tables: &[DescribedTable],
@@ -126,7 +126,7 @@ fn number(kind: Kind, bound: f64) -> Value {
     if kind == Kind::Integer { json!(bound as i64) } else { json!(bound) }
 }
 
-/// `value` as a constraint holds it: JSON of its own type.
+/// Returns `value` as a constraint holds it: JSON of its own type.
 fn typed(kind: Kind, value: &str) -> Value {
     match kind {
         Kind::Text => json!(value),
@@ -148,7 +148,7 @@ fn in_a_sentence(column: &Column) -> String {
     text
 }
 
-/// `data-dictionary.md`.
+/// Writes `data-dictionary.md`.
 pub(super) fn dictionary(content: &BundleContent, tables: &[DescribedTable]) -> String {
     let mut text = format!(
         "# Data dictionary: {}\n\nEvery column of every CSV file of this bundle; `{}` says the same for programs.\n\nThe files are \

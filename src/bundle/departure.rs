@@ -28,7 +28,8 @@ impl Departure {
         Self { partial, overrides: overrides.map(text).collect(), selection }
     }
 
-    /// On one line: `partial: --trials 1; overrides: seed = 7`; `None` where the manifest was run as it stands.
+    /// Describes the departure on one line: `partial: --trials 1; overrides: seed = 7`; `None` where the manifest was
+    /// run as it stands.
     pub fn in_words(&self) -> Option<String> {
         let mut parts = Vec::new();
         if self.partial {
@@ -46,7 +47,8 @@ impl Departure {
         (!parts.is_empty()).then(|| visible(&parts.join("; ")).replace('\n', " "))
     }
 
-    /// The line that gives this very run again in the folder of the sealed manifest; `None` where it cannot stand on a line.
+    /// Returns the line that gives this very run again in the folder of the sealed manifest; `None` where it cannot
+    /// stand on a line.
     pub fn command(&self) -> Option<String> {
         let set = self.overrides.iter().flat_map(|set| ["--set".to_owned(), set.clone()]);
         let part = self.selection.as_ref()?.options();
@@ -60,7 +62,7 @@ impl Departure {
     }
 }
 
-/// `text` as one word of a POSIX shell on one line of text; `None` where it has characters that no line shows.
+/// Quotes `text` as one word of a POSIX shell on one line of text; `None` where it has characters that no line shows.
 pub fn shell_word(text: &str) -> Option<String> {
     let plain = |c: char| c.is_ascii_alphanumeric() || "_@%+=:,./-".contains(c);
     if !text.is_empty() && text.chars().all(plain) {

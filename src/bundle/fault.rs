@@ -14,7 +14,7 @@ pub struct Fault {
 }
 
 impl Fault {
-    /// A fault at `path`.
+    /// Creates a fault at `path`.
     pub fn new(
         path: impl Into<String>,
         expected: impl Into<String>,
@@ -28,7 +28,7 @@ impl Fault {
         }
     }
 
-    /// The same with a hint.
+    /// Adds a hint.
     #[must_use]
     pub fn hint(mut self, hint: impl Into<String>) -> Self {
         self.hint = hint.into();
@@ -39,8 +39,9 @@ impl Fault {
 /// Characters of a stranger's text that are shown.
 const LONGEST: usize = 2000;
 
-/// `text` of unknown origin as a terminal may show it, cut where it is endless: control characters, which could move the cursor and rewrite what
-/// was said, and those that turn the direction of writing stand as escapes. Line feeds stay.
+/// Writes `text` of unknown origin as a terminal may show it, cut where it is endless: control characters, which could
+/// move the cursor and rewrite what was said, and those that turn the direction of writing stand as escapes. Line feeds
+/// stay.
 pub fn visible(text: &str) -> String {
     let turns = |c| matches!(c, '\u{61c}' | '\u{200e}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     let mut shown = String::new();

@@ -66,7 +66,7 @@ pub const ENGINE: &str = "engine/";
 /// The line that installs the program from the root of a checkout of its source. No registry has it.
 pub const INSTALL: &str = "cargo install --path . --locked";
 
-/// Where and how to install the program of `version`, in words.
+/// Says in words where and how to install the program of `version`.
 pub fn install_words(version: &str) -> String {
     format!("in a checkout of the source of reenact {version}, `{INSTALL}`")
 }
@@ -76,7 +76,7 @@ pub fn records_path(slug: &str) -> String {
     format!("{TRIALS}{slug}.jsonl")
 }
 
-/// What to do about a bundle of the newer format `found`.
+/// Says what to do about a bundle of the newer format `found`.
 pub fn newer_format_hint(found: u64) -> String {
     format!(
         "this is reenact {VERSION}, which reads formats 1 to {FORMAT}; install the version named after \
@@ -88,7 +88,7 @@ pub fn newer_format_hint(found: u64) -> String {
 pub const NO_FORMAT_HINT: &str = "every release writes its format's number: ask the author for the bundle as `reenact run` \
                                   sealed it";
 
-/// Whether this program reads format `found`, which the file `path` states.
+/// Checks that this program reads format `found`, which the file `path` states.
 ///
 /// # Errors
 /// Where it is newer, or older than the first.
@@ -106,7 +106,7 @@ pub(super) fn check(path: &str, found: u64) -> Result<(), Fault> {
     }
 }
 
-/// The media type that archives expect for `path`, by its extension.
+/// Returns the media type that archives expect for `path`, by its extension.
 pub fn media_type(path: &str) -> &'static str {
     match path.rsplit('.').next().unwrap_or_default() {
         "yaml" | "yml" | "cff" => "application/yaml",

@@ -57,15 +57,15 @@ use std::collections::BTreeMap;
 /// Every file of a bundle by its path relative to the bag's root (`bagit.txt`, `data/study.yaml`), sorted bytewise.
 pub type Tree = BTreeMap<String, Vec<u8>>;
 
-/// Whether `path`, relative to `data/`, belongs to the result half: what is byte-identical for everyone.
+/// Returns whether `path`, relative to `data/`, belongs to the result half: what is byte-identical for everyone.
 pub fn in_result_half(path: &str) -> bool {
     path == format::STUDY
         || path == format::RESOLVED
         || [format::INPUTS, format::TRIALS, format::RESULTS].iter().any(|d| path.starts_with(d))
 }
 
-/// The results digest of a tree: SHA-256 over the sorted lines `<hex>  <path>` of its result half, each ended by
-/// a line feed, paths relative to `data/`.
+/// Computes the results digest of a tree: SHA-256 over the sorted lines `<hex>  <path>` of its result half, each ended
+/// by a line feed, paths relative to `data/`.
 pub fn results_digest(tree: &Tree) -> ResultsDigest {
     let mut lines: Vec<String> = tree
         .iter()

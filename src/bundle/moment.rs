@@ -5,13 +5,14 @@
 pub struct Moment(pub i64);
 
 impl Moment {
-    /// `2026-01-15`, in UTC.
+    /// Writes the day, in UTC: `2026-01-15`.
     pub fn date(self) -> String {
         let (year, month, day) = civil(self.0.div_euclid(86_400));
         format!("{year:04}-{month:02}-{day:02}")
     }
 
-    /// `2026-01-15T12:00:00+00:00`. RO-Crate's validator refuses `Z`, fractions and other offsets.
+    /// Writes the instant as `2026-01-15T12:00:00+00:00`. RO-Crate's validator refuses `Z`, fractions and other
+    /// offsets.
     pub fn iso(self) -> String {
         let second = self.0.rem_euclid(86_400);
         format!(
@@ -33,8 +34,8 @@ impl Moment {
     }
 }
 
-/// Year, month and day of the proleptic Gregorian calendar for a day counted from 1970-01-01
-/// (H. Hinnant, "chrono-Compatible Low-Level Date Algorithms", `civil_from_days`).
+/// Computes year, month and day of the proleptic Gregorian calendar for a day counted from 1970-01-01 (H. Hinnant,
+/// "chrono-Compatible Low-Level Date Algorithms", `civil_from_days`).
 fn civil(days: i64) -> (i64, i64, i64) {
     let shifted = days + 719_468;
     let era = shifted.div_euclid(146_097);
@@ -48,7 +49,7 @@ fn civil(days: i64) -> (i64, i64, i64) {
     (year_of_era + era * 400 + i64::from(month <= 2), month, day)
 }
 
-/// The inverse of [`civil`] (Hinnant, `days_from_civil`).
+/// Computes the inverse of [`civil`] (Hinnant, `days_from_civil`).
 fn days(year: i64, month: i64, day: i64) -> i64 {
     let year = if month <= 2 { year - 1 } else { year };
     let era = year.div_euclid(400);

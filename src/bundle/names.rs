@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 /// Names that Windows gives to devices, whatever their extension.
 const DEVICES: [&str; 4] = ["con", "prn", "aux", "nul"];
 
-/// Why it would be unsafe to unpack a file called `path` (relative, `/` between parts); `None` where it is safe.
+/// Returns why it would be unsafe to unpack a file called `path` (relative, `/` between parts); `None` where it is
+/// safe.
 pub fn hazard(path: &str) -> Option<&'static str> {
     if path.chars().any(char::is_control) {
         return Some("a control character in its name");
@@ -37,8 +38,8 @@ pub fn hazard(path: &str) -> Option<&'static str> {
     })
 }
 
-/// Whether every character of `path` is one that `BagIt` tools, RO-Crate identifiers, shells and file systems agree on.
-/// This leaves no room for two Unicode spellings of one name.
+/// Returns whether every character of `path` is one that `BagIt` tools, RO-Crate identifiers, shells and file systems
+/// agree on. This leaves no room for two Unicode spellings of one name.
 pub fn is_portable(path: &str) -> bool {
     path.bytes().all(|b| b.is_ascii_alphanumeric() || b"._-/".contains(&b))
 }
@@ -69,18 +70,18 @@ impl Names {
         None
     }
 
-    /// How many files and folders were entered.
+    /// Returns how many files and folders were entered.
     pub fn len(&self) -> usize {
         self.seen.len()
     }
 
-    /// Whether none was.
+    /// Returns whether nothing was entered.
     pub fn is_empty(&self) -> bool {
         self.seen.is_empty()
     }
 }
 
-/// A portable file name for something called `as_written` elsewhere: the last part of its path, every character
+/// Makes a portable file name for something called `as_written` elsewhere: the last part of its path, every character
 /// that is not portable replaced by a hyphen.
 pub fn portable(as_written: &str) -> String {
     let last = as_written.rsplit(['/', '\\']).find(|part| !part.is_empty()).unwrap_or("input");

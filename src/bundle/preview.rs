@@ -9,7 +9,7 @@ h1,h2{line-height:1.2}code{font-size:.85em;overflow-wrap:anywhere}table{border-c
 td,th{text-align:left;padding:.25em .75em .25em 0;border-bottom:1px solid #ddd;vertical-align:top}\
 td:last-child,th:last-child{text-align:right;padding-right:0}img{max-width:100%;height:auto}figure{margin:1em 0}";
 
-/// The page.
+/// Writes the page.
 pub(super) fn page(
     content: &BundleContent,
     circumstance: &Circumstance,

@@ -108,47 +108,47 @@ impl Bundle {
         }
     }
 
-    /// How it was laid out.
+    /// Returns how the bundle was laid out.
     pub fn form(&self) -> Form {
         self.form
     }
 
-    /// Every file, by its path in the bag.
+    /// Returns every file, by its path in the bag.
     pub fn tree(&self) -> &Tree {
         &self.tree
     }
 
-    /// The study's short name.
+    /// Returns the study's short name.
     pub fn name(&self) -> &str {
         &self.resolved.name
     }
 
-    /// The engine that ran it.
+    /// Returns the engine that ran it.
     pub fn engine(&self) -> &str {
         &self.resolved.engine
     }
 
-    /// The version of its layout and of what is derived.
+    /// Returns the version of the bundle's layout and of what is derived.
     pub fn format(&self) -> u64 {
         self.resolved.bundle_format
     }
 
-    /// Whether only part of the study was run.
+    /// Returns whether only part of the study was run.
     pub fn is_partial(&self) -> bool {
         self.resolved.partial
     }
 
-    /// The manifest, byte for byte.
+    /// Returns the manifest, byte for byte.
     pub fn study_yaml(&self) -> &[u8] {
         self.payload(format::STUDY).unwrap_or_default()
     }
 
-    /// The study with everything resolved, as `run` sealed it.
+    /// Returns the study with everything resolved, as `run` sealed it.
     pub fn resolved(&self) -> &ResolvedStudy {
         &self.resolved.study
     }
 
-    /// Every input by every path it is known by.
+    /// Returns every input by every path it is known by.
     pub fn inputs(&self) -> &[InputEntry] {
         &self.resolved.inputs
     }
@@ -160,24 +160,24 @@ impl Bundle {
         self.study_inputs.iter().find(|input| input.as_written == entry.as_written)
     }
 
-    /// The bytes of the input that the study calls `as_written`.
+    /// Returns the bytes of the input that the study calls `as_written`.
     pub fn input(&self, as_written: &str) -> Option<&[u8]> {
         let entry = self.resolved.inputs.iter().find(|input| input.as_written == as_written)?;
         self.payload(&entry.path)
     }
 
-    /// The conditions in plan order.
+    /// Returns the conditions in plan order.
     pub fn conditions(&self) -> &[ConditionEntry] {
         &self.resolved.conditions
     }
 
-    /// The record lines of a condition, in plan order; none where there is no such condition.
+    /// Returns the record lines of a condition, in plan order; none where there is no such condition.
     pub fn record_lines(&self, slug: &str) -> impl Iterator<Item = &str> {
         let bytes = self.payload(&format::records_path(slug)).unwrap_or_default();
         std::str::from_utf8(bytes).unwrap_or_default().lines()
     }
 
-    /// All records, in plan order.
+    /// Reads all records, in plan order.
     ///
     /// # Errors
     /// Every line that is no record; and where all of them together would take more memory than honest ones can.
@@ -209,12 +209,12 @@ impl Bundle {
         if faults.is_empty() { Ok(records) } else { Err(faults) }
     }
 
-    /// The file `path` under `results/`.
+    /// Returns the file `path` under `results/`.
     pub fn result(&self, path: &str) -> Option<&[u8]> {
         self.payload(&format!("{}{path}", format::RESULTS))
     }
 
-    /// Every file under `results/`, by its path there.
+    /// Returns every file under `results/`, by its path there.
     pub fn results(&self) -> impl Iterator<Item = (&str, &[u8])> {
         self.under(format::RESULTS)
     }
@@ -226,22 +226,22 @@ impl Bundle {
         })
     }
 
-    /// What came out, computed from the files themselves.
+    /// Computes the digest of what came out from the files themselves.
     pub fn results_digest(&self) -> ResultsDigest {
         results_digest(&self.tree)
     }
 
-    /// What was asked, computed from the resolved study.
+    /// Computes the digest of what was asked from the resolved study.
     pub fn study_digest(&self) -> StudyDigest {
         StudyDigest(Sha256Digest::of(self.payload(format::RESOLVED).unwrap_or_default()))
     }
 
-    /// This very bundle; a bare crate has no bag to identify.
+    /// Returns the identifier of this very bundle; a bare crate has no bag to identify.
     pub fn bundle_id(&self) -> Option<BundleId> {
         self.tree.get(format::TAG_MANIFEST).map(|bytes| BundleId(Sha256Digest::of(bytes)))
     }
 
-    /// The circumstances of the run, where the crate's metadata tells them as this program writes them.
+    /// Returns the circumstances of the run, where the crate's metadata states them as this program writes them.
     pub fn circumstance(&self) -> Option<Circumstance> {
         let told = told::circumstance(&self.tree)?;
         let files = self.circumstance_files();
@@ -249,12 +249,12 @@ impl Bundle {
         Some(Circumstance { files, ..told })
     }
 
-    /// Every file under `circumstances/`, by its path there: what the machine of the run measured.
+    /// Returns every file under `circumstances/`, by its path there: what the machine of the run measured.
     pub fn circumstance_files(&self) -> impl Iterator<Item = (&str, &[u8])> {
         self.under(format::CIRCUMSTANCES)
     }
 
-    /// The first file where the engine's own source lies, by its path in the bag. It is data, never to be run.
+    /// Returns the first file where the engine's own source lies, by its path in the bag. It is data, never to be run.
     pub fn capsule(&self) -> Option<&str> {
         let folder = BundlePath::payload(format::ENGINE);
         self.tree.keys().find(|path| path.starts_with(&*folder)).map(String::as_str)
@@ -265,7 +265,8 @@ impl Bundle {
     }
 }
 
-/// The version stands in the bag's facts and in the resolved study; either may ask for a newer program.
+/// Checks that this program reads the version, which stands in the bag's facts and in the resolved study; either may
+/// ask for a newer program.
 pub(crate) fn check_version(tree: &Tree) -> Result<(), Fault> {
     #[derive(serde::Deserialize)]
     #[serde(rename_all = "kebab-case")]

@@ -5,7 +5,7 @@ use crate::digest::ResultsDigest;
 use crate::table::{Column, Kind};
 use std::collections::BTreeSet;
 
-/// How to check the bundle and run it again.
+/// Writes how to check the bundle and run it again.
 pub(super) fn readme(
     content: &BundleContent,
     circumstance: &Circumstance,
@@ -107,7 +107,7 @@ The crates that it needs are named in its `Cargo.lock`, each with its digest; th
     text + &later
 }
 
-/// The command that gives the results digest again, wherever the bundle is unpacked.
+/// Returns the command that gives the results digest again, wherever the bundle is unpacked.
 fn again(content: &BundleContent) -> String {
     let departure = Departure::of(&content.resolved, content.partial);
     let mut text = "## Run it again\n\n".to_owned();
@@ -140,7 +140,8 @@ Inputs are then those in `inputs/`, whatever paths the manifest names them by; t
     text
 }
 
-/// Three lines that read the trials with what people analyse data with; nothing where there are no trials to read.
+/// Writes three lines that read the trials with what people analyse data with; nothing where there are no trials to
+/// read.
 fn reading(content: &BundleContent) -> String {
     let Some(trials) = content.tables.iter().find(|table| table.path == "results/trials.csv")
     else {
@@ -185,7 +186,7 @@ print(aggregate(trials[\"{measure}\"], by, function(x) c(n = sum(!is.na(x)), mea
     )
 }
 
-/// Which licences hold for what.
+/// Writes which licences hold for what.
 pub(super) fn license(content: &BundleContent) -> String {
     let mut text = format!("This bundle is licensed under {}.\n", with_address(&content.license));
     let own: BTreeSet<_> = content
@@ -209,7 +210,7 @@ fn with_address(license: &str) -> String {
     }
 }
 
-/// Where the text of `license` is: an SPDX identifier's page, or the address itself.
+/// Returns where the text of `license` is: an SPDX identifier's page, or the address itself.
 pub(super) fn license_address(license: &str) -> Option<String> {
     if license.starts_with("https://") || license.starts_with("http://") {
         return Some(license.to_owned());

@@ -52,7 +52,7 @@ pub struct InputEntry {
 }
 
 impl Resolved {
-    /// The document for `content`.
+    /// Creates the document for `content`.
     pub(crate) fn of(content: &BundleContent) -> Self {
         Self {
             bundle_format: format::FORMAT,
@@ -78,12 +78,12 @@ impl Resolved {
         }
     }
 
-    /// Canonical JSON, indented for people.
+    /// Writes canonical JSON, indented for people.
     pub(crate) fn to_bytes(&self) -> Vec<u8> {
         json::indented(&json::canonical_of(self)).into_bytes()
     }
 
-    /// Reads the document; a newer format is told apart before anything else is looked at.
+    /// Reads the document; a newer format is recognised before anything else is looked at.
     pub(crate) fn read(bytes: &[u8]) -> Result<Self, Fault> {
         #[derive(Deserialize)]
         #[serde(rename_all = "kebab-case")]

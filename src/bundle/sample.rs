@@ -14,7 +14,8 @@ use std::sync::OnceLock;
 pub(crate) const ENGINE: &str = "test-1";
 pub(crate) const STUDY: &str = "name: corridors\nseed: 7\n";
 
-/// The record that the pretended engine yields for a trial of the condition `prior`: a pure function of its arguments.
+/// Returns the record that the pretended engine yields for a trial of the condition `prior`: a pure function of its
+/// arguments.
 pub(crate) fn record(seed: u64, prior: &str, trial: u32) -> TrialRecord {
     let key = Sha256Digest::of(format!("{ENGINE}/{seed}/{prior}/{trial}"));
     let distance = f64::from(key.0[0]) + 0.5;
@@ -33,7 +34,7 @@ pub(crate) fn record(seed: u64, prior: &str, trial: u32) -> TrialRecord {
     }
 }
 
-/// Results that follow from records.
+/// Makes results that follow from records.
 pub(crate) fn results(records: &[TrialRecord]) -> Vec<(String, Vec<u8>)> {
     let mut trials = Table::new(["key", "prior", "trial", "outcome", "distance-m-at-90"]);
     let mut sum = 0.0;
@@ -59,7 +60,7 @@ pub(crate) fn results(records: &[TrialRecord]) -> Vec<(String, Vec<u8>)> {
     ]
 }
 
-/// What the columns of the sample's tables say.
+/// Describes the columns of the sample's tables.
 pub(crate) fn tables() -> Vec<DescribedTable> {
     let table = |columns: &[&str]| Table::new(columns.iter().copied());
     let distance = |name: &str| Column::number(name, "m", "Way travelled at 90 %").at_least(0.0);
@@ -93,12 +94,12 @@ pub(crate) fn tables() -> Vec<DescribedTable> {
     ]
 }
 
-/// A resolved study that says no more than `document`.
+/// Makes a resolved study that says no more than `document`.
 pub(crate) fn resolved(document: serde_json::Value) -> ResolvedStudy {
     serde_json::from_value(document).unwrap()
 }
 
-/// The content that sealing the sample study with `records` (by condition) yields.
+/// Returns the content that sealing the sample study with `records` (by condition) yields.
 pub(crate) fn content_of(
     study_yaml: &[u8],
     seed: u64,
@@ -172,13 +173,13 @@ pub(crate) fn sealed() -> Sealed {
     seal(&content(), &circumstance()).unwrap()
 }
 
-/// The sample bundle, sealed once.
+/// Returns the sample bundle, sealed once.
 pub(crate) fn zip() -> &'static [u8] {
     static ZIP: OnceLock<Vec<u8>> = OnceLock::new();
     ZIP.get_or_init(|| sealed().zip(Form::Bag))
 }
 
-/// A zip of just these entries, whatever their names.
+/// Makes a zip of just these entries, whatever their names.
 pub(crate) fn zip_of(entries: &[(&str, &[u8])]) -> Vec<u8> {
     let mut zip = zip::ZipWriter::new(Cursor::new(Vec::new()));
     for (name, bytes) in entries {

@@ -5,8 +5,8 @@ use super::{BundlePath, Circumstance, Moment, Tree, format};
 use crate::json;
 use serde_json::Value;
 
-/// The circumstances that the metadata in `tree` tells, without the files that were measured; `None` where it does not
-/// tell them as this program writes them.
+/// Returns the circumstances that the metadata in `tree` states, without the files that were measured; `None` where it
+/// does not state them as this program writes them.
 pub(super) fn circumstance(tree: &Tree) -> Option<Circumstance> {
     let bytes = tree.get(&*BundlePath::payload(format::METADATA))?;
     let document = json::read::<Value>(bytes).ok()?;
@@ -30,7 +30,8 @@ pub(super) fn circumstance(tree: &Tree) -> Option<Circumstance> {
     })
 }
 
-/// Whether `text` can be a version and nothing else: a bundle's words end up in lines that people paste into a shell.
+/// Returns whether `text` can be a version and nothing else: a bundle's words end up in lines that people paste into a
+/// shell.
 pub fn is_version(text: &str) -> bool {
     text.len() <= 40
         && text.starts_with(|c: char| c.is_ascii_digit())

@@ -65,7 +65,7 @@ pub fn measured(
     Ok(MachineResults { verdicts, files })
 }
 
-/// The columns of the times of trials of a design of `factors`.
+/// Returns the columns of the times of trials of a design of `factors`.
 pub(super) fn columns(factors: &[Factor]) -> Vec<&str> {
     ["key"]
         .into_iter()
@@ -75,7 +75,7 @@ pub(super) fn columns(factors: &[Factor]) -> Vec<&str> {
         .collect()
 }
 
-/// One row a trial: key, factors, number, outcome and the columns of [`WALL_TIME_COLUMNS`].
+/// Makes a table of one row a trial: key, factors, number, outcome and the columns of [`WALL_TIME_COLUMNS`].
 fn table(plan: &Plan, records: &[TrialRecord], times: &WallTimes) -> Table {
     let factors = &plan.experiment.factors;
     let mut table = Table::new(columns(factors));

@@ -71,12 +71,12 @@ pub struct Sealed {
 }
 
 impl Sealed {
-    /// The bundle's file name.
+    /// Returns the bundle's file name.
     pub fn file_name(&self) -> String {
         format!("{}.zip", self.stem)
     }
 
-    /// The archive, byte-identical for equal trees.
+    /// Writes the archive, byte-identical for equal trees.
     pub fn zip(&self, form: Form) -> Vec<u8> {
         archive::write(&self.tree, &self.stem, form)
     }
@@ -204,7 +204,7 @@ fn check_name(path: &str) -> Result<(), SealError> {
     Err(SealError::Name { path: path.to_owned(), found })
 }
 
-/// The files of `bundle` in a bag: as they are, or in a new one where only the crate is there.
+/// Returns the files of `bundle` in a bag: as they are, or in a new one where only the crate is there.
 pub fn in_bag(bundle: &Bundle) -> Tree {
     if bundle.form() != Form::Crate {
         return bundle.tree().clone();
@@ -215,7 +215,7 @@ pub fn in_bag(bundle: &Bundle) -> Tree {
     bagged(payload, None, digests, bundle.is_partial()).0
 }
 
-/// What `bag-info.txt` says of `bundle`, with the circumstances of its run or without any.
+/// Returns what `bag-info.txt` says of `bundle`, with the circumstances of its run or without any.
 pub fn in_bag_info(bundle: &Bundle, circumstance: Option<&Circumstance>) -> bag::BagInfo {
     let payload = bundle.tree().iter().filter(|(path, _)| in_payload(path).is_some());
     let payload: Tree = payload.map(|(path, bytes)| (path.clone(), bytes.clone())).collect();
@@ -233,7 +233,7 @@ fn info_of(
     bag::BagInfo::of(payload, circumstance, results, study, partial, &uuid)
 }
 
-/// `payload` with the tag files of its bag.
+/// Returns `payload` with the tag files of its bag.
 fn bagged(
     payload: Tree,
     circumstance: Option<&Circumstance>,
@@ -254,14 +254,14 @@ fn bagged(
     (tree, bundle_id)
 }
 
-/// Whether readers that keep to `limits` take `tree`.
+/// Checks that readers that keep to `limits` take `tree`.
 fn check_size(tree: &Tree, limits: &Limits) -> Result<(), SealError> {
     let bytes = tree.values().map(|bytes| bytes.len() as u64).sum();
     let fits = bytes <= limits.bytes && tree.len() <= limits.entries;
     if fits { Ok(()) } else { Err(SealError::Size { files: tree.len(), bytes }) }
 }
 
-/// A UUID of version 8 made of the first bits of `digest` (RFC 9562, section 5.8 and appendix B.2).
+/// Makes a UUID of version 8 of the first bits of `digest` (RFC 9562, section 5.8 and appendix B.2).
 fn uuid(digest: &Sha256Digest) -> String {
     let mut bytes = digest.0;
     bytes[6] = bytes[6] & 0x0f | 0x80;

@@ -19,7 +19,7 @@ pub(super) struct Arguments {
     pub(super) command: Command,
 }
 
-/// The clap command, for completions and for the test that holds it together.
+/// Returns the clap command, for completions and for the test that holds it together.
 pub fn command() -> clap::Command {
     Arguments::command()
 }

@@ -66,8 +66,8 @@ impl Calibrator<'_> {
         Ok(CalibrationTrials::Csv(planned.showed(&records)?.to_csv().into_bytes()))
     }
 
-    /// The map that the robot of `spec` ends with, as a descriptor and an image. One exploration takes about a second, so
-    /// it is not kept in the store.
+    /// Returns the map that the robot of `spec` ends with, as a descriptor and an image. One exploration takes about a
+    /// second, so it is not kept in the store.
     pub(super) fn map(
         self,
         spec: &TrialSpec,

@@ -74,7 +74,7 @@ fn of(report: &Report, severity: Severity) -> impl Iterator<Item = &Finding> {
     report.findings.iter().filter(move |finding| finding.severity == severity)
 }
 
-/// Why this program could not judge the bundle to the end.
+/// Says why this program could not judge the bundle to the end.
 fn why_not_further(report: &Report) -> String {
     let obstacle = of(report, Severity::Obstacle).next();
     let engine = report.engine.as_deref().map(one_line).unwrap_or_default();
@@ -90,7 +90,7 @@ fn why_not_further(report: &Report) -> String {
     }
 }
 
-/// The refusal, with the first faults and what to do.
+/// Creates the refusal, with the first faults and what to do.
 fn refused(path: &Path, report: &Report, way_out: Option<&str>) -> Failure {
     let name = path.display().to_string();
     let severity = match report.verdict() {

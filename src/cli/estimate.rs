@@ -24,7 +24,7 @@ struct Known {
 }
 
 impl Estimate {
-    /// Of a run whose trials have these conditions, `cached` of them in the store.
+    /// Creates the estimate of a run whose trials have these conditions, `cached` of them in the store.
     pub(super) fn new(conditions: Vec<usize>, cached: usize, jobs: usize) -> Self {
         let mut known = vec![Known::default(); conditions.iter().max().map_or(0, |most| most + 1)];
         for condition in &conditions {
@@ -33,7 +33,8 @@ impl Estimate {
         Self { conditions, known, untold: cached, jobs, ..Self::default() }
     }
 
-    /// The trial at `index` of the plan has its record, which took `sim_s` of simulated time; 0 where it failed.
+    /// Notes that the trial at `index` of the plan has its record, which took `sim_s` of simulated time; 0 where it
+    /// failed.
     pub(super) fn finished(&mut self, index: usize, sim_s: f64, cached: bool) {
         let Some(known) = self.conditions.get(index).and_then(|c| self.known.get_mut(*c)) else {
             return;
@@ -51,12 +52,13 @@ impl Estimate {
         }
     }
 
-    /// Trials that are not finished.
+    /// Counts the trials that are not finished.
     pub(super) fn left(&self) -> usize {
         self.known.iter().map(|known| known.left).sum()
     }
 
-    /// Simulated seconds per second of the clock that has gone `elapsed_s`; `None` before anything was executed.
+    /// Computes the simulated seconds per second of the clock that has gone `elapsed_s`; `None` before anything was
+    /// executed.
     pub(super) fn rate(&self, elapsed_s: f64) -> Option<f64> {
         // Trials under way are half done, as a rule.
         let under_way = self.left().saturating_sub(self.untold).min(self.jobs.saturating_sub(1));
@@ -64,7 +66,7 @@ impl Estimate {
         (self.executed > 0 && elapsed_s > 0.0 && worked > 0.0).then(|| worked / elapsed_s)
     }
 
-    /// Seconds of the clock that the rest takes, where the clock has gone `elapsed_s`.
+    /// Estimates the seconds of the clock that the rest takes, where the clock has gone `elapsed_s`.
     pub(super) fn left_s(&self, elapsed_s: f64) -> Option<f64> {
         let mean = self.mean_s()?;
         let of = |known: &Known| {
@@ -78,7 +80,7 @@ impl Estimate {
         Some(to_simulate * fresh / self.rate(elapsed_s)?)
     }
 
-    /// Mean simulated time (s) of a trial.
+    /// Computes the mean simulated time (s) of a trial.
     fn mean_s(&self) -> Option<f64> {
         let (sum, finished) = self
             .known
@@ -93,7 +95,7 @@ fn count(n: usize) -> f64 {
     n as f64
 }
 
-/// `40 s`, `12 min`, `3 h 05 min`: as exact as it deserves.
+/// Writes `seconds` as exactly as they deserve: `40 s`, `12 min`, `3 h 05 min`.
 pub(super) fn in_words(seconds: f64) -> String {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
     let seconds = seconds.clamp(0.0, 1e9).round() as u64;

@@ -14,7 +14,7 @@ pub enum Exit {
 }
 
 impl Exit {
-    /// The number the process ends with.
+    /// Returns the number with which the process ends.
     pub fn code(self) -> u8 {
         match self {
             Self::Yes => 0,
@@ -34,12 +34,12 @@ pub(super) struct Failure {
 }
 
 impl Failure {
-    /// The request was not understood.
+    /// Creates the failure of a request that was not understood.
     pub(super) fn not_understood(message: impl std::fmt::Display) -> Self {
         Self { exit: Exit::NotUnderstood, message: message.to_string() }
     }
 
-    /// We failed.
+    /// Creates the failure of a command whose request was right: the fault is ours.
     pub(super) fn failed(message: impl std::fmt::Display) -> Self {
         Self { exit: Exit::Failed, message: message.to_string() }
     }

@@ -7,9 +7,9 @@ const INDENT: &str = "  ";
 /// Between two columns.
 const GAP: &str = "  ";
 
-/// `table` in lines of at most `width` characters where that can be: with names of columns over several lines, and with
-/// columns that still have no room in blocks below, each beside the first `keys` columns. Numbers stand to the right, the columns
-/// `left` to the left.
+/// Writes `table` in lines of at most `width` characters where that can be: with names of columns over several lines,
+/// and with columns that still have no room in blocks below, each beside the first `keys` columns. Numbers stand to the
+/// right, the columns `left` to the left.
 pub(super) fn aligned(table: &Table, keys: usize, left: &[usize], width: usize) -> String {
     let cells: Vec<Vec<String>> =
         table.rows.iter().map(|row| row.iter().map(ToString::to_string).collect()).collect();
@@ -88,7 +88,7 @@ fn block(
     text
 }
 
-/// `text` in lines of at most `width` characters, each indented.
+/// Wraps `text` into lines of at most `width` characters, each indented.
 pub(super) fn wrapped(text: &str, indent: usize, width: usize) -> String {
     let mut out = String::new();
     let mut line = String::new();
@@ -105,7 +105,7 @@ pub(super) fn wrapped(text: &str, indent: usize, width: usize) -> String {
     out + &format!("{:indent$}{line}\n", "")
 }
 
-/// `text` with every line that is longer than `width` wrapped, below its own beginning.
+/// Wraps every line of `text` that is longer than `width`, below its own beginning.
 pub(super) fn narrowed(text: &str, width: usize) -> String {
     let narrow = |line: &str| {
         let indent = length(line) - length(line.trim_start());
@@ -122,12 +122,12 @@ fn total(widths: &[usize]) -> usize {
     INDENT.len() + widths.iter().sum::<usize>() + GAP.len() * widths.len().saturating_sub(1)
 }
 
-/// The parts of `name` between which it may be folded: after hyphens, at spaces.
+/// Splits `name` into the parts between which it may be folded: after hyphens, at spaces.
 fn pieces(name: &str) -> Vec<&str> {
     name.split(' ').flat_map(|word| word.split_inclusive('-')).collect()
 }
 
-/// `name` in lines of at most `room` characters, or of one piece.
+/// Folds `name` into lines of at most `room` characters, or of one piece.
 fn folded(name: &str, room: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for piece in pieces(name) {

@@ -83,7 +83,7 @@ fn wait(terminal: Terminal) {
     let _ = std::thread::Builder::new().name("interrupts".to_owned()).spawn(wait);
 }
 
-/// Other systems end the process themselves; what it was writing is swept up by a later run.
+/// Does nothing: other systems end the process themselves, and a later run sweeps up what it was writing.
 #[cfg(not(unix))]
 fn wait(_: Terminal) {}
 

@@ -66,7 +66,7 @@ pub(super) fn manifest(
     }
 }
 
-/// The plan of an experiment, or the part of it that is wanted.
+/// Returns the plan of an experiment, or the part of it that is wanted.
 pub(super) fn plan(
     experiment: Experiment,
     select: &SelectArgs,
@@ -128,7 +128,7 @@ pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
         .map_err(|e| Failure::failed(format!("cannot write `{}`: {}", path.display(), reason(&e))))
 }
 
-/// A missing file is the user's; anything else is ours.
+/// Creates the failure of a file that cannot be read: a missing one is the user's fault; anything else is ours.
 fn unreadable(path: &Path, error: &std::io::Error) -> Failure {
     let message = format!("cannot read `{}`: {}", path.display(), reason(error));
     match error.kind() {
@@ -141,7 +141,8 @@ fn unreadable(path: &Path, error: &std::io::Error) -> Failure {
     }
 }
 
-/// The inputs of an unpacked bundle whose manifest this is, by the path that it names each by; none for other manifests.
+/// Returns the inputs of an unpacked bundle whose manifest this is, by the path that it names each by; none for other
+/// manifests.
 fn sealed_beside(manifest: &Path, folder: &Path) -> Result<BTreeMap<String, PathBuf>, Failure> {
     let resolved = folder.join(format::RESOLVED);
     if manifest.file_name().is_none_or(|name| name != format::STUDY) || !resolved.exists() {

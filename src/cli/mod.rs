@@ -58,8 +58,8 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> Exit {
     }
 }
 
-/// A panicking trial becomes a record with its cause, which is told with the results: the usual report would
-/// say it twice, in the middle of the progress bar.
+/// Silences the usual report of a panic in a trial, which becomes a record with its cause and is reported with the
+/// results: the usual report would say it twice, in the middle of the progress bar.
 fn silence_panicking_trials() {
     let usual = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {

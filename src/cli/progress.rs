@@ -44,7 +44,7 @@ struct State {
 }
 
 impl Progress {
-    /// Of a run of `trials`.
+    /// Creates the progress of a run of `trials`.
     pub(super) fn of(trials: &[TrialSpec], terminal: Terminal) -> Self {
         let mut seen = Vec::new();
         let number = |spec: &TrialSpec| {
@@ -57,18 +57,18 @@ impl Progress {
         Self::new(trials.iter().map(number).collect(), terminal)
     }
 
-    /// Of a run whose trials are told when it begins.
+    /// Creates the progress of a run whose trials are known only when it begins.
     pub(super) fn unplanned(terminal: Terminal) -> Self {
         Self::new(Vec::new(), terminal)
     }
 
-    /// The same, with what runs told in front.
+    /// Puts `label` in front of the state, to say what runs.
     #[must_use]
     pub(super) fn labelled(self, label: &str) -> Self {
         Self { label: Some(label.to_owned()), ..self }
     }
 
-    /// The same, of a run that says how to go on where it is interrupted: with the trials that are done where it `keeps` them.
+    /// Makes an interrupted run say how to go on: with the trials that are done where it `keeps` them.
     #[must_use]
     pub(super) fn interruptible(self, keeps: bool) -> Self {
         Self { keeps: Some(keeps), ..self }
@@ -102,7 +102,7 @@ impl Progress {
         self.bar.finish_and_clear();
     }
 
-    /// Tells the state where it is to be seen.
+    /// Shows the state where it is to be seen.
     fn tell(&self, state: &mut State) {
         let elapsed = state.clock.elapsed_seconds();
         if self.terminal.is_watched() {

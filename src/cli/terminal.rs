@@ -28,18 +28,18 @@ impl Terminal {
         Self { color: false, watched: false, utf8: false }
     }
 
-    /// Whether a person watches stderr: bars are drawn for people only.
+    /// Returns whether a person watches stderr: bars are drawn for people only.
     pub(super) fn is_watched(self) -> bool {
         self.watched
     }
 
-    /// Whether the terminal's character set has more than ASCII.
+    /// Returns whether the terminal's character set has more than ASCII.
     pub(super) fn utf8(self) -> bool {
         self.utf8
     }
 
-    /// How many characters fit on a line of stdout: those of the terminal, 80 where it is none. Less than 40 is legible to
-    /// nobody.
+    /// Returns how many characters fit on a line of stdout: those of the terminal, 80 where it is none. Less than 40 is
+    /// legible to nobody.
     #[expect(clippy::unused_self, reason = "whoever writes asks the terminal")]
     pub(super) fn columns(self) -> usize {
         let size = console::Term::stdout().size_checked();
@@ -68,7 +68,7 @@ impl Terminal {
         }
     }
 
-    /// Whether a result could not be written: then the command has failed, whatever it found.
+    /// Returns whether a result could not be written: then the command has failed, whatever it found.
     pub(super) fn has_lost_results() -> bool {
         LOST.load(Ordering::Relaxed)
     }
@@ -115,7 +115,7 @@ impl Terminal {
         }
     }
 
-    /// `2 errors, 1 warning`.
+    /// Counts errors and warnings in words: `2 errors, 1 warning`.
     pub(super) fn count(diagnostics: &[Diagnostic]) -> String {
         let of = |severity| diagnostics.iter().filter(move |d| d.severity == severity);
         let count = |severity| of(severity).map(|d| d.count).sum();
@@ -131,7 +131,8 @@ impl Terminal {
     }
 }
 
-/// `text` with nothing in it by which a stranger's words could steer a terminal; in JSON it means the same as before.
+/// Returns `text` with nothing in it by which a stranger's words could steer a terminal; in JSON it means the same as
+/// before.
 fn plain(text: &str) -> Cow<'_, str> {
     let is_told = |c: char| c == '\t' || !steers(c);
     if text.chars().all(is_told) {
@@ -149,7 +150,7 @@ fn plain(text: &str) -> Cow<'_, str> {
     Cow::Owned(shown)
 }
 
-/// `1 trial`, `2 trials`.
+/// Counts things in words: `1 trial`, `2 trials`.
 pub(super) fn counted(n: usize, thing: &str) -> String {
     format!("{n} {thing}{}", if n == 1 { "" } else { "s" })
 }

@@ -13,7 +13,7 @@ fn account(content: &BundleContent) -> Account {
     Account::of_bundle(&bundle).unwrap()
 }
 
-/// The sample study, its conditions listed in the resolved study as ours list them.
+/// Makes the sample study, its conditions listed in the resolved study as ours list them.
 fn content_of(conditions: &[(&str, Vec<TrialRecord>)]) -> BundleContent {
     let mut content = sample::content_of(sample::STUDY.as_bytes(), 7, conditions);
     content.resolved = resolved(8.5);
@@ -32,14 +32,14 @@ fn sample_account() -> Account {
     account(&content_of(&sample::records()))
 }
 
-/// The sample study with the records changed.
+/// Returns the account of the sample study with the records changed.
 fn changed(change: impl Fn(&mut TrialRecord)) -> Account {
     let mut conditions = sample::records();
     conditions.iter_mut().flat_map(|(_, records)| records).for_each(change);
     account(&content_of(&conditions))
 }
 
-/// The record none/1 walks a little further, from 10 s on.
+/// Makes the record none/1 walk a little further, from 10 s on.
 fn walked_further(record: &mut TrialRecord) {
     if record.condition[0].1 == "none" && record.trial == 1 {
         let distance = record.measures["distance-m-at-90"].unwrap();
@@ -57,7 +57,7 @@ fn locked(account: &Account) -> Account {
     Lock::of(account).unwrap().account().clone()
 }
 
-/// `text` with every digest's first eight digits hidden.
+/// Returns `text` with every digest's first eight digits hidden.
 fn redacted(text: &str) -> String {
     let mut parts = text.split("sha256:");
     let mut out = parts.next().unwrap_or_default().to_owned();

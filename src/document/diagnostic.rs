@@ -28,12 +28,12 @@ pub struct Source {
 }
 
 impl Source {
-    /// The text `text`, known as `name`.
+    /// Creates a source of the text `text`, known as `name`.
     pub fn new(name: impl Into<Arc<str>>, text: impl Into<Arc<str>>) -> Self {
         Self { name: name.into(), text: text.into() }
     }
 
-    /// One-based line and column (in characters) of the byte `offset`.
+    /// Returns one-based line and column (in characters) of the byte `offset`.
     pub fn line_and_column(&self, offset: usize) -> (usize, usize) {
         let mut end = offset.min(self.text.len());
         while !self.text.is_char_boundary(end) {
@@ -72,7 +72,7 @@ pub struct Diagnostic {
 }
 
 impl Diagnostic {
-    /// An error at `span` of `source`.
+    /// Creates an error at `span` of `source`.
     pub fn error(source: &Source, span: Range<usize>, message: impl Into<String>) -> Self {
         Self {
             severity: Severity::Error,
@@ -84,7 +84,7 @@ impl Diagnostic {
         }
     }
 
-    /// An error that no place in a text can be shown for.
+    /// Creates an error that no place in a text can be shown for.
     pub fn placeless(message: impl Into<String>) -> Self {
         Self {
             severity: Severity::Error,
@@ -96,7 +96,7 @@ impl Diagnostic {
         }
     }
 
-    /// What stands for `count` faults beyond those that are told.
+    /// Creates what stands for `count` faults beyond those that are listed.
     pub fn others(severity: Severity, count: usize) -> Self {
         let name = match severity {
             Severity::Error => "error",
@@ -110,7 +110,7 @@ impl Diagnostic {
         others
     }
 
-    /// The same fault as a warning.
+    /// Turns the fault into a warning.
     #[must_use]
     pub fn warning(mut self) -> Self {
         self.severity = Severity::Warning;
@@ -131,7 +131,7 @@ impl Diagnostic {
         self
     }
 
-    /// `file:line:column` of the place, if there is one.
+    /// Writes the place as `file:line:column`, if there is one.
     pub fn location(&self) -> Option<String> {
         self.place.as_ref().map(|(source, span)| {
             let (line, column) = source.line_and_column(span.start);
@@ -139,7 +139,7 @@ impl Diagnostic {
         })
     }
 
-    /// The report with a source excerpt, ending in a line feed; with ANSI colours where `color`.
+    /// Writes the report with a source excerpt, ending in a line feed; with ANSI colours where `color`.
     ///
     /// ```text
     /// error: unknown key `trails`
@@ -191,8 +191,8 @@ impl Diagnostic {
     }
 }
 
-/// The reports of `faults`, each ending in a line feed: errors before warnings, and of more than [`MOST_FAULTS`] the first
-/// ones and how many more there are.
+/// Writes the reports of `faults`, each ending in a line feed: errors before warnings, and of more than [`MOST_FAULTS`]
+/// the first ones and how many more there are.
 pub fn reports(faults: &[Diagnostic], color: bool) -> Vec<String> {
     let mut index = LineIndex::default();
     let of = |severity| faults.iter().filter(move |fault| fault.severity == severity);
@@ -230,32 +230,32 @@ impl FaultList {
         }
     }
 
-    /// Whether a further fault of this severity would only be counted: then it need not be put into words.
+    /// Returns whether a further fault of this severity would only be counted: then it need not be put into words.
     pub fn is_full(&self, severity: Severity) -> bool {
         self.found(severity) >= MOST_FAULTS
     }
 
-    /// Counts an error that need not be told.
+    /// Counts an error that need not be put into words.
     pub fn count_error(&mut self) {
         self.errors += 1;
     }
 
-    /// Whether there is an error.
+    /// Returns whether there is an error.
     pub fn any_error(&self) -> bool {
         self.errors > 0
     }
 
-    /// Whether there is nothing.
+    /// Returns whether there is neither an error nor a warning.
     pub fn is_empty(&self) -> bool {
         self.errors + self.warnings == 0
     }
 
-    /// Those that are kept.
+    /// Returns the faults that are kept.
     pub fn kept(&self) -> &[Diagnostic] {
         &self.kept
     }
 
-    /// Those that are kept, and what stands for the others.
+    /// Returns the faults that are kept, and what stands for the others.
     pub fn finish(mut self) -> Vec<Diagnostic> {
         for severity in [Severity::Error, Severity::Warning] {
             let kept = self.kept.iter().filter(|fault| fault.severity == severity).count();
@@ -305,7 +305,8 @@ impl LineIndex {
         &self.0[at].1
     }
 
-    /// The lines of `text` that hold `start..end`, where they begin (byte), and the number of the first, from 1.
+    /// Returns the lines of `text` that hold `start..end`, where they begin (byte), and the number of the first, from
+    /// 1.
     fn lines_of<'t>(
         &mut self,
         text: &'t Arc<str>,
@@ -323,13 +324,13 @@ impl LineIndex {
     }
 }
 
-/// Whether a terminal could take `c` for an order, or turn the direction of writing at it.
+/// Returns whether a terminal could take `c` for an order, or turn the direction of writing at it.
 pub fn steers(c: char) -> bool {
     let turns = matches!(c, '\u{61c}' | '\u{200e}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     turns || (c.is_control() && c != '\n')
 }
 
-/// `text` cut where it is endless, with nothing in it that steers a terminal.
+/// Returns `text` cut where it is endless, with nothing in it that steers a terminal.
 fn plain(text: &str) -> Cow<'_, str> {
     if text.len() <= MOST_TEXT && !text.chars().any(steers) {
         return Cow::Borrowed(text);
@@ -345,7 +346,7 @@ fn plain(text: &str) -> Cow<'_, str> {
     Cow::Owned(shown)
 }
 
-/// `name` as a message quotes it: cut where it is endless.
+/// Writes `name` as a message quotes it: cut where it is endless.
 pub fn quoted(name: &str) -> Cow<'_, str> {
     match name.char_indices().nth(MOST_QUOTED) {
         None => Cow::Borrowed(name),
@@ -353,7 +354,7 @@ pub fn quoted(name: &str) -> Cow<'_, str> {
     }
 }
 
-/// `names` in a row, so many of them that a person still reads them.
+/// Lists `names` in a row, so many of them that a person still reads them.
 pub fn listed(names: &[&str]) -> String {
     const MOST: usize = 40;
     let told: Vec<_> = names.iter().take(MOST).map(|name| quoted(name)).collect();
@@ -363,7 +364,7 @@ pub fn listed(names: &[&str]) -> String {
     }
 }
 
-/// The known word nearest to `word`, where one is near enough to be meant.
+/// Returns the known word nearest to `word`, where one is near enough to be meant.
 pub fn suggestion<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let length = word.chars().count();
     // A word of a page is a slip for nothing, and to compare takes time that grows with both.
@@ -384,7 +385,7 @@ pub fn suggestion<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> O
         .map(|(_, candidate)| candidate)
 }
 
-/// What may have been meant by `word`, which is none of `known`, and what is known.
+/// Says what may have been meant by `word`, which is none of `known`, and what is known.
 pub fn known_or_near(word: &str, known: &[&str]) -> String {
     match suggestion(word, known.iter().copied()) {
         Some(near) => format!("did you mean `{}`? (known: {})", quoted(near), listed(known)),

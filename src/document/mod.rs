@@ -36,13 +36,13 @@ pub struct Parsed<T> {
 }
 
 impl<T> Parsed<T> {
-    /// An error that says `message` at the value that the JSON pointer `pointer` names
-    /// (`/factors/prior/1`), or at the nearest thing around it that is written.
+    /// Creates an error that says `message` at the value that the JSON pointer `pointer` names (`/factors/prior/1`), or
+    /// at the nearest thing around it that is written.
     pub fn fault(&self, pointer: &str, message: impl Into<String>) -> Diagnostic {
         self.tree.fault(self.tree.place(pointer), message)
     }
 
-    /// An error that says `message` at the key of the value that `pointer` names.
+    /// Creates an error that says `message` at the key of the value that `pointer` names.
     pub fn key_fault(&self, pointer: &str, message: impl Into<String>) -> Diagnostic {
         self.tree.fault(self.tree.key_place(pointer), message)
     }
@@ -91,7 +91,7 @@ pub fn parse_tree_by<T: DeserializeOwned>(
     }
 }
 
-/// The JSON Schema (2020-12) of documents of the type `T`, as they are read.
+/// Returns the JSON Schema (2020-12) of documents of the type `T`, as they are read.
 pub fn schema_of<T: JsonSchema>() -> serde_json::Value {
     let generator: SchemaGenerator =
         SchemaSettings::draft2020_12().for_deserialize().into_generator();

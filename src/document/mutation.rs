@@ -6,7 +6,7 @@ use proptest::sample::Index;
 /// One damage: where, which kind, and a number to choose by.
 pub(crate) type Edit = (Index, u8, u8);
 
-/// Some damages.
+/// Draws some damages.
 pub(crate) fn edits() -> impl Strategy<Value = Vec<Edit>> {
     prop::collection::vec(any::<Edit>(), 1..8)
 }
@@ -31,7 +31,7 @@ const PIECES: [&[u8]; 16] = [
     b"\xff\xfe",
 ];
 
-/// `bytes` with `edits` applied.
+/// Returns `bytes` with `edits` applied.
 pub(crate) fn mutate(bytes: &[u8], edits: &[Edit]) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
     for (at, kind, choice) in edits {

@@ -55,17 +55,17 @@ pub struct Entry {
 }
 
 impl Node {
-    /// The value of `key`, where this is a mapping that has it.
+    /// Returns the value of `key`, where this is a mapping that has it.
     pub fn get(&self, key: &str) -> Option<&Self> {
         self.entry(key).map(|entry| &entry.value)
     }
 
-    /// The entry of `key`, where this is a mapping that has it.
+    /// Returns the entry of `key`, where this is a mapping that has it.
     pub fn entry(&self, key: &str) -> Option<&Entry> {
         self.entries().iter().find(|entry| entry.key == key)
     }
 
-    /// The entries of a mapping; none for anything else.
+    /// Returns the entries of a mapping; none for anything else.
     pub fn entries(&self) -> &[Entry] {
         match &self.content {
             Content::Map(entries) => entries,
@@ -73,7 +73,7 @@ impl Node {
         }
     }
 
-    /// The items of a list; none for anything else.
+    /// Returns the items of a list; none for anything else.
     pub fn items(&self) -> &[Self] {
         match &self.content {
             Content::List(items) => items,
@@ -81,7 +81,7 @@ impl Node {
         }
     }
 
-    /// This scalar as one text, the same for every way to write it (`0.50` is `0.5`); `None` for lists,
+    /// Returns this scalar as one text, the same in whichever form it is written (`0.50` is `0.5`); `None` for lists,
     /// mappings and nothing.
     pub fn scalar_text(&self) -> Option<String> {
         match &self.content {
@@ -93,7 +93,7 @@ impl Node {
         }
     }
 
-    /// What this is, for messages: ``the text `ten` ``.
+    /// Says what this is, for messages: ``the text `ten` ``.
     pub fn found(&self) -> String {
         match &self.content {
             Content::Null => "nothing".to_owned(),
@@ -109,7 +109,7 @@ impl Node {
         }
     }
 
-    /// The same value as JSON; the order of keys is lost.
+    /// Returns the same value as JSON; the order of keys is lost.
     pub fn to_json(&self) -> serde_json::Value {
         use serde_json::Value;
         match &self.content {
@@ -139,7 +139,7 @@ pub struct Tree {
 }
 
 impl Tree {
-    /// The node that the JSON pointer `pointer` (RFC 6901) names.
+    /// Returns the node that the JSON pointer `pointer` (RFC 6901) names.
     pub fn node(&self, pointer: &str) -> Option<&Node> {
         match self.walk(pointer) {
             (node, _, true) => Some(node),
@@ -147,7 +147,7 @@ impl Tree {
         }
     }
 
-    /// Where the value at `pointer` stands, or the nearest thing around it that is written.
+    /// Returns where the value at `pointer` stands, or the nearest thing around it that is written.
     pub fn place(&self, pointer: &str) -> Place {
         match self.walk(pointer) {
             (node, _, true) => node.place,
@@ -155,20 +155,20 @@ impl Tree {
         }
     }
 
-    /// Where the key of the value at `pointer` stands; for items of lists, where the item does.
+    /// Returns where the key of the value at `pointer` stands; for items of lists, where the item does.
     pub fn key_place(&self, pointer: &str) -> Place {
         let (node, key, _) = self.walk(pointer);
         key.unwrap_or_else(|| start_of(node))
     }
 
-    /// An error that says `message` at `place`, cut to the line it begins on.
+    /// Creates an error that says `message` at `place`, cut to the line it begins on.
     pub fn fault(&self, place: Place, message: impl Into<String>) -> Diagnostic {
         let source = &self.sources[usize::from(place.source).min(self.sources.len() - 1)];
         Diagnostic::error(source, first_line(&source.text, place), message)
     }
 
-    /// Puts the YAML value that `source` holds from byte `value_at` on where `path` leads; mappings on the way
-    /// are made where they are missing. Each step of the path comes with its bytes in `source`.
+    /// Puts the YAML value that `source` holds from byte `value_at` on where `path` leads; missing mappings along the
+    /// path are made. Each step of the path comes with its bytes in `source`.
     ///
     /// # Errors
     /// Where the value is no YAML or the path leads through something that is neither a mapping nor a list.
@@ -223,8 +223,9 @@ impl Tree {
         Ok(())
     }
 
-    /// Lays what `source` has under `key` beneath what this tree has there: entries that the tree lacks are taken, mappings
-    /// that both have are merged in the same way, but for those that `is_value` calls values: there the tree's own stands.
+    /// Lays what `source` has under `key` beneath what this tree has there: entries that the tree lacks are taken,
+    /// mappings that both have are merged likewise, but for those that `is_value` calls values: there the tree's own
+    /// stands.
     ///
     /// # Errors
     /// Where `source` is no YAML.
@@ -243,7 +244,7 @@ impl Tree {
         Ok(())
     }
 
-    /// The deepest node towards `pointer`, its key's place, and whether it is what the pointer names.
+    /// Finds the deepest node towards `pointer`, its key's place, and whether it is what the pointer names.
     fn walk(&self, pointer: &str) -> (&Node, Option<Place>, bool) {
         let (mut node, mut key_place) = (&self.root, None);
         for part in pointer.split('/').skip(1) {
@@ -281,7 +282,7 @@ fn merge(node: &mut Node, base: Vec<Entry>, is_value: &dyn Fn(&Node) -> bool) {
     }
 }
 
-/// The place of a node as a whole: its first key, where it is a mapping.
+/// Returns the place of a node as a whole: its first key, where it is a mapping.
 pub(super) fn start_of(node: &Node) -> Place {
     node.entries().first().map_or(node.place, |entry| entry.key_place)
 }

@@ -18,7 +18,7 @@ const MOST_NESTING: usize = 48;
 /// How faults of the syntax begin.
 const INVALID: &str = "not valid YAML: ";
 
-/// The tree of `source`, or every fault in its text.
+/// Reads the tree of `source`, or every fault in its text.
 ///
 /// # Errors
 /// All scalars and keys that are refused, or the first fault of the syntax.
@@ -52,7 +52,7 @@ pub fn read(source: &Source) -> Result<Tree, Vec<Diagnostic>> {
     }
 }
 
-/// The node that the text of `source` from byte `offset` on holds, its places in source number `number`.
+/// Reads the node that the text of `source` from byte `offset` on holds, its places in source number `number`.
 pub(super) fn read_node(
     source: &Source,
     number: u16,
@@ -111,7 +111,7 @@ impl Extent {
 }
 
 impl<'a> Reader<'a> {
-    /// A reader of the text of `source` from byte `offset` on, whose places are in source number `number`.
+    /// Creates a reader of the text of `source` from byte `offset` on, whose places are in source number `number`.
     fn new(source: &'a Source, number: u16, offset: usize) -> Self {
         let options = options! { disallow_directives: true, emit_comments: false };
         Self {
@@ -128,7 +128,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// What was read, or every fault and whether the document is a mapping at all.
+    /// Returns what was read, or every fault and whether the document is a mapping at all.
     fn finish(mut self, node: Result<Node, Stop>) -> Result<Node, (Vec<Diagnostic>, bool)> {
         match node {
             Ok(node) if self.faults.is_empty() => return Ok(node),
@@ -178,7 +178,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The node that begins with `event`.
+    /// Reads the node that begins with `event`.
     fn node(&mut self, event: Event<'a>, span: &Span, depth: usize) -> Result<Node, Stop> {
         let place = self.place(span);
         self.nodes += 1;
@@ -304,7 +304,7 @@ impl<'a> Reader<'a> {
         Ok(Node { place: Place { end, ..place }, content: Content::Map(entries) })
     }
 
-    /// The name of a key; a number has one, however it is written: `0.50` and `0.5` are the same key.
+    /// Returns the name of a key; a number has one, however it is written: `0.50` and `0.5` are the same key.
     fn key(&mut self, text: &str, plain: bool, tagged: bool, place: Place) -> String {
         if plain && text == "<<" {
             let fault =
@@ -321,7 +321,7 @@ impl<'a> Reader<'a> {
         })
     }
 
-    /// What the scalar `text` is; what is refused is noted and read as text.
+    /// Reads what the scalar `text` is; what is refused is noted and read as text.
     fn scalar(&mut self, text: &str, plain: bool, place: Place) -> Content {
         if !plain {
             return Content::Text(text.to_owned());
@@ -341,13 +341,13 @@ impl<'a> Reader<'a> {
         Place { source: self.number, start, end: end.max(start) }
     }
 
-    /// Where a collection ends: at its closing bracket; a block's end event lies behind it.
+    /// Returns where a collection ends: at its closing bracket; a block's end event lies behind it.
     fn end_of(&self, span: &Span, last: usize) -> usize {
         let place = self.place(span);
         if place.end > place.start { place.end } else { last }
     }
 
-    /// Collects the fault that `made` puts into words, where it will be told.
+    /// Collects the fault that `made` puts into words, or only counts it where the list is full.
     fn note(&mut self, made: impl FnOnce(&Self) -> Diagnostic) {
         if self.faults.is_full(Severity::Error) {
             self.faults.count_error();

@@ -17,7 +17,7 @@ use spot::Spot;
 use std::collections::BTreeSet;
 use words::{accepts, constants, described, expected};
 
-/// Every way in which `tree` differs from `schema`, in the order of the text.
+/// Finds every respect in which `tree` differs from `schema`, in the order of the text.
 pub fn check(schema: &Value, tree: &Tree) -> Vec<Diagnostic> {
     let no_definitions = Map::new();
     let definitions = schema.get("$defs").and_then(Value::as_object).unwrap_or(&no_definitions);
@@ -59,7 +59,7 @@ struct Checker<'s> {
 }
 
 impl<'s> Checker<'s> {
-    /// The schema itself, where `schema` only refers to one.
+    /// Returns the schema itself, where `schema` only refers to one.
     fn resolve(&self, schema: &'s Value) -> &'s Value {
         let mut schema = schema;
         // A chain of references is short; a circle of them is a bug that must not hang a reader.
@@ -194,7 +194,7 @@ impl<'s> Checker<'s> {
         }
     }
 
-    /// What `schema` wants, in words.
+    /// Says in words what `schema` wants.
     fn expected_by(&self, schema: &'s Value) -> String {
         let mut leaves = Vec::new();
         self.leaves(schema, &mut leaves, 0);

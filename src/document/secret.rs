@@ -1,6 +1,6 @@
 //! Secrets that were named by a slip: told by their kind, and not a line of them shown.
 
-/// What kind of secret `text` holds, if it holds one anywhere.
+/// Returns what kind of secret `text` holds, if it holds one anywhere.
 pub fn secret(text: &str) -> Option<&'static str> {
     let is_armour = |line: &str| line.contains("-----BEGIN ") && line.contains("PRIVATE KEY");
     if let Some(armour) = text.lines().find(|line| is_armour(line)) {

@@ -113,7 +113,7 @@ impl TryFrom<String> for Color {
     }
 }
 
-/// All faults of `text`, each as `line:column message | label | help`.
+/// Lists all faults of `text`, each as `line:column message | label | help`.
 fn faults(text: &str) -> String {
     let source = Source::new("a.yaml", text);
     let lines = match parse::<Sample>(&source) {

@@ -57,7 +57,7 @@ pub fn parse(source: &Source, max_bytes: usize) -> Result<Document<'_>, Vec<Diag
     Ok(document)
 }
 
-/// Where a tag begins that has more than [`MAX_ATTRIBUTES`] attributes.
+/// Returns where a tag begins that has more than [`MAX_ATTRIBUTES`] attributes.
 fn crowded_tag(text: &str) -> Option<usize> {
     let bytes = text.as_bytes();
     let (mut start, mut count) = (0, 0);
@@ -100,7 +100,7 @@ fn offset_of(text: &str, position: roxmltree::TextPos) -> usize {
     text[start..].char_indices().nth(column).map_or(text.len(), |(i, _)| start + i)
 }
 
-/// The bytes of `<name`, so that a report points at one line.
+/// Returns the bytes of `<name`, so that a report points at one line.
 pub fn tag_span(node: Node<'_, '_>) -> Range<usize> {
     let range = node.range();
     let text = &node.document().input_text()[range.clone()];
@@ -112,22 +112,22 @@ pub fn tag_span(node: Node<'_, '_>) -> Range<usize> {
     range.start..range.start + end
 }
 
-/// The child elements of `node`.
+/// Returns the child elements of `node`.
 pub fn elements<'a, 'i>(node: Node<'a, 'i>) -> impl Iterator<Item = Node<'a, 'i>> {
     node.children().filter(Node::is_element)
 }
 
-/// The first child element called `name`, whatever its namespace.
+/// Returns the first child element called `name`, whatever its namespace.
 pub fn child<'a, 'i>(node: Node<'a, 'i>, name: &str) -> Option<Node<'a, 'i>> {
     elements(node).find(|child| child.tag_name().name() == name)
 }
 
-/// The first child element along `path` (`"ray/scan"`).
+/// Returns the first child element along `path` (`"ray/scan"`).
 pub fn descend<'a, 'i>(node: Node<'a, 'i>, path: &str) -> Option<Node<'a, 'i>> {
     path.split('/').try_fold(node, child)
 }
 
-/// The text of `node` without blanks around it; empty where it has none.
+/// Returns the text of `node` without blanks around it; empty where it has none.
 pub fn text<'a>(node: Node<'a, '_>) -> &'a str {
     node.text().unwrap_or("").trim()
 }
@@ -140,27 +140,27 @@ pub struct Faults<'s> {
 }
 
 impl<'s> Faults<'s> {
-    /// None yet, in `source`.
+    /// Creates a list without faults, of `source`.
     pub fn new(source: &'s Source) -> Self {
         Self { source, list: FaultList::default() }
     }
 
-    /// Whether one of them makes the document unusable.
+    /// Returns whether one of the faults makes the document unusable.
     pub fn any_error(&self) -> bool {
         self.list.any_error()
     }
 
-    /// Those of the faults found so far that are kept.
+    /// Returns those of the faults found so far that are kept.
     pub fn kept(&self) -> &[Diagnostic] {
         self.list.kept()
     }
 
-    /// Found so far, in the order of the reading.
+    /// Returns the faults found so far, in the order of the reading.
     pub fn finish(self) -> Vec<Diagnostic> {
         self.list.finish()
     }
 
-    /// A fault of `node`, to be completed and pushed.
+    /// Creates a fault of `node`, to be completed and pushed.
     pub fn at(&self, node: Node<'_, '_>, message: impl Into<String>) -> Diagnostic {
         Diagnostic::error(self.source, tag_span(node), message)
     }
@@ -170,7 +170,7 @@ impl<'s> Faults<'s> {
         self.list.push(fault);
     }
 
-    /// The text of `node` as exactly `N` finite numbers, or a fault.
+    /// Reads the text of `node` as exactly `N` finite numbers, or notes a fault.
     pub fn numbers<const N: usize>(&mut self, node: Node<'_, '_>) -> Option<[f64; N]> {
         let span = node
             .first_child()
@@ -179,12 +179,12 @@ impl<'s> Faults<'s> {
         self.parse(text(node), span, &format!("<{}>", node.tag_name().name()))
     }
 
-    /// The text of `node` as a finite number, or a fault.
+    /// Reads the text of `node` as a finite number, or notes a fault.
     pub fn number(&mut self, node: Node<'_, '_>) -> Option<f64> {
         self.numbers::<1>(node).map(|[number]| number)
     }
 
-    /// The attribute `name` as exactly `N` finite numbers, or a fault; `None` without a fault where absent.
+    /// Reads the attribute `name` as exactly `N` finite numbers, or notes a fault; `None` without a fault where absent.
     pub fn attribute<const N: usize>(
         &mut self,
         node: Node<'_, '_>,
@@ -194,7 +194,7 @@ impl<'s> Faults<'s> {
         self.parse(attribute.value(), attribute.range_value(), name)
     }
 
-    /// The finite number in the child element `name`; a fault where it is missing or malformed.
+    /// Reads the finite number in the child element `name`; notes a fault where it is missing or malformed.
     pub fn required(&mut self, node: Node<'_, '_>, name: &str, what: &str) -> Option<f64> {
         let Some(found) = child(node, name) else {
             let fault = self

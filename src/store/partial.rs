@@ -42,7 +42,7 @@ impl Drop for Listed {
 }
 
 impl Partial {
-    /// A new one in `directory`.
+    /// Creates a new one in `directory`.
     pub(super) fn new(directory: &Path) -> io::Result<Self> {
         let mut builder = tempfile::Builder::new();
         builder.prefix(OWN_PREFIX.as_deref().unwrap_or(PREFIX));
@@ -89,8 +89,8 @@ impl Partial {
     }
 }
 
-/// Removes everything that this process has under way, and does what comes `last` before anything else can be begun: how an
-/// interrupted process ends.
+/// Removes everything that this process has unfinished, and does what comes `last` before anything else can be begun:
+/// how an interrupted process ends.
 pub fn abandon(last: impl FnOnce()) {
     let under_way = UNDER_WAY.lock().unwrap_or_else(PoisonError::into_inner);
     for path in &*under_way {
@@ -99,7 +99,8 @@ pub fn abandon(last: impl FnOnce()) {
     last();
 }
 
-/// Removes from `directory` what dead processes had under way. What cannot be read or removed stays: it is in nobody's way.
+/// Removes from `directory` what dead processes left unfinished. What cannot be read or removed stays: it disturbs
+/// nobody.
 pub(super) fn sweep(directory: &Path) {
     for entry in fs::read_dir(directory).into_iter().flatten().flatten() {
         let name = entry.file_name();

@@ -37,7 +37,7 @@ pub struct Reviewer<'a> {
 }
 
 impl Reviewer<'_> {
-    /// A reviewer who asks for no signature and has no clock.
+    /// Creates a reviewer who asks for no signature and has no clock.
     pub fn anonymous() -> Self {
         let vouching = Vouching { trust: None, signature: None, now: Moment(0) };
         Self { vouching, clock: &|| 0.0 }

@@ -48,7 +48,7 @@ pub struct Apart {
 }
 
 impl Closeness {
-    /// What it means, in words, one line.
+    /// Says in one line what the comparison means.
     pub fn in_words(&self) -> String {
         let mut text = format!(
             "{} of {} means and shares lie where chance explains their difference from the sealed ones (it leaves out about 1 \
@@ -100,7 +100,7 @@ pub(super) fn of(sealed: &str, fresh: &str) -> Closeness {
     found
 }
 
-/// Sealed and fresh mean or share, and the limits of fresh less sealed.
+/// Returns sealed and fresh mean or share, and the limits of fresh less sealed.
 fn compare(sealed: &Values, fresh: &Values) -> Option<(f64, f64, f64, f64)> {
     match (sealed, fresh) {
         (Values::Measured(sealed), Values::Measured(fresh)) => {
@@ -140,7 +140,8 @@ struct Cells {
 }
 
 impl Cells {
-    /// `key`, the factors, `trial`, `outcome`, then measures, as `docs/bundle-format.md` says.
+    /// Collects the values of a table whose columns are `key`, the factors, `trial`, `outcome`, then measures, as
+    /// `docs/bundle-format.md` says.
     fn of(trials: &Table, outcomes: &BTreeSet<String>) -> Self {
         let mut cells = Self::default();
         let (Some(trial), Some(outcome)) = (trials.column("trial"), trials.column("outcome"))

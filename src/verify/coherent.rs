@@ -10,8 +10,8 @@ use crate::studies::TrialRecord;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What the bag says of its payload and of the run, against the payload: every label follows from it, so that nothing rides
-/// along in what people take for our words.
+/// Holds what the bag says of its payload and of the run against the payload: every label follows from it, so that
+/// nothing rides along in what people take for our words.
 pub(super) fn bag_facts(bundle: &Bundle) -> Vec<Fault> {
     let Some(info) = bundle.tree().get(format::BAG_INFO).map(|bytes| bag::BagInfo::parse(bytes))
     else {
@@ -41,14 +41,14 @@ fn is_uuid(text: &str) -> bool {
     })
 }
 
-/// Whether `text` names a version of this program and nothing else.
+/// Returns whether `text` names a version of this program and nothing else.
 fn is_agent(text: &str) -> bool {
     let version = text.strip_prefix("reenact ").and_then(|rest| rest.split_once(' '));
     version
         .is_some_and(|(version, home)| is_version(version) && home == format!("<{}>", format::HOME))
 }
 
-/// Digests and sizes in the crate's metadata against the files, in both directions.
+/// Holds digests and sizes in the crate's metadata against the files, in both directions.
 pub(super) fn crate_metadata(tree: &Tree) -> Vec<Fault> {
     let metadata = BundlePath::payload(format::METADATA);
     let graph = tree
@@ -116,7 +116,7 @@ pub(super) fn crate_metadata(tree: &Tree) -> Vec<Fault> {
     faults
 }
 
-/// The resolved study against inputs and records.
+/// Holds the resolved study against inputs and records.
 pub(super) fn contents(bundle: &Bundle) -> Vec<Fault> {
     let mut faults = Vec::new();
     let mut known = BTreeSet::new();
@@ -182,7 +182,7 @@ pub(super) fn contents(bundle: &Bundle) -> Vec<Fault> {
 /// Faults of one file that are told; after so many it is clear that it is none of ours.
 const MOST_FAULTS: usize = 100;
 
-/// The records of one condition: each whole, in its place, and under a key of its own.
+/// Checks the records of one condition: each whole, in its place, and under a key of its own.
 fn records(
     bundle: &Bundle,
     slug: &str,

@@ -101,7 +101,7 @@ pub(super) fn check(bundle: &Bundle, replanned: &dyn Replanned) -> Derived {
     found
 }
 
-/// The identifier in the bag's facts, which follows from the digests of the payload.
+/// Checks the identifier in the bag's facts, which follows from the digests of the payload.
 fn identifier(bundle: &Bundle) -> Option<Fault> {
     let info = bundle.tree().get(format::BAG_INFO).map(|bytes| bag::BagInfo::parse(bytes))?;
     let right = in_bag_info(bundle, None);
@@ -122,7 +122,7 @@ const DESCRIPTIONS: [&str; 6] = [
     format::ZENODO,
 ];
 
-/// Planned trials against records: one fault a condition, however many of its trials differ.
+/// Holds planned trials against records: one fault a condition, however many of its trials differ.
 fn trials(bundle: &Bundle, planned: &[PlannedTrial]) -> Vec<Fault> {
     let mut faults = Vec::new();
     let mut slugs: Vec<&str> = Vec::new();
@@ -175,7 +175,7 @@ fn trials(bundle: &Bundle, planned: &[PlannedTrial]) -> Vec<Fault> {
     faults
 }
 
-/// The engine's source, where the bundle holds it, against that of this very version.
+/// Holds the engine's source, where the bundle holds it, against that of this very version.
 fn source(found: &Tree, derived: &Tree) -> Vec<Fault> {
     let folder = BundlePath::payload(format::ENGINE);
     found
@@ -189,7 +189,8 @@ fn source(found: &Tree, derived: &Tree) -> Vec<Fault> {
         .collect()
 }
 
-/// Payload files of `found` that differ from those of `derived`, among those whose path within the payload `counts`.
+/// Finds payload files of `found` that differ from those of `derived`, among those whose path within the payload
+/// `counts`.
 fn files(found: &Tree, derived: &Tree, counts: impl Fn(&str) -> bool) -> Vec<Fault> {
     let counts = |path: &str| in_payload(path).is_some_and(&counts);
     let mut faults = Vec::new();

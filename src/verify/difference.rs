@@ -4,7 +4,7 @@ use crate::json;
 use crate::table::Table;
 use serde_json::Value;
 
-/// The first difference of two unequal files: (what should be there, what is).
+/// Finds the first difference of two unequal files: (what should be there, what is).
 pub(super) fn first(path: &str, expected: &[u8], found: &[u8]) -> (String, String) {
     let kind = path.rsplit('.').next().unwrap_or_default();
     let by_kind = match (kind, std::str::from_utf8(expected), std::str::from_utf8(found)) {
@@ -70,7 +70,7 @@ fn value(expected: &str, found: &str) -> Option<(String, String)> {
 
 type Place<'a> = (String, Option<&'a Value>, Option<&'a Value>);
 
-/// The JSON pointer of the first difference, and what stands there.
+/// Finds the JSON pointer of the first difference, and what stands there.
 fn value_at<'a>(at: String, a: Option<&'a Value>, b: Option<&'a Value>) -> Option<Place<'a>> {
     match (a, b) {
         (a, b) if a == b => None,
@@ -84,7 +84,7 @@ fn value_at<'a>(at: String, a: Option<&'a Value>, b: Option<&'a Value>) -> Optio
     }
 }
 
-/// The first difference of two records, by measure rather than by byte.
+/// Finds the first difference of two records, by measure rather than by byte.
 pub(super) fn records(expected: &str, found: &str) -> (String, String) {
     value(expected, found).unwrap_or_else(|| line(expected.as_bytes(), found.as_bytes()))
 }
@@ -108,7 +108,7 @@ fn line(expected: &[u8], found: &[u8]) -> (String, String) {
     }
 }
 
-/// From which character to show two lines so that what differs is seen: the first, where it is near.
+/// Returns from which character to show two lines so that what differs is seen: the first, where it is near.
 fn beginning(a: &str, b: &str) -> usize {
     let common = a.chars().zip(b.chars()).take_while(|(x, y)| x == y).count();
     if common < 40 { 0 } else { common - 20 }
@@ -118,7 +118,7 @@ fn excerpt(text: &str) -> String {
     excerpt_from(text, 0)
 }
 
-/// Sixty characters of `text` from the one at `from`.
+/// Returns sixty characters of `text` from the one at `from`.
 fn excerpt_from(text: &str, from: usize) -> String {
     let part: String = text.chars().skip(from).take(60).collect();
     let (less, more) = (

@@ -45,7 +45,7 @@ pub struct EarlierAgain {
 }
 
 impl EarlierAgain {
-    /// What it means, in words.
+    /// Says in words what it means.
     pub fn in_words(&self) -> String {
         let (executed, of, equal) = (self.executed, self.of, self.equal);
         let what = match self.made {
@@ -80,7 +80,7 @@ pub(super) struct Again {
 }
 
 impl Earlier {
-    /// What is the author's word before anything is executed, in words; passages are judged like records.
+    /// Says in words what is the author's word before anything is executed; passages are judged like records.
     pub(super) fn on_trust(&self) -> Option<String> {
         (self.made == Made::Robustness)
             .then(|| "the robustness table is the author's word".to_owned())

@@ -34,17 +34,17 @@ impl Level {
         Self::Replicated,
     ];
 
-    /// The level of that number, 0 to 6.
+    /// Returns the level of that number, 0 to 6.
     pub fn from_number(number: u8) -> Option<Self> {
         Self::ALL.get(usize::from(number)).copied()
     }
 
-    /// Its number.
+    /// Returns the level's number.
     pub fn number(self) -> u8 {
         self as u8
     }
 
-    /// Its name.
+    /// Returns the level's name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Safe => "safe",
@@ -102,7 +102,7 @@ pub struct Finding {
 }
 
 impl Finding {
-    /// `fault`, noticed at `level`.
+    /// Creates the finding of `fault`, noticed at `level`.
     pub fn new(level: Level, severity: Severity, fault: Fault) -> Self {
         let Fault { path, expected, found, hint } = fault;
         Self { level, severity, path, expected, found, hint }

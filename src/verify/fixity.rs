@@ -5,7 +5,7 @@ use crate::bundle::{Archive, Fault, Form, bag, format, in_payload, is_tag_file};
 use crate::digest::Sha256Digest;
 use std::collections::BTreeMap;
 
-/// Everything that breaks fixity.
+/// Finds everything that breaks fixity.
 pub(super) fn check(archive: &Archive) -> Vec<Fault> {
     let tree = &archive.tree;
     // A crate without its bag has no list but its own metadata, which level 2 holds against the files.

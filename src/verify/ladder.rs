@@ -70,7 +70,7 @@ pub struct Report {
 }
 
 impl Report {
-    /// The answer.
+    /// Returns the answer.
     pub fn verdict(&self) -> Verdict {
         let mut errors = self.findings.iter().filter(|f| f.severity == Severity::Error).peekable();
         if errors.peek().is_some() {
@@ -94,7 +94,7 @@ impl Report {
         self.findings.extend(faults.into_iter().map(|fault| Finding::new(level, severity, fault)));
     }
 
-    /// Whether nothing stands in the way so far.
+    /// Returns whether nothing hinders the climb so far.
     fn is_clear(&self) -> bool {
         self.findings.iter().all(|finding| finding.severity == Severity::Note)
     }
@@ -136,8 +136,8 @@ pub fn climb(
     climb_for(&Reviewer::anonymous(), opened, options, pipeline)
 }
 
-/// [`climb`] for a reviewer who wants to know who vouches for the bundle. The signature is checked after level 0 and before
-/// anything else is read; where it is not what the reviewer asked for, the climb ends there.
+/// Does what [`climb`] does, for a reviewer who wants to know who vouches for the bundle. The signature is checked
+/// after level 0 and before anything else is read; where it is not what the reviewer asked for, the climb ends there.
 pub fn climb_for(
     reviewer: &Reviewer<'_>,
     opened: Result<Archive, Vec<Fault>>,
@@ -147,7 +147,8 @@ pub fn climb_for(
     climb_and_keep(reviewer, opened, options, pipeline).0
 }
 
-/// [`climb_for`], and the bundle for whoever goes on with it; `None` where it cannot be read at all.
+/// Does what [`climb_for`] does, and returns the bundle too for whoever goes on with it; `None` where it cannot be read
+/// at all.
 pub fn climb_and_keep(
     reviewer: &Reviewer<'_>,
     opened: Result<Archive, Vec<Fault>>,
@@ -202,7 +203,7 @@ impl Climb<'_> {
         self.began = now;
     }
 
-    /// Levels 0 to 2, and on where they leave a bundle to read.
+    /// Climbs levels 0 to 2, and further where they leave a bundle to read.
     fn lower(
         &mut self,
         opened: Result<Archive, Vec<Fault>>,
@@ -255,7 +256,7 @@ impl Climb<'_> {
         Some(bundle)
     }
 
-    /// Who vouches; whether to go on.
+    /// Notes who vouches, and returns whether to go on.
     fn signature(&mut self, archive: &Archive, vouching: &Vouching<'_>) -> bool {
         match signature::check(archive, vouching) {
             signature::Outcome::Unsigned => true,
@@ -293,7 +294,7 @@ impl Climb<'_> {
         }
     }
 
-    /// Level 3 and above: what needs the engine.
+    /// Climbs level 3 and above: what needs the engine.
     fn upper(&mut self, bundle: &Bundle) {
         let (options, pipeline) = (self.options, self.pipeline);
         if bundle.engine() != pipeline.engine() {

@@ -37,7 +37,7 @@ pub enum ReplanError {
     NoPart(#[from] SelectionError),
 }
 
-/// Every fault of a manifest as a fault of its bundle tells them.
+/// Writes every fault of a manifest as a fault of its bundle states them.
 fn counted(faults: &[Diagnostic]) -> String {
     let (reports, count) = (reports(faults, false), faults.iter().map(|f| f.count).sum());
     // A fault of a bundle is cut where it is long, so the count comes first.
@@ -104,7 +104,7 @@ pub enum ReplicateError {
 
 /// The way from a manifest to trials, as `run` goes it.
 pub trait Pipeline {
-    /// The engine of this program: bundles of another can be judged up to level 2.
+    /// Returns the engine of this program: bundles of another can be judged up to level 2.
     fn engine(&self) -> &str;
 
     /// Plans the study again from the bundle's manifest, inputs and overrides alone.
@@ -116,11 +116,11 @@ pub trait Pipeline {
 
 /// A study planned again from a bundle.
 pub trait Replanned {
-    /// Every trial, in plan order.
+    /// Returns every trial, in plan order.
     fn trials(&self) -> Vec<PlannedTrial>;
 
-    /// What `run` would seal, given the bundle's records: the very function that `run` calls, so that whatever is not a
-    /// record, an input or the manifest is derived anew.
+    /// Makes what `run` would seal, given the bundle's records: by the very function that `run` calls, so that whatever
+    /// is not a record, an input or the manifest is derived anew.
     ///
     /// # Errors
     /// Where the records do not make results.
@@ -132,7 +132,7 @@ pub trait Replanned {
     /// Where this program cannot execute them.
     fn execute(&self, indices: &[usize]) -> Result<Vec<String>, RunError>;
 
-    /// Inputs that runs before the study's own made, of units that [`Self::make_again`] executes.
+    /// Returns the inputs that runs before the study's own made, of units that [`Self::make_again`] executes.
     fn earlier(&self) -> Vec<Earlier> {
         Vec::new()
     }
@@ -151,7 +151,8 @@ pub trait Replanned {
         Err(MakeAgainError::Nobody(indices.len()))
     }
 
-    /// Runs again the explorations whose maps the study starts from, and tells of every sealed map that came out otherwise.
+    /// Runs again the explorations whose maps the study starts from, and returns a fault for every sealed map that came
+    /// out otherwise.
     fn explore_again(&self) -> Vec<Fault> {
         Vec::new()
     }

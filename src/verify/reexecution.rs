@@ -23,8 +23,8 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// The largest fraction of wrong trials that this many equal ones leave possible at 95 % confidence:
-    /// 1 - 0.05^(1/k), exact for draws with replacement and on the safe side without. `None` where a trial differed.
+    /// Computes the largest fraction of wrong trials that this many equal ones leave possible at 95 % confidence: 1 -
+    /// 0.05^(1/k), exact for draws with replacement and on the safe side without. `None` where a trial differed.
     pub fn bound(&self) -> Option<f64> {
         #[expect(clippy::cast_precision_loss, reason = "counts of trials are small")]
         let k = self.executed as f64;
@@ -37,7 +37,7 @@ impl Sample {
         }
     }
 
-    /// What it means, in words.
+    /// Says in words what it means.
     pub fn in_words(&self) -> String {
         let (executed, of) = (self.executed, self.of);
         let drawn = self.seed.map(|seed| format!(", drawn with seed {seed},")).unwrap_or_default();
@@ -57,7 +57,7 @@ impl Sample {
     }
 }
 
-/// `count` different places out of `of`, in order, by the reviewer's seed alone.
+/// Draws `count` different places out of `of`, in order, by the reviewer's seed alone.
 pub(super) fn draw(seed: u64, count: usize, of: usize) -> Vec<usize> {
     Seeds::new(seed, Vec::new()).stream("verify-sample").places(count, of)
 }
@@ -65,7 +65,7 @@ pub(super) fn draw(seed: u64, count: usize, of: usize) -> Vec<usize> {
 /// Faults that are told of one kind of thing that was executed again.
 const MOST_FAULTS: usize = 100;
 
-/// The first of `faults`, and how many more there are.
+/// Returns the first of `faults`, and how many more there are.
 pub(super) fn capped(mut faults: Vec<Fault>) -> Vec<Fault> {
     let more = faults.len().saturating_sub(MOST_FAULTS);
     if more > 0 {
@@ -121,7 +121,7 @@ pub(super) fn check(
     Ok((Sample { seed, executed: fresh.len(), equal, of: planned.len() }, faults))
 }
 
-/// What stands in the way of a level that executed nothing: it has shown nothing.
+/// Returns the obstacle at a level that executed nothing: it has shown nothing.
 pub(super) fn nothing_executed(of: usize) -> Fault {
     let path = BundlePath::payload(format::TRIALS);
     let fault = Fault::new(path, "trials to execute again", "none");

@@ -20,7 +20,7 @@ pub struct Reenactment<'o> {
 }
 
 impl Reenactment<'static> {
-    /// The pipeline on `jobs` threads.
+    /// Creates the pipeline on `jobs` threads.
     ///
     /// # Errors
     /// Where the system does not give them.
@@ -30,7 +30,7 @@ impl Reenactment<'static> {
 }
 
 impl Reenactment<'_> {
-    /// The same, with `observer` told of the trials that are executed again.
+    /// Returns the same pipeline with an `observer`, which is notified of the trials that are executed again.
     pub fn observed_by(self, observer: &dyn Observer) -> Reenactment<'_> {
         Reenactment { scheduler: self.scheduler, observer }
     }
@@ -64,7 +64,8 @@ pub fn plan_of(bundle: &Bundle) -> Result<(Plan, Selection), ReplanError> {
     plan_with(bundle, None)
 }
 
-/// The same plan; with a fresh seed in place of the manifest's, and all that ran before done anew, where one is given.
+/// Makes the same plan; with a fresh seed in place of the manifest's, and all that ran before done anew, where one is
+/// given.
 fn plan_with(
     bundle: &Bundle,
     fresh: Option<(u64, &Study<'_>)>,
@@ -98,7 +99,7 @@ fn plan_with(
     Ok((plan, selection))
 }
 
-/// The manifest in `bundle` and what was overridden in it.
+/// Returns the manifest in `bundle` and what was overridden in it.
 fn written(bundle: &Bundle) -> Result<(Source, Vec<String>), ReplanError> {
     let overrides = bundle.resolved().overrides.read().map_err(ReplanError::Overrides)?;
     let text = std::str::from_utf8(bundle.study_yaml()).map_err(|_| ReplanError::NotText)?;
@@ -219,7 +220,7 @@ struct Study<'a> {
 }
 
 impl Study<'_> {
-    /// The records of `trials`, never from a store.
+    /// Executes `trials` and returns their records, never from a store.
     fn run(&self, trials: &[TrialSpec]) -> Result<Vec<TrialRecord>, RunError> {
         self.scheduler.run(trials, &studies::execute, None, self.observer)
     }
@@ -275,7 +276,7 @@ impl Study<'_> {
         compared.collect()
     }
 
-    /// The plan of a run of the robustness table.
+    /// Makes the plan of a run of the robustness table.
     fn varied_plan(&self, run: &Run) -> Result<Plan, ReplanError> {
         let (source, mut overrides) = written(self.bundle)?;
         let value_of = |path: &str, tried: &str| {
@@ -290,7 +291,7 @@ impl Study<'_> {
     }
 }
 
-/// The last part of a path.
+/// Returns the last part of a path.
 fn file_name(path: &str) -> &str {
     path.rsplit('/').next().unwrap_or(path)
 }

@@ -7,7 +7,7 @@ use crate::json;
 use serde_json::{Value, json};
 
 impl Report {
-    /// For people: what it is, one line a level, every finding, and the answer last.
+    /// Writes the report for people: what it is, one line a level, every finding, and the answer last.
     pub fn to_human(&self) -> String {
         let mut text = String::new();
         let mut fact = |name: &str, value: Option<String>| {
@@ -53,13 +53,13 @@ impl Report {
         text
     }
 
-    /// The answer, and what it does not speak of.
+    /// Returns the answer, and what it does not speak of.
     fn answer_with_limits(&self) -> String {
         let limits = self.unchecked.iter().map(|what| format!("; {}", plain(what)));
         std::iter::once(self.answer().to_owned()).chain(limits).collect()
     }
 
-    /// For programs: one line of canonical JSON.
+    /// Writes the report for programs: one line of canonical JSON.
     pub fn to_json(&self) -> String {
         let mut value = json!({
             "asked": self.asked,
@@ -97,7 +97,7 @@ impl Report {
         json::canonical(&value)
     }
 
-    /// For CI: JUnit XML as Jenkins' `junit-10.xsd` has it, one test case a level.
+    /// Writes the report for CI: JUnit XML as Jenkins' `junit-10.xsd` has it, one test case a level.
     pub fn to_junit(&self) -> String {
         let levels = self.levels();
         let of = |level: Level| self.findings.iter().filter(move |finding| finding.level == level);
@@ -191,12 +191,12 @@ impl Report {
         )
     }
 
-    /// The levels asked for, lowest first.
+    /// Returns the levels asked for, lowest first.
     fn levels(&self) -> Vec<Level> {
         Level::ALL.into_iter().filter(|level| *level <= self.asked).collect()
     }
 
-    /// What was executed and what it shows, a line each.
+    /// Says what was executed and what it shows, a line each.
     fn in_words(&self) -> Vec<String> {
         let sample = self.sample.as_ref().map(super::Sample::in_words);
         let replication = self.replication.as_ref().map(super::Replication::in_words);
@@ -205,7 +205,7 @@ impl Report {
         lines.flat_map(|text| text.lines().map(plain).collect::<Vec<_>>()).collect()
     }
 
-    /// A study's name and how its run departs from the manifest.
+    /// Adds to a study's name how its run departs from the manifest.
     fn with_departure(&self, name: String) -> String {
         match self.departure.as_ref().and_then(Departure::in_words) {
             Some(words) => format!("{name} ({words})"),
@@ -213,7 +213,7 @@ impl Report {
         }
     }
 
-    /// Which part was run, where it was a part.
+    /// Returns which part was run, where it was a part.
     fn selection(&self) -> Option<Value> {
         let departure = self.departure.as_ref().filter(|departure| departure.partial)?;
         departure.selection.as_ref().map(json::value_of)
@@ -223,7 +223,7 @@ impl Report {
         self.attestation.as_ref().and_then(|answer| answer.as_ref().ok())
     }
 
-    /// What the attestation says besides the level, or why it is refused, a line each.
+    /// Says what the attestation states besides the level, or why it is refused, a line each.
     fn attestation_in_words(&self) -> Vec<String> {
         let lines = match &self.attestation {
             None => Vec::new(),
@@ -234,7 +234,7 @@ impl Report {
         lines.iter().map(|line| visible(line).replace('\n', " ")).collect()
     }
 
-    /// Every level asked for with what became of it, as programs read it.
+    /// Lists every level asked for with what became of it, as programs read it.
     pub(super) fn states(&self) -> Vec<Value> {
         let state = |level: Level| json!({"level": level, "name": level.name(), "state": self.state(level)});
         self.levels().into_iter().map(state).collect()
@@ -274,12 +274,13 @@ impl Report {
     }
 }
 
-/// `text` for a terminal: a hostile bundle's words may carry control characters, which could rewrite what is shown.
+/// Writes `text` for a terminal: a hostile bundle's words may carry control characters, which could rewrite what is
+/// shown.
 fn plain(text: &str) -> String {
     text.chars().map(|c| if c.is_control() && c != '\n' { '\u{fffd}' } else { c }).collect()
 }
 
-/// `text` as XML can hold it.
+/// Writes `text` as XML can hold it.
 fn printable(text: &str) -> String {
     // Two characters that are no control characters have no place in XML either.
     escape(&plain(text).replace(['\u{fffe}', '\u{ffff}'], "\u{fffd}"))

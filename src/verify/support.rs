@@ -2,7 +2,7 @@
 
 use crate::bundle::{Bundle, BundlePath, Fault, format};
 
-/// The obstacle at level 3 of a bundle of an older format.
+/// Creates the obstacle at level 3 of a bundle of an older format.
 pub(super) fn other_format(bundle: &Bundle) -> Fault {
     let path = BundlePath::payload(format::RESOLVED);
     let (ours, found) = (format::FORMAT, bundle.format());
@@ -12,7 +12,7 @@ pub(super) fn other_format(bundle: &Bundle) -> Fault {
     )
 }
 
-/// The obstacle at level 3, with the way around it.
+/// Creates the obstacle at level 3 of a bundle of another engine, and says how to get past it.
 pub(super) fn other_engine(bundle: &Bundle, ours: &str) -> Fault {
     let path = BundlePath::payload(format::RESOLVED);
     let fault = Fault::new(path, format!("engine {ours}"), format!("engine {}", bundle.engine()));

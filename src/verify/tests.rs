@@ -119,7 +119,7 @@ fn damaged(
     assert_eq!(report.verdict(), Verdict::Broken);
 }
 
-/// Digests depend on every byte of the sample; that one stands there is what matters.
+/// Hides digests, which depend on every byte of the sample; that one stands there is what matters.
 fn shorten(text: &str) -> String {
     let (mut out, mut run) = (String::new(), String::new());
     for c in text.chars().chain([' ']) {
@@ -135,8 +135,8 @@ fn shorten(text: &str) -> String {
     out
 }
 
-/// A bundle forged as well as can be: one record invented, and everything that follows from it derived by the program
-/// itself.
+/// Makes a bundle forged as well as can be: one record invented, and everything that follows from it derived by the
+/// program itself.
 fn forged() -> Tree {
     let mut records = sample::records();
     let distance = records[0].1[1].measures.get_mut("distance-m-at-90").unwrap();

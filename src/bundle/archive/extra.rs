@@ -67,7 +67,7 @@ const ZIP64: u16 = 0x0001;
 /// Fields of times and owners: Info-ZIP's, as it writes them today and as it wrote them first, and that of NTFS.
 const KNOWN: [u16; 5] = [0x5455, 0x7875, 0x7855, 0x5855, 0x000a];
 
-/// Whether a known field holds what it is for, and no byte more.
+/// Returns whether a known field holds what it is for, and no byte more.
 fn is_whole(id: u16, field: &[u8]) -> bool {
     match id {
         // Flags, and for each of the lowest three a time; the central directory has but the first, whatever the flags.
@@ -87,13 +87,13 @@ fn is_whole(id: u16, field: &[u8]) -> bool {
     }
 }
 
-/// What follows a number behind its length.
+/// Returns what follows a number behind its length.
 fn owner(field: &[u8]) -> Option<&[u8]> {
     let (length, rest) = field.split_first()?;
     if *length > 8 { None } else { rest.get(usize::from(*length)..) }
 }
 
-/// What other readers take such a field for.
+/// Returns what other readers take a field of kind `id` for; `None` where it misleads none.
 fn misleading(id: u16) -> Option<&'static str> {
     Some(match id {
         0x7075 => "which gives the file another name",

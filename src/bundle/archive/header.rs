@@ -68,7 +68,7 @@ pub(super) struct Central<'a> {
 const CENTRAL: usize = 46;
 
 impl<'a> Central<'a> {
-    /// How many bytes the header at the beginning of `directory` takes; `None` where none stands there whole.
+    /// Returns how many bytes the header at the beginning of `directory` takes; `None` where none stands there whole.
     pub(super) fn length(directory: &[u8]) -> Option<usize> {
         let fixed = directory.get(..CENTRAL).filter(|fixed| fixed.starts_with(b"PK\x01\x02"))?;
         let lengths = [28, 30, 32].map(|at| usize::from(Record(fixed).u16(at)));
@@ -113,22 +113,22 @@ impl<'a> Central<'a> {
         }
     }
 
-    /// Whether the entry is a folder, by its name.
+    /// Returns whether the entry is a folder, by its name.
     pub(super) fn is_folder(&self) -> bool {
         self.name.ends_with(b"/")
     }
 
-    /// Whether its bytes stand in the archive as they are.
+    /// Returns whether the entry's bytes stand in the archive as they are.
     pub(super) fn is_stored(&self) -> bool {
         self.method == STORED
     }
 
-    /// The name as it may be shown, whatever its bytes.
+    /// Returns the name as it may be shown, whatever its bytes.
     pub(super) fn shown(&self) -> String {
         String::from_utf8_lossy(self.name).escape_debug().to_string()
     }
 
-    /// Everything about the entry that makes it another thing for some reader, or no file at all.
+    /// Returns everything about the entry that makes it another thing for some reader, or no file at all.
     pub(super) fn faults(&self) -> Vec<Fault> {
         let mut faults = Vec::new();
         let mut fault = |expected: &str, found: String| {
@@ -220,7 +220,7 @@ pub(super) struct Local<'a> {
 const LOCAL: usize = 30;
 
 impl<'a> Local<'a> {
-    /// The header at the beginning of `bytes`; `None` where none stands there whole.
+    /// Reads the header at the beginning of `bytes`; `None` where none stands there whole.
     pub(super) fn read(bytes: &'a [u8]) -> Option<Self> {
         let field = Record(bytes.get(..LOCAL).filter(|fixed| fixed.starts_with(b"PK\x03\x04"))?);
         let [name, extra] = [26, 28].map(|at| usize::from(field.u16(at)));

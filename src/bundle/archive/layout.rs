@@ -98,7 +98,7 @@ impl Directory {
         Ok(Self { range: start..end, entries: stated.entries })
     }
 
-    /// Its headers, in the order they stand there.
+    /// Reads the directory's headers, in the order in which they stand there.
     pub(super) fn headers<'a>(
         &self,
         bytes: &'a [u8],
@@ -129,8 +129,8 @@ impl Directory {
         Ok(lengths(directory).map(Central::read).collect())
     }
 
-    /// The packed bytes of every entry, in the directory's order; each fault where a byte belongs to none of them, to
-    /// two, or where an entry's headers disagree.
+    /// Returns the packed bytes of every entry, in the directory's order; each fault where a byte belongs to none of
+    /// them, to two, or where an entry's headers disagree.
     pub(super) fn account<'a>(
         &self,
         bytes: &'a [u8],
@@ -191,7 +191,7 @@ fn gap_before(path: String, what: &str, gap: usize) -> Fault {
     Fault::new(path, expected, format!("{gap} bytes between them")).hint(UNLISTED)
 }
 
-/// Where the end record begins: the last one, without comment, and nothing behind it.
+/// Returns where the end record begins: the last one, without comment, and nothing behind it.
 fn end_record(bytes: &[u8]) -> Result<usize, Fault> {
     let whole = |found: &str| archive("a whole zip archive", found);
     let is_end = |at: &usize| bytes[*at..].starts_with(b"PK\x05\x06") && bytes.ends_with(&[0, 0]);
@@ -214,7 +214,7 @@ fn end_record(bytes: &[u8]) -> Result<usize, Fault> {
     }
 }
 
-/// The zip64 end record before the end record at `at`, and what it states; `None` where there is none.
+/// Finds the zip64 end record before the end record at `at`, and reads what it states; `None` where there is none.
 fn long_end(bytes: &[u8], at: usize) -> Result<Option<(usize, Stated)>, Fault> {
     let locator = at.checked_sub(LOCATOR).map(|from| (from, &bytes[from..at]));
     let Some((from, locator)) = locator.filter(|(_, l)| l.starts_with(b"PK\x06\x07")) else {
@@ -278,7 +278,8 @@ impl<'a> Place<'a> {
     }
 }
 
-/// What the local header says otherwise than the directory. A streaming writer leaves checksum and sizes zero there.
+/// Returns what the local header says otherwise than the directory. A streaming writer leaves checksum and sizes zero
+/// there.
 fn disagreements(entry: &Central<'_>, local: &Local<'_>, is_streamed: bool) -> Vec<Fault> {
     let mut faults = Vec::new();
     if local.name != entry.name {
@@ -327,7 +328,7 @@ fn disagreements(entry: &Central<'_>, local: &Local<'_>, is_streamed: bool) -> V
     faults
 }
 
-/// The length of the data descriptor at the beginning of `bytes`, and what is wrong with it.
+/// Returns the length of the data descriptor at the beginning of `bytes`, and what is wrong with it.
 fn descriptor(entry: &Central<'_>, bytes: &[u8], is_long: bool) -> (usize, Option<String>) {
     let length = if is_long { 24 } else { 16 };
     let Some(record) = bytes.get(..length).filter(|record| record.starts_with(b"PK\x07\x08"))
@@ -352,7 +353,8 @@ fn descriptor(entry: &Central<'_>, bytes: &[u8], is_long: bool) -> (usize, Optio
     (length, found)
 }
 
-/// Whether `data`, whose length a reader of a stream does not know yet, holds a descriptor of what stands before it.
+/// Returns whether `data`, whose length a reader of a stream does not know yet, holds a descriptor of what stands
+/// before it.
 fn ends_within(data: &[u8]) -> bool {
     data.windows(16)
         .enumerate()

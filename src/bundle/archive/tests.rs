@@ -180,7 +180,7 @@ fn bombs_and_forged_sizes_are_refused() {
     );
 }
 
-/// Every end of an archive, and every byte that is put into it, is noticed.
+/// Checks that every end of an archive, and every byte that is put into it, is noticed.
 #[test]
 fn no_byte_may_be_taken_or_added_anywhere() {
     let zip = sample::zip_of(&[("b/bagit.txt", b"x"), ("b/one", b""), ("b/two", b"yy")]);

@@ -25,7 +25,7 @@ impl Faults {
         }
     }
 
-    /// `value` where there are none.
+    /// Returns `value` where there are no faults, and the faults otherwise.
     pub(super) fn or<T>(self, value: T) -> Result<T, Self> {
         if self.is_empty() { Ok(value) } else { Err(self) }
     }
@@ -52,7 +52,7 @@ impl From<Faults> for Vec<Fault> {
     }
 }
 
-/// The first of `faults`, and how many more there are.
+/// Returns the first of `faults`, and how many more there are.
 pub fn told(faults: Vec<Fault>) -> Vec<Fault> {
     let mut kept = Faults::default();
     kept.extend(faults);

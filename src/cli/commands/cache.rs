@@ -6,7 +6,7 @@ use crate::cli::terminal::{Terminal, counted};
 use crate::provenance::Environment;
 use crate::store::DirectoryStore;
 
-/// Tells where the store is, or how large.
+/// Says where the store is, or how large.
 pub(in crate::cli) fn run(
     args: &CacheArgs,
     environment: &Environment,

@@ -7,7 +7,7 @@ use crate::cli::load;
 use crate::cli::terminal::{Terminal, counted};
 use crate::plan::Plan;
 
-/// Checks every manifest; all faults of all of them are told.
+/// Checks every manifest and lists all faults of all of them.
 pub(in crate::cli) fn run(args: &CheckArgs, terminal: Terminal) -> Result<Exit, Failure> {
     let mut failures = Vec::new();
     for manifest in &args.manifests {

@@ -52,7 +52,7 @@ struct Side {
     banner: Option<String>,
 }
 
-/// What one side says: a lock by its name, a bundle otherwise.
+/// Reads what one side says: a lock by its name, a bundle otherwise.
 fn side(path: &Path, args: &DiffArgs, terminal: Terminal) -> Result<Side, Failure> {
     if path.extension().is_some_and(|extension| extension == "lock") {
         let account = locked::read(&load::text(path)?, terminal)?.account().clone();

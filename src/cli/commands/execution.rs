@@ -42,7 +42,7 @@ pub(super) enum Times {
     Twice,
 }
 
-/// How many threads `--jobs` asks for: all processors by default, and never more than there is any use for.
+/// Returns how many threads `--jobs` asks for: all processors by default, and never more than there is any use for.
 pub(super) fn jobs(asked: Option<usize>, terminal: Terminal) -> Result<usize, Failure> {
     match asked {
         None => Ok(processors()),
@@ -60,7 +60,7 @@ pub(super) fn jobs(asked: Option<usize>, terminal: Terminal) -> Result<usize, Fa
 }
 
 impl Execution {
-    /// `jobs` threads, all processors by default, and the store unless it is not to be used.
+    /// Starts `jobs` threads, all processors by default, and opens the store unless it is not to be used.
     pub(super) fn new(
         jobs: Option<usize>,
         no_cache: bool,
@@ -81,17 +81,17 @@ impl Execution {
         Ok(Self { scheduler, store })
     }
 
-    /// Threads at work.
+    /// Returns how many threads are at work.
     pub(super) fn jobs(&self) -> usize {
         self.scheduler.jobs()
     }
 
-    /// Who runs the calibration that a manifest asks for.
+    /// Returns who runs the calibration that a manifest asks for.
     pub(super) fn calibrator(&self) -> Calibrator<'_> {
         Calibrator::Run { scheduler: &self.scheduler, store: self.store.as_ref() }
     }
 
-    /// The record of every trial of `plan`, in its order.
+    /// Returns the record of every trial of `plan`, in its order.
     pub(super) fn execute(
         &self,
         plan: &Plan,

@@ -73,7 +73,7 @@ fn lock_one(
     Ok(told)
 }
 
-/// What the new lock changes, or that the old one says nothing that can be compared.
+/// Says what the new lock changes, or that the old one says nothing that can be compared.
 fn changes(
     old: &Source,
     new: &Account,
@@ -98,7 +98,7 @@ fn changes(
     Ok(format!("{told}\nwrote {name} anew: {reason}\n"))
 }
 
-/// The lock's text, where there is one.
+/// Reads the lock's text, where there is one.
 fn old_text(path: &Path) -> Result<Option<Source>, Failure> {
     if path.exists() { load::text(path).map(Some) } else { Ok(None) }
 }

@@ -9,12 +9,12 @@ use crate::compare::{self, Account, Comparison, Extent, Lock, LockError, Toleran
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
-/// Where the lock of `manifest` is: `quickstart.lock` beside `quickstart.yaml`.
+/// Returns where the lock of `manifest` is: `quickstart.lock` beside `quickstart.yaml`.
 pub(super) fn path_of(manifest: &Path) -> PathBuf {
     manifest.with_extension("lock")
 }
 
-/// The lock of every manifest, where `--locked` asks for them.
+/// Reads the lock of every manifest, where `--locked` asks for them.
 pub(super) fn locks(args: &RunArgs, terminal: Terminal) -> Result<Vec<Option<Lock>>, Failure> {
     if !args.lock.locked {
         return Ok(args.manifests.iter().map(|_| None).collect());
@@ -49,7 +49,7 @@ pub(super) fn read(source: &crate::document::Source, terminal: Terminal) -> Resu
     })
 }
 
-/// What a sealed tree says.
+/// Returns what a sealed tree says.
 pub(super) fn account_of(sealed: &Sealed) -> Result<Account, Failure> {
     let archive = Archive { form: Form::Bag, tree: sealed.tree.clone() };
     let bundle = Bundle::open(archive).map_err(Failure::failed)?;
@@ -58,7 +58,7 @@ pub(super) fn account_of(sealed: &Sealed) -> Result<Account, Failure> {
     })
 }
 
-/// How much of the locked study `args` run.
+/// Returns how much of the locked study `args` run.
 pub(super) fn extent(args: &RunArgs) -> Extent {
     if args.lock.probe {
         Extent::FirstTrials
@@ -91,7 +91,7 @@ impl Held {
         Ok(Self { comparison, manifest: manifest.display().to_string(), lock })
     }
 
-    /// One line where all is as the lock has it, the drift in full where not.
+    /// Says in one line that all is as the lock has it, or gives the drift in full.
     pub(super) fn in_words(&self) -> String {
         if self.comparison.is_same() {
             let what = match self.comparison.extent {
@@ -105,7 +105,7 @@ impl Held {
         }
     }
 
-    /// The comparison where there is drift, else nothing.
+    /// Returns the comparison where there is drift, else nothing.
     pub(super) fn drift(&self) -> Value {
         if self.comparison.is_same() { Value::Null } else { self.comparison.to_json() }
     }
@@ -118,7 +118,7 @@ impl Held {
         !self.comparison.is_same()
     }
 
-    /// The lock's path.
+    /// Returns the lock's path.
     pub(super) fn lock(&self) -> &str {
         &self.lock
     }

@@ -11,7 +11,7 @@ use crate::provenance::{Environment, processors};
 use crate::runner::TrialStore as _;
 use crate::store::DirectoryStore;
 
-/// Lists, explains or estimates.
+/// Lists the trials and estimates the rest, explains one of them, or says how likely they are to decide each claim.
 pub(in crate::cli) fn run(
     args: &PlanArgs,
     environment: &Environment,
@@ -59,8 +59,8 @@ pub(in crate::cli) fn run(
     Ok(Exit::Yes)
 }
 
-/// How long the rest takes, where trials of this plan have been seen; a processor simulates some 300 times
-/// faster than real time.
+/// Says how long the rest takes, where trials of this plan have been seen; a processor simulates some 300 times faster
+/// than real time.
 fn estimate(left: usize, done: usize, known_seconds: f64) -> String {
     if left == 0 || done == 0 {
         return String::new();

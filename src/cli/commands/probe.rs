@@ -85,7 +85,7 @@ impl<'a> Probed<'a> {
     }
 }
 
-/// One line a condition, and the drift in full.
+/// Writes one line a condition, and the drift in full.
 fn in_words(probed: &[Probed<'_>], held: &Held) -> String {
     let name = |p: &Probed<'_>| format!("{}/{}", p.record.condition().slug(), p.record.trial);
     let width = probed.iter().map(|p| name(p).chars().count()).max().unwrap_or_default();

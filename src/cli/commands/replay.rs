@@ -100,7 +100,7 @@ pub(in crate::cli) fn run(args: &ReplayArgs, terminal: Terminal) -> Result<Exit,
     Ok(exit)
 }
 
-/// When (s) the trial first covered `percent`.
+/// Returns when (s) the trial first covered `percent`.
 fn instant_of(percent: f64, recording: &Recording) -> Result<f64, Failure> {
     let reached = recording.frames.iter().find(|frame| frame.coverage_percent >= percent);
     reached.map(|frame| frame.time_s).ok_or_else(|| {
@@ -112,7 +112,7 @@ fn instant_of(percent: f64, recording: &Recording) -> Result<f64, Failure> {
     })
 }
 
-/// What a candidate of the first trial's choice promises.
+/// Draws what a candidate of the first trial's choice promises.
 fn gain_still(
     plan: &Plan,
     args: &ReplayArgs,

@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// A generated building as the world file that it would be.
+/// Makes a generated building as the world file that it would be.
 fn building(family: FamilyArg, seed: u64) -> Result<(PathBuf, Vec<u8>), Failure> {
     let FamilyArg::OfficeFloor = family;
     let doc = generate::document(Family::OfficeFloor, seed)
@@ -44,7 +44,7 @@ impl Models for Shelf {
     }
 }
 
-/// What is asked for of the file `name`.
+/// Draws what is asked for of the file `name`.
 fn draw(
     args: &ShowArgs,
     file: &Path,

@@ -96,7 +96,7 @@ struct Study<'a> {
 }
 
 impl Study<'_> {
-    /// The experiment with these values replaced. What an earlier call found is not read: it may not exist yet.
+    /// Reads the experiment with these values replaced. What an earlier call found is not read: it may not exist yet.
     fn experiment(&self, set: &[String]) -> Result<Experiment, Failure> {
         let mut set = set.to_vec();
         set.push("sensitivity=null".to_owned());
@@ -105,7 +105,7 @@ impl Study<'_> {
         load::manifest(&self.args.manifest, &set, calibrator, self.terminal).map(|l| l.experiment)
     }
 
-    /// What the claims of `experiment` come to, and digest of the records by which they do.
+    /// Returns the verdicts on the claims of `experiment`, and the digest of the records that they follow from.
     fn verdicts(
         &self,
         experiment: Experiment,
@@ -123,7 +123,7 @@ impl Study<'_> {
     }
 }
 
-/// One attempt in a line, and one more for every verdict that it changes.
+/// Writes one attempt in a line, and one more for every verdict that it changes.
 fn line(attempt: &Attempt, flips: &[Flip]) -> String {
     let what = format!("{} {} -> {}", attempt.setting, attempt.chosen, attempt.tried);
     if flips.is_empty() {

@@ -82,14 +82,15 @@ pub(in crate::cli) fn run(
     Ok(exit(&report, args.attest.is_some()))
 }
 
-/// The keys in `path`.
+/// Reads the keys in `path`.
 fn trust(path: &Path) -> Result<Trust, Failure> {
     let source = load::text(path)?;
     Trust::read(&source)
         .map_err(|faults| Failure::not_understood(reports(&faults, false).join("\n")))
 }
 
-/// An attestation that was asked for and could not be written is no yes, even where the bundle holds.
+/// Returns how the command ends: an attestation that was asked for and could not be written is no yes, even where the
+/// bundle holds.
 fn exit(report: &Report, attest: bool) -> Exit {
     match report.verdict() {
         Verdict::Holds if attest && report.bundle_id.is_none() => Exit::NotUnderstood,

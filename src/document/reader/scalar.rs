@@ -2,7 +2,7 @@
 
 use crate::document::{Content, quoted};
 
-/// A plain scalar by the core schema of YAML 1.2, or why it is refused and what to write instead.
+/// Reads a plain scalar by the core schema of YAML 1.2, or says why it is refused and what to write instead.
 pub(super) fn plain_scalar(text: &str) -> Result<Content, (String, String)> {
     let old_boolean = |meant: bool| {
         Err((
@@ -79,7 +79,7 @@ pub(super) fn plain_scalar(text: &str) -> Result<Content, (String, String)> {
     }
 }
 
-/// Whether `text` is `digits[.digits][e[+-]digits]`, with a digit before or after the point.
+/// Returns whether `text` is `digits[.digits][e[+-]digits]`, with a digit before or after the point.
 fn is_decimal(text: &str) -> bool {
     let (mantissa, exponent) = match text.split_once(['e', 'E']) {
         Some((mantissa, exponent)) => (mantissa, Some(exponent)),

@@ -6,7 +6,7 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 
 impl<'s> Checker<'s> {
-    /// The alternatives of `schema` down to those that have no further ones.
+    /// Collects the alternatives of `schema` down to those that have no further ones.
     pub(super) fn leaves(&self, schema: &'s Value, leaves: &mut Vec<&'s Value>, depth: usize) {
         let schema = self.resolve(schema);
         let branches = schema.get("anyOf").or_else(|| schema.get("oneOf"));
@@ -70,7 +70,7 @@ impl<'s> Checker<'s> {
         }
     }
 
-    /// No alternative is of the node's type.
+    /// Creates the fault that no alternative is of the node's type.
     fn not_any(&self, leaves: &[&'s Value], about: &'s Value, spot: &Spot<'_>) -> Fault {
         let fault = self.wrong_type(leaves, about, spot);
         match &spot.node.content {
@@ -168,7 +168,7 @@ fn required(schema: &Value) -> impl Iterator<Item = &str> {
     schema.get("required").and_then(Value::as_array).into_iter().flatten().filter_map(Value::as_str)
 }
 
-/// What to write, where `name` is the tag of an alternative that takes settings.
+/// Says what to write, where `name` is the tag of an alternative that takes settings.
 fn tagged(leaves: &[&Value], name: &str) -> Option<String> {
     leaves
         .iter()

@@ -19,7 +19,7 @@ impl Faults {
         self.others + self.unknown.len()
     }
 
-    /// Whether a further fault is only counted: to put it into words could take longer than all the rest.
+    /// Returns whether a further fault is only counted: to put it into words could take longer than all the rest.
     pub(super) fn is_full(&self) -> bool {
         self.list.len() >= MOST_FAULTS
     }
@@ -30,7 +30,7 @@ impl Faults {
         self.tell(made);
     }
 
-    /// The same for an unknown key at `place`.
+    /// Collects the fault of an unknown key at `place`, once for each place.
     pub(super) fn push_unknown(&mut self, place: Place, made: impl FnOnce() -> Fault) {
         if self.unknown.insert(place) {
             self.tell(made);

@@ -39,7 +39,7 @@ impl<'a> Spot<'a> {
         Self { node, key: start_of(node), above: Some(self), step: Step::Item(number) }
     }
 
-    /// `parameters.sensing.range-m`, as `--set` takes it; empty for the whole document.
+    /// Writes the path as `--set` takes it, such as `parameters.sensing.range-m`; empty for the whole document.
     pub(super) fn path(&self) -> String {
         let above = self.above.map_or_else(String::new, Spot::path);
         match self.step {
@@ -50,7 +50,7 @@ impl<'a> Spot<'a> {
         }
     }
 
-    /// The path in backquotes, or words for the whole document.
+    /// Returns the path in backquotes, or words for the whole document.
     pub(super) fn name(&self) -> String {
         let path = self.path();
         if path.is_empty() { "the document".to_owned() } else { format!("`{path}`") }

@@ -3,7 +3,7 @@
 use crate::document::{Content, Node};
 use serde_json::Value;
 
-/// Whether a node is of one of the JSON types that `kinds` (a name or a list of names) allows.
+/// Returns whether a node is of one of the JSON types that `kinds` (a name or a list of names) allows.
 pub(super) fn accepts(kinds: &Value, node: &Node) -> bool {
     let is = |kind: &str| match &node.content {
         Content::Null => kind == "null",
@@ -21,20 +21,20 @@ pub(super) fn accepts(kinds: &Value, node: &Node) -> bool {
     }
 }
 
-/// The values a schema is limited to; none where it is not.
+/// Returns the values a schema is limited to; none where it is not.
 pub(super) fn constants(schema: &Value) -> Vec<&Value> {
     let listed = schema.get("enum").and_then(Value::as_array).into_iter().flatten();
     listed.chain(schema.get("const")).collect()
 }
 
-/// The first sentence of what a schema says about itself, without its full stop.
+/// Returns the first sentence of what a schema says about itself, without its full stop.
 pub(super) fn described(schema: &Value) -> Option<String> {
     let text = schema.get("description")?.as_str()?.split("\n\n").next()?.replace('\n', " ");
     let text = text.split(". ").next().unwrap_or_default().trim_end_matches('.').to_owned();
     (!text.is_empty()).then_some(text)
 }
 
-/// What any of `leaves` wants: `a number or nothing`, ``one of `a`, `b` ``.
+/// Says what any of `leaves` wants: `a number or nothing`, ``one of `a`, `b` ``.
 pub(super) fn expected(leaves: &[&Value]) -> String {
     let mut words: Vec<String> = Vec::new();
     let mut names: Vec<String> = Vec::new();

@@ -46,7 +46,7 @@ struct WrittenSignature {
 }
 
 impl Envelope {
-    /// `statement`, signed by nobody yet.
+    /// Creates an envelope of `statement`, signed by nobody yet.
     pub(super) fn unsigned(statement: &Statement) -> Self {
         Self { payload: json::canonical_of(statement).into_bytes(), signatures: Vec::new() }
     }
@@ -88,7 +88,7 @@ impl Envelope {
         })
     }
 
-    /// The envelope as one line of canonical JSON with a final line feed.
+    /// Writes the envelope as one line of canonical JSON with a final line feed.
     pub fn to_json(&self) -> String {
         let signatures = self.signatures.iter().map(|signature| WrittenSignature {
             keyid: signature.keyid.clone(),
@@ -102,7 +102,7 @@ impl Envelope {
         json::canonical_of(&written) + "\n"
     }
 
-    /// The bytes that are signed: DSSE's pre-authentication encoding of type and payload.
+    /// Returns the bytes that are signed: DSSE's pre-authentication encoding of type and payload.
     pub fn to_sign(&self) -> Vec<u8> {
         let (kind, payload) = (PAYLOAD_TYPE, &self.payload);
         let head = format!("DSSEv1 {} {kind} {} ", kind.len(), payload.len());

@@ -46,7 +46,7 @@ impl std::fmt::Display for Attestation {
 }
 
 impl Attestation {
-    /// What it says besides, a line each.
+    /// Says what the attestation states besides, a line each.
     pub(in crate::verify) fn in_words(&self) -> Vec<String> {
         let others = self
             .others
@@ -66,7 +66,7 @@ impl Report {
         self.attestation = Some(attestation);
     }
 
-    /// Whether what was `said` is about this bundle.
+    /// Checks that what was `said` is about this bundle.
     fn about_this(
         &self,
         name: &str,
@@ -111,7 +111,7 @@ impl Report {
 }
 
 impl Predicate {
-    /// What it comes to, where it is in keeping with itself.
+    /// Returns what the predicate comes to, where it is in keeping with itself.
     fn attestation(
         self,
         name: &str,
@@ -169,7 +169,7 @@ impl Note {
     }
 }
 
-/// Who signed the attestation and what it says: the trusted signers, the keys of the others, the Statement.
+/// Reads who signed the attestation and what it says: the trusted signers, the keys of the others, the Statement.
 fn read(
     name: &str,
     bytes: &[u8],
@@ -197,8 +197,8 @@ fn read(
     Ok((signed, others, statement))
 }
 
-/// Every signature must fit these bytes as far as it can be checked, whoever made it, and one at least must be by a key that is
-/// trusted.
+/// Checks the signatures: every one must fit these bytes as far as it can be checked, whoever made it, and one at least
+/// must be by a key that is trusted.
 fn signers(
     name: &str,
     envelope: &Envelope,
@@ -229,7 +229,7 @@ fn signers(
     }
 }
 
-/// `text` of unknown origin on one line.
+/// Writes `text` of unknown origin on one line.
 fn one_line(text: &str) -> String {
     visible(text).replace('\n', " ")
 }

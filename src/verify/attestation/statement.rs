@@ -11,7 +11,7 @@ pub(super) const STATEMENT: &str = "https://in-toto.io/Statement/v1";
 /// The only verdict that is attested.
 pub(super) const HOLDS: &str = "holds";
 
-/// Version 1 of the predicate, which docs/verification.md describes.
+/// Returns version 1 of the predicate, which docs/verification.md describes.
 pub(super) fn predicate_type() -> String {
     format!("{}#re-execution/v1", format::HOME)
 }
@@ -126,12 +126,12 @@ pub(super) struct Note {
     pub(super) hint: String,
 }
 
-/// An instant as in-toto writes it.
+/// Writes an instant as in-toto does.
 pub(super) fn written(date: Moment) -> String {
     date.iso().replace("+00:00", "Z")
 }
 
-/// Whether `text` is such an instant.
+/// Returns whether `text` is such an instant.
 pub(super) fn is_instant(text: &str) -> bool {
     Moment::from_iso(&text.replace('Z', "+00:00")).is_some_and(|moment| written(moment) == text)
 }

@@ -31,14 +31,14 @@ pub(super) struct Limits {
 }
 
 impl Signer {
-    /// Whether `key` is this signer's own.
+    /// Returns whether `key` is this signer's own.
     pub(super) fn owns(&self, key: &KeyData) -> bool {
         !self.limits.is_authority && self.key.key_data() == key
     }
 }
 
 impl Limits {
-    /// Whether signatures of `namespace` count.
+    /// Returns whether signatures of `namespace` count.
     pub(super) fn may_sign(&self, namespace: &str) -> bool {
         let Some(patterns) = &self.namespaces else { return true };
         let mut allowed = false;
@@ -52,14 +52,15 @@ impl Limits {
         allowed
     }
 
-    /// Whether the key is trusted at `now`.
+    /// Returns whether the key is trusted at `now`.
     pub(super) fn is_valid(&self, now: Moment) -> bool {
         self.valid_after.is_none_or(|after| after <= now)
             && self.valid_before.is_none_or(|before| now < before)
     }
 }
 
-/// `*` stands for any text, `?` for one character (ssh_config(5), PATTERNS).
+/// Returns whether `text` fits `pattern`, in which `*` stands for any text, `?` for one character (ssh_config(5),
+/// PATTERNS).
 fn matches(pattern: &[u8], text: &[u8]) -> bool {
     match pattern.split_first() {
         None => text.is_empty(),
@@ -140,7 +141,7 @@ fn looks_like_a_key(text: &str) -> bool {
     ["ssh-", "ecdsa-", "sk-ssh-", "sk-ecdsa-"].iter().any(|kind| text.starts_with(kind))
 }
 
-/// The word at `from`: up to a blank that is not within quotes.
+/// Returns the word at `from`: up to a blank that is not within quotes.
 fn word(line: &str, from: usize) -> Range<usize> {
     let mut quoted = false;
     let end = line[from..].find(|c: char| {
@@ -216,8 +217,8 @@ fn option(written: &str, limits: &mut Limits) -> Result<(), (String, &'static st
     Ok(())
 }
 
-/// `YYYYMMDD`, `YYYYMMDDHHMM` or `YYYYMMDDHHMMSS`, with or without `Z`. Without it OpenSSH means the machine's own zone; we
-/// mean UTC, so that a check gives the same answer everywhere.
+/// Reads an instant: `YYYYMMDD`, `YYYYMMDDHHMM` or `YYYYMMDDHHMMSS`, with or without `Z`. Without it OpenSSH means the
+/// machine's own zone; we mean UTC, so that a check gives the same answer everywhere.
 fn moment(text: &str) -> Option<Moment> {
     let digits = text.strip_suffix('Z').unwrap_or(text);
     if !digits.bytes().all(|b| b.is_ascii_digit()) || ![8, 12, 14].contains(&digits.len()) {

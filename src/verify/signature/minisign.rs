@@ -15,13 +15,14 @@ pub(super) struct Key {
     file: Arc<str>,
 }
 
-/// Whether `text` is a public key rather than a list of OpenSSH's: the file that `minisign -G` writes, or the key alone.
+/// Returns whether `text` is a public key rather than a list of OpenSSH's: the file that `minisign -G` writes, or the
+/// key alone.
 pub(super) fn is_public_key(text: &str) -> bool {
     let line = text.trim();
     text.starts_with("untrusted comment:") || (line.starts_with("RW") && !line.contains(' '))
 }
 
-/// Why the text is no signature; `None` where it is one.
+/// Says why the text is no signature; `None` where it is one.
 pub(super) fn problem(text: &str) -> Option<String> {
     if text.lines().count() > 4 {
         return Some("more than the four lines of one".to_owned());
@@ -85,7 +86,7 @@ impl Key {
     }
 }
 
-/// The id of the key that the signature `text` says made it.
+/// Returns the id of the key that made the signature, by what its `text` says.
 pub(super) fn key_of(text: &str) -> Result<String, Refusal> {
     Signature::decode(text).map_err(|_| unreadable())?;
     text.lines().nth(1).and_then(id).ok_or_else(unreadable)
@@ -96,7 +97,7 @@ fn unreadable() -> Refusal {
     Refusal::new(found, "it must have four lines; it may be cut short")
 }
 
-/// A key's id as minisign prints it: bytes 2 to 9 of what is encoded, little-endian, in hex.
+/// Reads a key's id as minisign prints it: bytes 2 to 9 of what is encoded, little-endian, in hex.
 fn id(encoded: &str) -> Option<String> {
     let bytes = Base64::decode_vec(encoded).ok()?;
     let id: [u8; 8] = bytes.get(2..10)?.try_into().ok()?;

@@ -56,7 +56,7 @@ impl Trust {
         Ok(Self { name: source.name.clone(), keys })
     }
 
-    /// The file that says whom to trust.
+    /// Returns the name of the file that says whom to trust.
     pub(super) fn name(&self) -> &str {
         &self.name
     }
@@ -77,7 +77,7 @@ impl Signable {
         }
     }
 
-    /// What a signature that does not fit may be.
+    /// Says what a signature that does not fit may be.
     fn unfit(self) -> &'static str {
         match self {
             Self::Bundle => {
@@ -89,7 +89,7 @@ impl Signable {
         }
     }
 
-    /// What a signature by a key that nobody here knows is worth.
+    /// Says what a signature by a key that nobody here knows is worth.
     fn strange(self) -> &'static str {
         match self {
             Self::Bundle => "it fits the bundle, but none of the keys you trust made it",
@@ -97,7 +97,7 @@ impl Signable {
         }
     }
 
-    /// What a signature of another namespace lacks.
+    /// Says what a signature of another namespace lacks.
     fn purpose(self) -> &'static str {
         match self {
             Self::Bundle => {
@@ -182,12 +182,12 @@ impl Kind {
     }
 }
 
-/// The name under which a bag holds the signature `bytes`; `None` where they are of neither kind.
+/// Returns the name under which a bag holds the signature `bytes`; `None` where they are of neither kind.
 pub fn path_in_bag(bytes: &[u8]) -> Option<&'static str> {
     Kind::of(bytes).map(Kind::path)
 }
 
-/// Faults of files that lie where signatures do and are none: something else would ride along unlisted.
+/// Finds the faults of files that lie where signatures do and are none: something else would ride along unlisted.
 pub(super) fn unreadable(tree: &Tree) -> Vec<Fault> {
     let mut faults = Vec::new();
     for kind in [Kind::Ssh, Kind::Minisign] {
@@ -260,7 +260,7 @@ pub(super) fn check(archive: &Archive, vouching: &Vouching<'_>) -> Outcome {
     }
 }
 
-/// Who of those in `trust` made the signature `bytes` of `message`.
+/// Returns who of those in `trust` made the signature `bytes` of `message`.
 pub(super) fn signer(
     trust: &Trust,
     bytes: &[u8],
@@ -279,8 +279,8 @@ pub(super) fn signer(
     }
 }
 
-/// The key that made the signature `bytes`, where it fits `message` as far as the signature itself can tell: minisign's do
-/// not hold their key.
+/// Returns the key that made the signature `bytes`, where it fits `message` as far as the signature alone can show:
+/// minisign's do not hold their key.
 pub(super) fn key_of(bytes: &[u8], message: &[u8]) -> Result<String, Refusal> {
     match readable(bytes)? {
         (Kind::Ssh, text) => ssh::fitting(text, message, Signable::Attestation).map(|(_, key)| key),

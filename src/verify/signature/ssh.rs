@@ -6,7 +6,8 @@ use crate::bundle::Moment;
 use ssh_key::public::KeyData;
 use ssh_key::{Algorithm, EcdsaCurve, HashAlg, PublicKey, SshSig};
 
-/// The key that made the armoured signature `text` of `message`, and its fingerprint; whose it is remains to be seen.
+/// Returns the key that made the armoured signature `text` of `message`, and its fingerprint; whose it is remains to be
+/// seen.
 pub(super) fn fitting(
     text: &str,
     message: &[u8],
@@ -80,7 +81,7 @@ pub(super) fn check(
     }
 }
 
-/// Why the armoured text is no signature; `None` where it is one.
+/// Says why the armoured text is no signature; `None` where it is one.
 pub(super) fn problem(text: &str) -> Option<String> {
     SshSig::from_pem(text.trim_end()).err().map(|e| format!("one that cannot be read ({e})"))
 }

@@ -35,12 +35,12 @@ fn told(archive: &Archive, trust: Option<&Trust>, signature: Option<&str>) -> St
     }
 }
 
-/// What is said of `signature` beside a bag that is not signed itself.
+/// Returns what is said of `signature` beside a bag that is not signed itself.
 fn of(signers: &str, signature: &str) -> String {
     told(&bag(&[]), Some(&trust(name_of(signers), signers)), Some(signature))
 }
 
-/// The name of the file that holds `keys`.
+/// Returns the name of the file that holds `keys`.
 fn name_of(keys: &str) -> &'static str {
     if keys.contains("ssh-") { "signers" } else { "minisign.pub" }
 }

@@ -213,7 +213,8 @@ fn a_capsule_is_data_beside_the_results_and_is_compared() {
     assert!(human.ends_with(end), "{human}");
 }
 
-/// The elements and attributes of Jenkins' `junit-10.xsd`, which GitLab and most viewers follow, in the order it wants.
+/// Checks that only the elements and attributes of Jenkins' `junit-10.xsd`, which GitLab and most viewers follow, stand
+/// there, in the order it wants.
 #[test]
 fn junit_has_the_shape_that_viewers_expect() {
     let now = std::cell::Cell::new(0.0);

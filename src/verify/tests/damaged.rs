@@ -60,7 +60,7 @@ fn missing_and_extra_files_are_found() {
     assert_eq!(climb_to(Level::Derived, signed).verdict(), Verdict::Holds, "signatures come later");
 }
 
-/// No list holds the digest of a signature: what lies in its place is one, or is refused.
+/// Checks that what lies in the place of a signature is one, or is refused: no list holds the digest of a signature.
 #[test]
 fn nothing_rides_along_as_a_signature() {
     let hint = "(no list holds the digest of a signature, so it must be one and nothing more)";

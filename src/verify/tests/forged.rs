@@ -122,7 +122,7 @@ fn an_invented_record_passes_level_3_and_fails_when_executed() {
     }
 }
 
-/// Neither another version nor missing times turn the description into something that nobody derives.
+/// Checks that neither another version nor missing times turn the description into something that nobody derives.
 #[test]
 fn a_description_is_derived_again_whatever_the_bag_says_of_the_run() {
     let forged_readme = |info: &dyn Fn(String) -> String, level| {

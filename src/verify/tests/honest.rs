@@ -38,7 +38,7 @@ fn what_cannot_be_judged_is_no_damage() {
     assert_eq!((report.verdict(), report.reached), (Verdict::Unanswered, Some(Level::Coherent)));
 }
 
-/// What follows from engine and format is not derived in a way that another format had.
+/// Checks that what follows from engine and format is not derived as another format had it.
 #[test]
 fn an_older_format_is_judged_to_level_2() {
     let mut tree = sample::sealed().tree;
@@ -92,8 +92,8 @@ fn reports_say_the_same_in_three_forms() {
     ));
 }
 
-/// The calendar may be set back during a run, or be wrong from the start. The bag tells what the clock told, and nothing
-/// that is verified depends on it.
+/// Checks that a calendar that is set back during a run, or wrong from the start, breaks no bundle. The bag repeats
+/// what the clock showed, and nothing that is verified depends on it.
 #[test]
 fn a_clock_that_runs_backwards_breaks_no_bundle() {
     for (started, ended) in [(1_768_478_400, 1_768_470_000), (0, 0), (253_402_300_799, 0)] {

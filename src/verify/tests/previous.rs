@@ -42,7 +42,7 @@ impl Inputs for Inn {
     }
 }
 
-/// The bundle of a run that starts from such a map, all the rest as it follows from it, climbed to `level`.
+/// Climbs to `level` with the bundle of a run that starts from such a map, all the rest as it follows from it.
 fn climbed(honest: bool, level: Level) -> Report {
     let source = Source::new("study.yaml", MANIFEST);
     let (experiment, _) = manifest::resolve(&source, &[], &Inn { honest }).unwrap();
