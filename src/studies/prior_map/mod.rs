@@ -20,7 +20,6 @@ mod released_gain;
 mod requests;
 pub mod results;
 mod study;
-mod terrain;
 pub mod tour;
 pub mod utility;
 
