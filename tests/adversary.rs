@@ -150,7 +150,7 @@ fn honest_bundles_are_not_refused() {
 }
 
 /// A claim's threshold belongs to what is asked. Changed with everything that follows, it makes another study that is
-/// what it says; that it is another is told by the study digest, and by `study.yaml`.
+/// what it says; the study digest and `study.yaml` show that it is another.
 #[test]
 fn another_question_is_another_study() {
     let mut tree = HONEST.tree.clone();

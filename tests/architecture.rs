@@ -102,7 +102,7 @@ impl fmt::Display for Violation {
     }
 }
 
-/// A module's place from below, and what to call that place.
+/// Returns a module's place from below, and what to call that place.
 fn place(module: &str) -> Option<(usize, &'static str)> {
     if let Some(order) = LAYER_0.iter().position(|m| *m == module) {
         return Some((order, "layer 0"));
@@ -114,7 +114,7 @@ fn place(module: &str) -> Option<(usize, &'static str)> {
     Some((if module == "main" || module == "lib" { 300 } else { 100 + layer }, LAYERS[layer].0))
 }
 
-/// The module path of a file below `src/`: `a/b.rs` and `a/b/mod.rs` are `a::b`.
+/// Returns the module path of a file below `src/`: `a/b.rs` and `a/b/mod.rs` are `a::b`.
 fn module_of(file: &str) -> Vec<String> {
     let stem = file.strip_suffix(".rs").unwrap_or(file);
     let stem = stem.strip_suffix("/mod").unwrap_or(stem);
@@ -132,7 +132,7 @@ fn is_mind(file: &str) -> bool {
         })
 }
 
-/// Every violation in the shipped part of one file; `studies` are the modules in `studies/` that are studies.
+/// Returns every violation in the shipped part of one file; `studies` are the modules in `studies/` that are studies.
 fn check(file: &str, text: &str, studies: &[String]) -> Vec<Violation> {
     let shipped = Shipped::read(text);
     let module = module_of(file);
@@ -256,7 +256,7 @@ fn door(file: &str, foreign: &str, mut fault: impl FnMut(String, &str)) {
 /// A module by its path.
 type Module = Vec<String>;
 
-/// Which modules of `room` each of its modules names; a module holds its children, so it names them too.
+/// Returns which modules of `room` each of its modules names; a module holds its children, so it names them too.
 fn imports(room: &str, files: &[(String, String)]) -> BTreeMap<Module, BTreeSet<Module>> {
     let modules: BTreeMap<Module, &str> = files
         .iter()
@@ -279,7 +279,7 @@ fn imports(room: &str, files: &[(String, String)]) -> BTreeMap<Module, BTreeSet<
     modules.iter().map(of).collect()
 }
 
-/// One circle of modules in words, if there is one.
+/// Returns one circle of modules in words, if there is one.
 fn circle(imports: &BTreeMap<Module, BTreeSet<Module>>) -> Option<String> {
     let mut left = imports.clone();
     loop {
@@ -304,7 +304,7 @@ fn circle(imports: &BTreeMap<Module, BTreeSet<Module>>) -> Option<String> {
     }
 }
 
-/// The shipped files below `src/`, by path, with their text.
+/// Returns the shipped files below `src/`, by path, with their text.
 fn shipped_files() -> Vec<(String, String)> {
     fn walk(folder: &Path, src: &Path, files: &mut Vec<(String, String)>) {
         let mut entries: Vec<_> =
@@ -427,7 +427,7 @@ fn main_only_opens_the_command_line() {
     );
 }
 
-/// What is said of `text` as the file `file`.
+/// Returns what is said of `text` as the file `file`.
 fn told(file: &str, text: &str) -> Vec<String> {
     let studies = ["deadline".to_owned(), "prior_map".to_owned()];
     check(file, text, &studies).iter().map(ToString::to_string).collect()

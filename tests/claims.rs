@@ -2,14 +2,14 @@
 
 use crate::sandbox::{Answer, PINNED, Sandbox};
 
-/// What the program wrote to stdout with its clock pinned; it must have ended well and said nothing else.
+/// Returns what the program wrote to stdout with its clock pinned; it must have ended well and said nothing else.
 fn done_pinned(desk: &Sandbox, words: &[&str]) -> String {
     let answer = Answer::of(desk.command(words).env("SOURCE_DATE_EPOCH", PINNED));
     assert_eq!((answer.stderr.as_str(), answer.code), ("", 0));
     answer.stdout
 }
 
-/// A starter study of two trials that makes these claims.
+/// Creates a starter study of two trials that makes these claims.
 fn study(claims: &str) -> Sandbox {
     let desk = Sandbox::new().with_demo();
     let text = desk.read("demo/demo.yaml");
@@ -50,7 +50,7 @@ const CLAIMS: &str = "\
   expect: {between: {metric: wall-time-s-per-selection, statistic: median, high: 1000, minimum-n: 2}}
 ";
 
-/// The bytes of a file of a bundle that was exported as a folder.
+/// Returns the bytes of a file of a bundle that was exported as a folder.
 fn sealed(desk: &Sandbox, bundle: &str, path: &str) -> Option<String> {
     std::fs::read_to_string(desk.path(bundle).join("data").join(path)).ok()
 }

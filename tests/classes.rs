@@ -43,7 +43,7 @@ impl Shipped {
         paths
     }
 
-    /// One trial of one condition of `manifest`, sealed by the program under test.
+    /// Runs one trial of one condition of `manifest` and returns the bundle, sealed by the program under test.
     fn bundle(&self, manifest: &Path) -> Bundle {
         let source = Source::new("m.yaml", fs::read_to_string(manifest).unwrap());
         let beside = Beside(manifest.parent().unwrap().to_owned());
@@ -105,7 +105,7 @@ impl Inputs for Beside {
     }
 }
 
-/// `verify --level LEVEL`, without rows of robustness tables.
+/// Runs `verify --level LEVEL`, without rows of robustness tables.
 fn verify(tree: &Tree, level: Level) -> Report {
     let options = Options { level, sample: 59, rows: Some(Rows::Drawn(0)), seed: 4 };
     let archive = Archive { form: Form::Bag, tree: tree.clone() };
@@ -116,7 +116,7 @@ fn errors(report: &Report) -> Vec<&Finding> {
     report.findings.iter().filter(|finding| finding.severity == Severity::Error).collect()
 }
 
-/// Asserts that every one of `changed` is told by an error at `level`, and that nothing else breaks below.
+/// Asserts that an error at `level` reports every one of `changed`, and that nothing else breaks below.
 #[track_caller]
 fn refused(what: &str, tree: &Tree, level: Level, changed: &[String]) {
     let report = verify(tree, level);
@@ -132,7 +132,7 @@ fn refused(what: &str, tree: &Tree, level: Level, changed: &[String]) {
     assert!(report.reached < Some(level), "{what}: {level} is called passed");
 }
 
-/// `bytes` changed as little as a text or an image can be.
+/// Returns `bytes` changed as little as a text or an image can be.
 fn changed(path: &str, bytes: &[u8]) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
     let json = path.rsplit('.').next() == Some("json");
@@ -144,7 +144,7 @@ fn changed(path: &str, bytes: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// The honest tree with all of `paths` changed and every digest made right.
+/// Returns the honest tree with all of `paths` changed and every digest made right.
 fn forged(honest: &Tree, paths: &[String]) -> Tree {
     let mut tree = honest.clone();
     for path in paths {
@@ -269,7 +269,7 @@ enum Fabricated {
     Whole(Tree),
 }
 
-/// The best forgery of what was executed before or in the trials of `bundle` that changes `path`.
+/// Returns the best forgery of what was executed before or in the trials of `bundle` that changes `path`.
 fn fabricated(bundle: &Bundle, path: &str) -> Fabricated {
     let mut tree = bundle.tree().clone();
     if let Some(slug) = path.strip_prefix("data/trials/").and_then(|p| p.strip_suffix(".jsonl")) {

@@ -3,7 +3,7 @@
 use crate::sandbox::Sandbox;
 use std::path::PathBuf;
 
-/// A folder with the starter study in it.
+/// Creates a folder with the starter study in it.
 fn desk() -> Sandbox {
     Sandbox::pinned().with_demo()
 }
@@ -14,7 +14,7 @@ fn bundle_on(desk: &Sandbox) -> String {
     desk.done(&words).lines().last().unwrap().to_owned()
 }
 
-/// `text` with every number of wall time and every digest replaced, widths kept.
+/// Returns `text` with every number of wall time and every digest replaced, widths kept.
 fn redacted(text: &str) -> String {
     let mut words: Vec<String> = Vec::new();
     for word in text.split(' ') {

@@ -7,7 +7,7 @@ use reenact::store::DirectoryStore;
 use std::fs;
 use std::path::Path;
 
-/// The tiny study with another value of one assumption, and a claim.
+/// Returns the tiny study with another value of one assumption, and a claim.
 fn study() -> String {
     format!(
         "{TINY}  sensing: {{range-noise-sd-m: {{value: 0.01, why: unstated, range: [0.05]}}}}
@@ -20,7 +20,7 @@ claims:
     )
 }
 
-/// The bundle of a run, which must succeed.
+/// Returns the bundle of a run, which must succeed.
 fn sealed(at: &Sandbox, words: &[&str]) -> String {
     let answer = at.run(words);
     assert_eq!(answer.code, 0, "{}", answer.stderr);
@@ -120,7 +120,7 @@ fn a_robustness_table_is_the_authors_word_until_its_runs_are_done_again() {
     assert!(code == 1 && stdout.contains(" for the claim T1, "), "{stdout}");
 }
 
-/// Every record of the honest store with its first measure changed, in another store.
+/// Puts every record of the honest store, with its first measure changed, into another store.
 fn poison(honest: &Path, other: &Path, keys: &[reenact::digest::TrialKey]) {
     let (from, to) = (DirectoryStore::new(honest), DirectoryStore::new(other));
     for key in keys {
@@ -161,7 +161,7 @@ fn a_poisoned_store_is_found_before_anything_is_sealed() {
     assert_eq!(at.run(&["run", "tiny.yaml", "--no-cache"]).code, 0);
 }
 
-/// A manifest of the deadline study that names `calibration`.
+/// Returns a manifest of the deadline study that names `calibration`.
 fn deadline(calibration: &str) -> String {
     format!(
         "reenact: 1\nname: d\ntitle: D\nstudy: deadline\nseed: 1\ntrials: 1\nrobot: ../robots/pioneer3at.urdf\n\

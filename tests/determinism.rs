@@ -10,18 +10,18 @@ use std::sync::LazyLock;
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// Two trials with and two without a floor plan, each to its end.
+/// Creates a folder with a study of two trials with and two without a floor plan, each to its end.
 fn place() -> Sandbox {
     let (study, _) = TINY.split_once("parameters:").unwrap();
     Sandbox::new().with_study(&study.replace("trials: 3", "trials: 2"))
 }
 
-/// A run of the study.
+/// Returns the command of a run of the study.
 fn run(place: &Sandbox, more: &[&str]) -> Command {
     place.command(&[&["run", "tiny.yaml", "--format", "json"], more].concat())
 }
 
-/// Records in the store.
+/// Counts the records in the store.
 fn stored(place: &Sandbox) -> usize {
     let is_record = |file: &&PathBuf| file.extension().is_some_and(|extension| extension == "json");
     place.files("store").iter().filter(is_record).count()

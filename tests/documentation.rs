@@ -5,7 +5,7 @@ use reenact::document::Source;
 use reenact::{cli, world};
 use std::path::{Path, PathBuf};
 
-/// The Markdown files of `folder` and below.
+/// Returns the Markdown files of `folder` and below.
 fn markdown_in(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).unwrap() {
@@ -20,7 +20,7 @@ fn markdown_in(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// Targets of the inline links `[text](target)` of a Markdown text, outside of fenced code.
+/// Returns the targets of the inline links `[text](target)` of a Markdown text, outside of fenced code.
 fn links(text: &str) -> Vec<String> {
     let mut fenced = false;
     let prose: Vec<&str> = text

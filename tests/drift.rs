@@ -4,7 +4,7 @@ use crate::sandbox::{Answer, Sandbox, repository};
 use std::fs;
 use std::path::Path;
 
-/// A folder with the starter study, one trial of half a minute a condition.
+/// Creates a folder with the starter study, one trial of half a minute a condition.
 fn desk() -> Sandbox {
     let desk = Sandbox::pinned().with_demo();
     let short = "trials: 1\nparameters: {mission: {time-limit-s: 30}}";
@@ -12,14 +12,14 @@ fn desk() -> Sandbox {
     desk
 }
 
-/// What the lock has of the condition `slug`.
+/// Returns what the lock has of the condition `slug`.
 fn locked(desk: &Sandbox, slug: &str) -> serde_json::Value {
     let lock: serde_json::Value = serde_json::from_str(&desk.read("demo/demo.lock")).unwrap();
     let conditions = lock["conditions"].as_array().unwrap();
     conditions.iter().find(|c| c["slug"] == slug).unwrap().clone()
 }
 
-/// `text` with short digests, simulated seconds and the number of settings hidden.
+/// Returns `text` with short digests, simulated seconds and the number of settings hidden.
 fn redacted(text: &str) -> String {
     let mut out = String::new();
     for line in text.split_inclusive('\n') {
@@ -39,7 +39,7 @@ fn redacted(text: &str) -> String {
     out
 }
 
-/// One desk goes the whole way, as its trials take a while.
+/// One desk takes every step, as its trials take a while.
 #[test]
 fn a_lock_is_written_probed_found_drifting_and_blessed_again() {
     let desk = desk();

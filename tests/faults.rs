@@ -12,14 +12,14 @@ fn place() -> Sandbox {
     Sandbox::new().with_study(TINY)
 }
 
-/// A run of the study with this store and this place for bundles.
+/// Returns the command of a run of the study with this store and this place for bundles.
 fn command(place: &Sandbox, store: &str, out: &str) -> Command {
     let mut command = place.command(&["run", "tiny.yaml", "--format", "json", "--out", out]);
     command.env("REENACT_STORE", place.path(store));
     command
 }
 
-/// What that run answers, the folder's name replaced.
+/// Returns what that run answers, the folder's name replaced.
 fn run(place: &Sandbox, store: &str, out: &str) -> Answer {
     let mut answer = Answer::of(&mut command(place, store, out));
     answer.stderr = answer.stderr.replace(&here(place), "HERE");
@@ -38,7 +38,7 @@ fn failed(answer: &Answer, message: &str) {
     assert_eq!(told, ("", says.as_str(), 3));
 }
 
-/// What a run that came to its end says: its results, and how many trials it found in the store.
+/// Returns what a run that came to its end says: its results, and how many trials it found in the store.
 #[track_caller]
 fn finished(answer: &Answer) -> (String, u64) {
     assert_eq!((answer.stderr.as_str(), answer.code), ("", 0), "{answer:?}");
@@ -54,7 +54,7 @@ static UNDISTURBED: LazyLock<String> = LazyLock::new(|| finished(&run(&place(), 
 struct Mounted(PathBuf);
 
 impl Mounted {
-    /// `None`, and a word about it, where this user may not mount.
+    /// Mounts a file system; where this user may not mount, says so and returns `None`.
     fn tmpfs(on: PathBuf, options: &str) -> Option<Self> {
         fs::create_dir_all(&on).unwrap();
         let mut mount = Command::new("mount");

@@ -45,7 +45,7 @@ const BEYOND: f64 = 0.1;
 /// Height of the study's lidar (m).
 const LIDAR: f64 = 0.1602;
 
-/// The plan of our world `name` with walls and `layers`.
+/// Draws the plan of our world `name` with walls and `layers`.
 fn plan_of(name: &str, layers: &[&str]) -> OccupancyGrid {
     let path = repository().join(format!("worlds/{name}.yaml"));
     let layers: Vec<String> = layers.iter().map(|layer| (*layer).to_owned()).collect();
@@ -56,7 +56,7 @@ fn plan_of(name: &str, layers: &[&str]) -> OccupancyGrid {
     floor_plan(&world, FloorPlanSettings { height: LIDAR, resolution: 0.1, layers: None }).unwrap()
 }
 
-/// The department as its floor plan shows it.
+/// Returns the department as its floor plan shows it.
 fn truth() -> Sketch {
     Sketch::of(&plan_of("department", &["partitions"]))
 }

@@ -9,21 +9,21 @@ use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
-/// The tiny study with forty trials of one cell: enough that a run is never over before it is interrupted.
+/// Creates the tiny study with forty trials of one cell: enough that a run is never over before it is interrupted.
 fn place() -> Sandbox {
     let cells = "prior: [none, floor-plan]\nprior-maps:\n  floor-plan: {floor-plan-of: world}\n";
     let study = TINY.replace("trials: 3", "trials: 40").replace(cells, "prior: [none]\n");
     Sandbox::new().with_study(&study)
 }
 
-/// Files below a folder with this in their names.
+/// Returns the files below a folder with this in their names.
 fn named(place: &Sandbox, below: &str, part: &str) -> Vec<PathBuf> {
     let mut files = place.files(below);
     files.retain(|file| file.file_name().unwrap().to_string_lossy().contains(part));
     files
 }
 
-/// Records in the store.
+/// Returns the records in the store.
 fn stored(place: &Sandbox) -> Vec<PathBuf> {
     let mut files = place.files("store");
     files.retain(|file| file.extension().is_some_and(|extension| extension == "json"));

@@ -99,7 +99,7 @@ impl Drive {
         Self { sim, pilot, scan, detections: Vec::new() }
     }
 
-    /// One control period on the way to the tag `target`; how the leg ended, if it did.
+    /// Runs one control period on the way to the tag `target`; returns how the leg ended, if it did.
     fn step(&mut self, target: &str) -> Option<End> {
         // 1. Sensors, at 10 Hz as control: their latest readings are as old as the last physics step.
         self.sim.read_scan(&mut self.scan);
@@ -137,13 +137,13 @@ impl Drive {
     }
 }
 
-/// A box between two corners.
+/// Creates a box between two corners.
 fn block(x: [f64; 2], y: [f64; 2]) -> Outline {
     let center = Point::new(f64::midpoint(x[0], x[1]), f64::midpoint(y[0], y[1]));
     Outline::rectangle(center, x[1] - x[0], y[1] - y[0], 0.0)
 }
 
-/// A wall along x with gaps.
+/// Creates a wall along x with gaps.
 fn wall(y: [f64; 2], x: [f64; 2], gaps: &[[f64; 2]]) -> Vec<Outline> {
     let mut walls = Vec::new();
     let mut from = x[0];
@@ -206,7 +206,7 @@ impl Shape {
     }
 }
 
-/// Passages of one maneuver, each in a world and from an offset of its own: how many arrive.
+/// Counts the passages of one maneuver that arrive, each in a world and from an offset of its own.
 fn arrivals(
     (from, to, opening): (&str, &str, Opening),
     turn: f64,

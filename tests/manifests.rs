@@ -25,12 +25,12 @@ impl Inputs for Beside {
         }
     }
 
-    /// Numbers that stand in for a run.
+    /// Returns numbers that stand in for a run.
     fn calibrate(&self, _: &Experiment, _: &str) -> Result<CalibrationTrials, InputError> {
         Ok(CalibrationTrials::StandIn)
     }
 
-    /// Floor plans that stand in for explorations.
+    /// Returns floor plans that stand in for explorations.
     fn explore(
         &self,
         spec: &TrialSpec,
@@ -522,7 +522,7 @@ proptest! {
     }
 }
 
-/// A record that has every measure a trial of the study can have.
+/// Creates a record that has every measure a trial of the study can have.
 fn with_every_measure(kind: StudyKind, spec: &TrialSpec) -> TrialRecord {
     let asked_for = ["coverage-percent-at-239-m".to_owned()];
     let further = asked_for.iter().filter(|name| kind.is_further_measure(name));

@@ -41,7 +41,7 @@ const MEMORY_KIB: u32 = 180_000;
 /// optimisation, and on a machine that is busy, what costs more than its length takes minutes.
 pub(crate) const MOST_SECONDS: f64 = if cfg!(debug_assertions) { 60.0 } else { 1.0 };
 
-/// The root of the repository.
+/// Returns the root of the repository.
 pub(crate) fn repository() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
@@ -73,7 +73,7 @@ impl Answer {
         Self { stdout: text(output.stdout), stderr: text(output.stderr), code, seconds }
     }
 
-    /// The last line of stdout.
+    /// Returns the last line of stdout.
     pub(crate) fn last_line(&self) -> &str {
         self.stdout.lines().last().unwrap_or_default()
     }
@@ -89,7 +89,7 @@ impl Sandbox {
         sandbox
     }
 
-    /// Makes one whose commands are told that it is [`PINNED`], so that they write nothing of the clock.
+    /// Makes one whose commands take the time to be [`PINNED`], so that they write nothing of the clock.
     pub(crate) fn pinned() -> Self {
         Self { is_pinned: true, ..Self::new() }
     }
@@ -116,7 +116,7 @@ impl Sandbox {
         self
     }
 
-    /// A path in the working directory.
+    /// Returns a path in the working directory.
     pub(crate) fn path(&self, name: &str) -> PathBuf {
         self.folder.path().join("work").join(name)
     }
@@ -136,7 +136,7 @@ impl Sandbox {
         self.write(name, text.replace(from, to));
     }
 
-    /// Every file below a folder, which need not exist, in order.
+    /// Returns every file below a folder, which need not exist, in order.
     pub(crate) fn files(&self, below: &str) -> Vec<PathBuf> {
         let is_file = |(path, kind): (PathBuf, Kind)| (!kind.is_folder).then_some(path);
         listing(&self.path(below)).into_iter().filter_map(is_file).collect()
@@ -154,7 +154,7 @@ impl Sandbox {
         command.envs(self.is_pinned.then_some(("SOURCE_DATE_EPOCH", PINNED)))
     }
 
-    /// The program with these arguments.
+    /// Returns the program with these arguments.
     pub(crate) fn command(&self, words: &[&str]) -> Command {
         let mut command = Command::new(PROGRAM);
         self.dress(&mut command).args(words);
@@ -226,7 +226,7 @@ struct Kind {
     size: Option<u64>,
 }
 
-/// Everything below `folder`, which another process may be writing to.
+/// Lists everything below `folder`, which another process may be writing to.
 fn listing(folder: &Path) -> BTreeMap<PathBuf, Kind> {
     let mut found = BTreeMap::new();
     let mut folders = vec![folder.to_owned()];

@@ -12,7 +12,7 @@ use reenact::verify::{Level, Options, Reenactment, Verdict, climb, plan_of};
 use std::fs;
 use std::path::Path;
 
-/// The adversary's honest study, with the rest of what a manifest may ask for.
+/// Creates the adversary's honest study, with the rest of what a manifest may ask for.
 fn place() -> Sandbox {
     let authors = "authors: [{name: A. Researcher}]";
     let more =
@@ -23,7 +23,7 @@ license-of: {robots/kobuki.urdf: BSD-3-Clause}";
     Sandbox::new().with_study(&STUDY.replace(authors, more))
 }
 
-/// The last line that a command prints.
+/// Returns the last line that a command prints.
 #[track_caller]
 fn last_line(place: &Sandbox, words: &[&str]) -> String {
     let answer = place.run(words);
@@ -31,7 +31,7 @@ fn last_line(place: &Sandbox, words: &[&str]) -> String {
     answer.last_line().to_owned()
 }
 
-/// The results digest that `verify` computes.
+/// Returns the results digest that `verify` computes.
 #[track_caller]
 fn verified(place: &Sandbox, bundle: &str) -> String {
     let answer = place.run(&["verify", bundle, "--format", "json"]);

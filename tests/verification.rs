@@ -8,17 +8,17 @@ use reenact::plan::ENGINE_VERSION;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
-/// The bundle that the repository keeps.
+/// Returns the path of the bundle that the repository keeps.
 fn published() -> PathBuf {
     repository().join("artifacts/quickstart-published.zip")
 }
 
-/// A folder with the short study in it.
+/// Creates a folder with the short study in it.
 fn with_study() -> Sandbox {
     Sandbox::pinned().with_study(STUDY)
 }
 
-/// `ssh-keygen` in this folder; `false` where the machine has none.
+/// Runs `ssh-keygen` in this folder; returns `false` where the machine has none.
 fn ssh_keygen(desk: &Sandbox, words: &[&str]) -> bool {
     let mut command = Command::new("ssh-keygen");
     command.args(words).current_dir(desk.path("")).stdin(Stdio::null());
@@ -35,7 +35,7 @@ fn ssh_keygen(desk: &Sandbox, words: &[&str]) -> bool {
     }
 }
 
-/// As docs/verification.md tells authors and readers, with keys made for the occasion.
+/// Signs and verifies as docs/verification.md describes it, with keys made for the occasion.
 #[test]
 fn a_bundle_signed_with_openssh_verifies_by_its_allowed_signers() {
     let desk = Sandbox::pinned();
@@ -249,7 +249,7 @@ fn a_study_with_its_engine_sealed_in_replicates_and_is_attested() {
     assert!(!desk.path("a.json").exists());
 }
 
-/// The lines of a Markdown text's fenced blocks that begin with `program`, without their comments.
+/// Returns the lines of a Markdown text's fenced blocks that begin with `program`, without their comments.
 fn printed(text: &str, program: &str) -> Vec<String> {
     let mut fenced = false;
     text.lines()

@@ -20,7 +20,7 @@ use reenact::world::map_server::{self, Options};
 use reenact::world::{World, document, sdf};
 use std::path::{Path, PathBuf};
 
-/// Our world `name` with its walls and `layers`.
+/// Reads our world `name` with its walls and `layers`.
 fn ours(name: &str, layers: &[&str]) -> World {
     let path = repository().join(format!("worlds/{name}.yaml"));
     let layers: Vec<String> = layers.iter().map(|layer| (*layer).to_owned()).collect();
@@ -30,7 +30,7 @@ fn ours(name: &str, layers: &[&str]) -> World {
     })
 }
 
-/// Where robots begin: at `default`, or at the first of ten starts.
+/// Returns where robots begin: at `default`, or at the first of ten starts.
 fn start(world: &World) -> Point {
     world.starts.get("default").unwrap_or_else(|| &world.starts["s1"]).position()
 }
@@ -40,7 +40,7 @@ fn parts(world: &World) -> Vec<(String, Outline)> {
     world.regions.iter().map(region).collect()
 }
 
-/// The folder of the study's own worlds; without it the test says that it is skipped.
+/// Returns the folder of the study's own worlds; without it, says that the test is skipped.
 fn originals(test: &str) -> Option<PathBuf> {
     let folder = Environment::read().unwrap().original_worlds;
     if folder.is_none() {
@@ -409,14 +409,14 @@ fn the_maps_of_the_comparison_have_the_walls_of_the_originals() {
     assert!((free..=known).contains(&floor), "{floor} m2");
 }
 
-/// Share of `cells` that have one of `others` within 0.2 m.
+/// Computes the share of `cells` that have one of `others` within 0.2 m.
 fn agreeing(cells: &[Point], others: &[Point]) -> f64 {
     let agree = |cell: &&Point| others.iter().any(|other| other.distance(**cell) <= 0.2 + 1e-9);
     let count = |n: usize| f64::from(u32::try_from(n).unwrap());
     count(cells.iter().filter(agree).count()) / count(cells.len())
 }
 
-/// The same parts are joined by as many passages, which are where the others are.
+/// Asserts that the same parts are joined by as many passages, which are where the others are.
 fn same_passages<Name: Ord + Clone + std::fmt::Debug>(
     name: &str,
     ours: Vec<Passage<Name>>,

@@ -6,7 +6,7 @@ use crate::claims::sensitivity::in_words;
 use crate::manifest::Experiment;
 use serde_json::Value;
 
-/// The assumptions of `experiment`, each with what became of the claims at the other values of its range.
+/// Returns the assumptions of `experiment`, each with what became of the claims at the other values of its range.
 pub(super) fn assumptions(experiment: &Experiment) -> Vec<Assumption> {
     let row = |assumption: &crate::manifest::Assumption| Assumption {
         path: assumption.path.clone(),
@@ -18,7 +18,7 @@ pub(super) fn assumptions(experiment: &Experiment) -> Vec<Assumption> {
     experiment.assumptions.iter().map(row).collect()
 }
 
-/// What `found` tells of `assumption` at the value it has; `None` where that is nothing.
+/// Returns what `found` says about `assumption` at the value it has; `None` where it says nothing.
 fn tried(found: &Sensitivity, assumption: &crate::manifest::Assumption) -> Option<Vec<Tried>> {
     let chosen = in_words(&assumption.value);
     let attempts = found.attempts();
@@ -35,7 +35,7 @@ fn tried(found: &Sensitivity, assumption: &crate::manifest::Assumption) -> Optio
     Some(tried.collect::<Vec<_>>()).filter(|tried| !tried.is_empty())
 }
 
-/// How the values were tried, in words.
+/// Returns in words how the values were tried.
 pub(super) fn tried_with(experiment: &Experiment) -> Option<String> {
     let attempts = experiment.sensitivity.as_ref()?.table.attempts();
     let trials = attempts.iter().map(|attempt| attempt.trials).min()?;
@@ -45,7 +45,7 @@ pub(super) fn tried_with(experiment: &Experiment) -> Option<String> {
     ))
 }
 
-/// A value as one would say it; of one that depends on a factor, `17.5 for department-south, 5.6 for house`.
+/// Writes a value as one would say it; one that depends on a factor as `17.5 for department-south, 5.6 for house`.
 fn told(value: &Value) -> String {
     let Some(values) = value.get("by").and(value.get("values")).and_then(Value::as_object) else {
         return in_words(value);

@@ -2,7 +2,7 @@
 
 use crate::figure::svg::Element;
 
-/// `page`, one of ours, under a banner that screen readers announce and printers print.
+/// Puts `page`, one of ours, under a banner that screen readers announce and printers print.
 pub fn page_under_banner(page: &str, words: &str) -> String {
     // Inline, so that no print style hides it.
     let style = "margin:0;padding:.7rem 1rem;max-width:none;background:#8a1c00;color:#fff;font-weight:700;\
@@ -12,7 +12,7 @@ pub fn page_under_banner(page: &str, words: &str) -> String {
     page.replacen(begin, &format!("{begin}{}\n", banner.text(words).into_string()), 1)
 }
 
-/// `drawing`, one of ours, with a banner across its top.
+/// Puts a banner across the top of `drawing`, one of ours.
 pub fn drawing_under_banner(drawing: &str, words: &str) -> String {
     let ground =
         Element::new("rect").set("width", "100%").at("height", 40.0).set("fill", "#8a1c00");

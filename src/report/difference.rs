@@ -37,8 +37,8 @@ struct SectionView {
     more: usize,
 }
 
-/// One self-contained offline page: the answer, what was compared, and every difference by kind. `names` are what the
-/// two sides are called.
+/// Returns one self-contained offline page: the answer, what was compared, and every difference by kind. `names` are
+/// what the two sides are called.
 pub fn difference_page(comparison: &Comparison, names: [&str; 2]) -> String {
     let side = |name, party| Side { name, party };
     let view = View {

@@ -68,7 +68,7 @@ pub(super) struct Evaluated<'a> {
     pub(super) circumstance: Option<&'a Circumstance>,
 }
 
-/// The evaluator's part for `of`.
+/// Returns the evaluator's part for `of`.
 pub(super) fn evaluation(of: Evaluated<'_>) -> Evaluation {
     let (seconds, basis) = whole_study(of);
     let file = of.file;
@@ -189,7 +189,7 @@ pub(super) fn evaluation(of: Evaluated<'_>) -> Evaluation {
     Evaluation { basis, badges }
 }
 
-/// How long it takes to execute every trial (s), and how that is known.
+/// Returns how long it takes to execute every trial (s), and how that is known.
 fn whole_study(of: Evaluated<'_>) -> (f64, String) {
     if let Some((seconds, jobs)) = of.circumstance.and_then(|told| recorded(told, of.trials)) {
         let basis = format!(
@@ -207,8 +207,8 @@ fn whole_study(of: Evaluated<'_>) -> (f64, String) {
     (seconds, basis)
 }
 
-/// Wall time (s) of a run that executed all `trials` itself, and its threads; `None` where it took some from a store, or
-/// does not say.
+/// Returns the wall time (s) of a run that executed all `trials` itself, and its threads; `None` where it took some
+/// from a store, or does not say.
 fn recorded(told: &Circumstance, trials: u64) -> Option<(f64, u64)> {
     let fact = |name: &str| {
         let (_, value) = told.environment.iter().find(|(known, _)| known == name)?;
@@ -219,7 +219,7 @@ fn recorded(told: &Circumstance, trials: u64) -> Option<(f64, u64)> {
     all.then_some((f64::from(seconds).max(1.0), fact("jobs")?))
 }
 
-/// `about 40 s`, `about 3 min`, `about 2 h`.
+/// Writes a duration as `about 40 s`, `about 3 min`, `about 2 h`.
 fn in_words(seconds: f64) -> String {
     let (amount, unit) = match seconds {
         s if s < 5.0 => return "a few seconds".to_owned(),

@@ -9,7 +9,7 @@ use crate::stats::summary::Summary;
 use crate::studies::recording::{Decision, Frame, FrontierView, Recording};
 use crate::studies::{GridCell, GridRow, Measured};
 
-/// A robot that drives along two rooms of 12 by 6 m for `frames` tenths of a second and maps what is near.
+/// Records a robot that drives along two rooms of 12 by 6 m for `frames` tenths of a second and maps what is near.
 pub(super) fn recording(frames: usize) -> Recording {
     let prior_frame =
         GridFrame { resolution: 0.05, origin: Point::new(-0.5, -0.5), width: 260, height: 140 };
@@ -120,7 +120,7 @@ fn decision(pose: Pose) -> Decision {
     }
 }
 
-/// A report with one of everything.
+/// Returns a report with one of everything.
 pub(super) fn content() -> ReportContent {
     let measured = |mean: f64, sd: f64| Some(Measured { mean, sd: Some(sd), n: Some(10) });
     let columns = ["no prior", "floor plan", "footprint", "bounding box"];
@@ -235,7 +235,7 @@ pub(super) fn content() -> ReportContent {
     }
 }
 
-/// A claim that we and the paper's table decide otherwise, one on which both agree, and a check of our own.
+/// Returns a claim that we and the paper's table decide differently, one on which both agree, and a check of our own.
 fn claims() -> Vec<ClaimRow> {
     let compared = |verdict: &str| ComparisonRow {
         about: "distance-m-at-90: (prior=floor-plan) < (prior=none)".into(),
@@ -281,7 +281,7 @@ fn claims() -> Vec<ClaimRow> {
     ]
 }
 
-/// One assumption without a range, one that decides nothing within its range, one that decides a verdict.
+/// Returns one assumption without a range, one that decides nothing within its range, one that decides a verdict.
 fn assumptions() -> Vec<Assumption> {
     let tried = |at: &str, flips: &[FlipRow]| Tried { at: at.into(), flips: flips.to_vec() };
     let flip = |claim: &str, from: &str, to: &str| FlipRow {
@@ -317,7 +317,7 @@ fn assumptions() -> Vec<Assumption> {
     ]
 }
 
-/// Nothing in `page` is fetched from anywhere, and no inline handler is left for the policy to stop.
+/// Asserts that nothing in `page` is fetched from anywhere, and that no inline handler is left for the policy to stop.
 pub(super) fn assert_offline(page: &str) {
     for word in
         ["http://", "https://", "src=", "@import", "url(", "<link rel=\"style", "onclick", "onload"]

@@ -20,7 +20,7 @@ pub enum UnreadBundle {
     Verdicts(#[from] claim::NoVerdicts),
 }
 
-/// What the page of `bundle` says, `plan` and `selection` being those made again from it.
+/// Returns what the page of `bundle` says; `plan` and `selection` are those made again from it.
 ///
 /// # Errors
 /// Where the records or verdicts cannot be read.
@@ -78,7 +78,7 @@ pub fn content_of(
     })
 }
 
-/// Trials that were planned for a cell: fewer than the manifest's where `--trials` asked for fewer.
+/// Returns how many trials were planned for a cell: fewer than the manifest's where `--trials` asked for fewer.
 fn trials_a_cell(plan: &Plan) -> usize {
     plan.trials.chunk_by(|a, b| a.condition == b.condition).map(<[_]>::len).max().unwrap_or(0)
 }

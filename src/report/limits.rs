@@ -5,7 +5,8 @@ use crate::plan::{Plan, Selection};
 use crate::stats::compatibility::{Agreement, Silence};
 use crate::studies::{Outcome, TableLayout, TrialRecord};
 
-/// One sentence each, the manifest's own first. `tables` are those of the page, in the order of the plan's requests.
+/// Returns the limits, one sentence each, the manifest's own first. `tables` are those of the page, in the order of the
+/// plan's requests.
 pub(super) fn limits(
     plan: &Plan,
     records: &[TrialRecord],
@@ -62,7 +63,7 @@ pub(super) fn limits(
     limits
 }
 
-/// Figures of the manifest in which no trial has anything to show.
+/// Names the figures of the manifest in which no trial has anything to show.
 fn left_out(plan: &Plan, figures: &[Figure]) -> Option<String> {
     let is_drawn = |id: &str| figures.iter().any(|figure| figure.id == id);
     let wanted = plan.experiment.figures.iter();
@@ -76,7 +77,7 @@ fn left_out(plan: &Plan, figures: &[Figure]) -> Option<String> {
         .then(|| format!("{}: {}.", counted(missing.len(), one, several), missing.join(", ")))
 }
 
-/// Cells that no run reached, and means of fewer runs than there were.
+/// Names the cells that no run reached, and the means of fewer runs than there were.
 fn cells(plan: &Plan, tables: &[ReportTable]) -> Option<String> {
     let (mut unreached, mut absent, mut left_out, mut fewer) = (0, 0, 0, 0);
     for (request, table) in plan.experiment.tables.iter().zip(tables) {
@@ -109,7 +110,7 @@ fn cells(plan: &Plan, tables: &[ReportTable]) -> Option<String> {
     (!parts.is_empty()).then(|| format!("Of the coverage tables, {}.", parts.join("; ")))
 }
 
-/// Why a run is partial, in words, from the selection that was sealed with it.
+/// Returns in words why a run is partial, from the selection that was sealed with it.
 pub(super) fn partial(plan: &Plan, selection: &Selection) -> Option<String> {
     if !plan.partial {
         return None;
@@ -131,7 +132,7 @@ pub(super) fn partial(plan: &Plan, selection: &Selection) -> Option<String> {
     Some(format!("{}; no claim is judged.", parts.join("; ")))
 }
 
-/// `1 trial failed`, `2 trials failed`.
+/// Writes a number with its noun: `1 trial failed`, `2 trials failed`.
 fn counted(n: usize, one: &str, several: &str) -> String {
     format!("{n} {}", if n == 1 { one } else { several })
 }
@@ -144,7 +145,7 @@ mod tests {
     use crate::studies::GridCell;
     use crate::verify::plan_of;
 
-    /// The published quickstart: ten trials without and ten with a floor plan, nothing claimed.
+    /// Returns the published quickstart: ten trials without and ten with a floor plan, nothing claimed.
     fn quickstart() -> (Bundle, Plan, Selection) {
         let zip = include_bytes!(concat!(
             env!("CARGO_MANIFEST_DIR"),

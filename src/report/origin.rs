@@ -32,7 +32,7 @@ pub struct InputRow {
     pub sha256: String,
 }
 
-/// Where the numbers of `bundle` come from.
+/// Returns where the numbers of `bundle` come from.
 pub(super) fn provenance(bundle: &Bundle, plan: &Plan) -> Provenance {
     let experiment = &plan.experiment;
     let of_the_manifest = experiment.license.clone().unwrap_or_else(|| "not stated".to_owned());

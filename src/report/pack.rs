@@ -24,13 +24,13 @@ impl Pack {
         }
     }
 
-    /// The text.
+    /// Returns the text.
     pub(super) fn text(&self) -> String {
         base64(&self.0)
     }
 }
 
-/// RFC 4648 base64 with padding.
+/// Encodes `bytes` as RFC 4648 base64 with padding.
 pub(super) fn base64(bytes: &[u8]) -> String {
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
@@ -45,14 +45,14 @@ pub(super) fn base64(bytes: &[u8]) -> String {
     text
 }
 
-/// `value` in whole `unit`s, rounded; not a number counts as zero.
+/// Returns `value` in whole `unit`s, rounded; not a number counts as zero.
 pub(super) fn whole(value: f64, unit: f64) -> i64 {
     #[expect(clippy::cast_possible_truncation, reason = "saturates; worlds are smaller")]
     let whole = (value / unit).round() as i64;
     whole
 }
 
-/// Values as differences to their predecessors, in whole `unit`s.
+/// Writes values as differences to their predecessors, in whole `unit`s.
 pub(super) fn deltas(values: impl IntoIterator<Item = f64>, unit: f64) -> String {
     let (mut pack, mut before) = (Pack::default(), 0);
     for value in values {
@@ -63,7 +63,7 @@ pub(super) fn deltas(values: impl IntoIterator<Item = f64>, unit: f64) -> String
     pack.text()
 }
 
-/// Points as differences to their predecessors, x then y, in whole `unit`s.
+/// Writes points as differences to their predecessors, x then y, in whole `unit`s.
 pub(super) fn points<'a>(points: impl IntoIterator<Item = &'a Point>, unit: f64) -> String {
     let (mut pack, mut x, mut y) = (Pack::default(), 0, 0);
     for point in points {
@@ -75,8 +75,8 @@ pub(super) fn points<'a>(points: impl IntoIterator<Item = &'a Point>, unit: f64)
     pack.text()
 }
 
-/// Changed cells as runs along rows: for each of unknown, free and occupied the number of runs, then per run
-/// the gap since the last one's end and its length. Cells outside of `frame` are left out.
+/// Writes changed cells as runs along rows: for each of unknown, free and occupied the number of runs, then per run the
+/// gap since the last one's end and its length. Cells outside of `frame` are left out.
 pub(super) fn runs(
     frame: &GridFrame,
     changes: impl IntoIterator<Item = (usize, Occupancy)>,
@@ -103,7 +103,7 @@ pub(super) fn runs(
     pack.text()
 }
 
-/// A whole grid as [`runs`] of its free and occupied cells.
+/// Writes a whole grid as [`runs`] of its free and occupied cells.
 pub(super) fn grid(grid: &Grid<Occupancy>) -> String {
     let known = grid.values().iter().copied().enumerate();
     runs(grid.frame(), known.filter(|(_, value)| *value != Occupancy::Unknown))
@@ -114,7 +114,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// The inverse, as the page's script does it.
+    /// Does the inverse, as the page's script does it.
     fn unpack(text: &str) -> Vec<i64> {
         let digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
         let (mut bytes, mut bits, mut held) = (Vec::new(), 0_u32, 0);

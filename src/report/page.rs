@@ -94,17 +94,17 @@ impl Score {
     }
 }
 
-/// The claims of the paper, and what we check besides.
+/// Separates the claims of the paper from what we check besides.
 fn apart(claims: &[ClaimRow]) -> (Vec<&ClaimRow>, Vec<&ClaimRow>) {
     claims.iter().partition(|claim| claim.ours.is_empty())
 }
 
-/// How the cells of a table agree.
+/// Returns how the cells of a table agree.
 fn agreements(table: &ReportTable) -> Vec<Agreement> {
     table.rows.iter().flat_map(|row| &row.cells).map(|cell| cell.agreement).collect()
 }
 
-/// What each method found among `cells`.
+/// Returns what each method found among `cells`.
 fn compared(cells: &[Agreement]) -> Vec<Compared> {
     let of = |tally: Tally| {
         let of_it = || cells.iter().filter(|cell| cell.method() == Some(tally.method));
@@ -121,7 +121,7 @@ fn compared(cells: &[Agreement]) -> Vec<Compared> {
     Tally::of(cells).into_iter().map(of).collect()
 }
 
-/// The colour of a mark, which adds nothing to its shape.
+/// Returns the colour of a mark, which adds nothing to its shape.
 fn look(agreement: Agreement) -> &'static str {
     match agreement {
         Agreement::Compatible(_) | Agreement::Near(Band::Within10, _) => "within",
@@ -131,7 +131,7 @@ fn look(agreement: Agreement) -> &'static str {
     }
 }
 
-/// The most trials that stand behind a cell of `table`.
+/// Returns the most trials that stand behind a cell of `table`.
 fn most_runs(table: &ReportTable) -> u64 {
     let cells = table.rows.iter().flat_map(|row| &row.cells);
     cells.filter_map(|cell| cell.ours?.n).max().unwrap_or(0)
@@ -148,8 +148,8 @@ const PARTS: [(&str, &str); 4] = [
     ("evaluation", include_str!("templates/report/evaluation.html")),
 ];
 
-/// One self-contained offline page: what the study does not show, its numbers beside the paper's, the
-/// figures, the claims, the assumptions, and how to check it all.
+/// Returns one self-contained offline page: what the study does not show, its numbers beside the paper's, the figures,
+/// the claims, the assumptions, and how to check it all.
 pub fn page(content: &ReportContent) -> String {
     let view = view(content);
     let page = Template { page: include_str!("templates/report/page.html"), parts: &PARTS };

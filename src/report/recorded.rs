@@ -120,7 +120,7 @@ impl<'a> Recorded<'a> {
     }
 }
 
-/// What `of` finds, with the number of its frame.
+/// Returns what `of` finds, with the number of its frame.
 fn each<'a, T>(frames: &'a [Frame], of: impl Fn(&'a Frame) -> Option<T>) -> Vec<(usize, T)> {
     frames.iter().enumerate().filter_map(|(i, frame)| Some((i, of(frame)?))).collect()
 }
@@ -129,7 +129,7 @@ fn disc(center: Point, radius: f64) -> [f64; 3] {
     [center.x, center.y, radius].map(short)
 }
 
-/// To the millimetre (or the thousandth): what a reader can see.
+/// Rounds to the millimetre (or the thousandth): what a reader can see.
 fn short(value: f64) -> f64 {
     (value * 1000.0).round() / 1000.0
 }
@@ -157,8 +157,8 @@ fn choice(decision: &Decision) -> Choice {
     Choice { chosen: decision.chosen, frontiers: frontiers.collect() }
 }
 
-/// The box around the world and every place the robot was, with a small margin; around the robot's map where
-/// the world is empty.
+/// Returns the box around the world and every place where the robot was, with a small margin; around the robot's map
+/// where the world is empty.
 pub(super) fn bounds(recording: &Recording) -> Bounds {
     let world = recording.world.iter().fold(Bounds::EMPTY, |b, outline| b.union(outline.bounds()));
     let seen = recording.frames.iter().fold(world, |b, f| b.including(f.pose.position()));

@@ -33,7 +33,7 @@ struct Content<'a> {
     data: String,
 }
 
-/// One self-contained page titled `title` in which the named trials play side by side on one clock.
+/// Returns one self-contained page titled `title` in which the named trials play side by side on one clock.
 ///
 /// `notes` stand over the page, the bad ones marked as such. The page starts at the instant of its address, if it ends in `#t=12.5` (s).
 pub fn replay_page(title: &str, trials: &[(String, &Recording)], notes: &[Note]) -> String {

@@ -49,7 +49,7 @@ pub(super) fn render_in<C: Serialize>(
     page.expect("our own templates render")
 }
 
-/// A content security policy under which nothing is fetched and no script runs but this page's own.
+/// Returns a content security policy under which nothing is fetched and no script runs but this page's own.
 fn policy(script: &str) -> String {
     let hash = base64(&Sha256Digest::of(script).0);
     format!(
@@ -58,7 +58,7 @@ fn policy(script: &str) -> String {
     )
 }
 
-/// `value` with `decimals` decimals and a true minus sign.
+/// Writes `value` with `decimals` decimals and a true minus sign.
 pub(super) fn fixed(value: f64, decimals: usize) -> String {
     if !value.is_finite() {
         return "–".to_owned();
@@ -69,7 +69,7 @@ pub(super) fn fixed(value: f64, decimals: usize) -> String {
     format!("{}{}", if negative { "\u{2212}" } else { "" }, text.trim_start_matches('-'))
 }
 
-/// A signed whole percentage.
+/// Writes a signed whole percentage.
 pub(super) fn percent(value: f64) -> String {
     let text = fixed(value, 0);
     let sign = if text.starts_with('\u{2212}') || text == "0" { "" } else { "+" };

@@ -4,30 +4,30 @@ use super::case::{Case, Made};
 use super::raw_zip::{self, Entry, Header, Tail, zip, zip_with};
 use super::study::HONEST;
 
-/// The honest bag's entries.
+/// Returns the honest bag's entries.
 fn entries() -> Vec<Entry> {
     let name = |path: &str| format!("{}/{path}", HONEST.root);
     HONEST.tree.iter().map(|(path, bytes)| Entry::stored(name(path), bytes.clone())).collect()
 }
 
-/// A name in the bag's folder.
+/// Returns a name in the bag's folder.
 fn inside(path: &str) -> String {
     format!("bag/{path}")
 }
 
-/// A small bag with one more file under a name of the attacker's.
+/// Makes a small bag with one more file under a name of the attacker's.
 fn with_name(name: &'static str, entry: impl Into<Vec<u8>>) -> Case {
     with(name, vec![Entry::stored(entry, "evil")])
 }
 
-/// A small bag with more entries.
+/// Makes a small bag with more entries.
 fn with(name: &'static str, more: Vec<Entry>) -> Case {
     let mut all = vec![Entry::stored(inside("bagit.txt"), "")];
     all.extend(more);
     Case::new(name, 0, Made::File(zip(&all)))
 }
 
-/// Files, and folders where the path ends in `/`.
+/// Returns files, and folders where the path ends in `/`.
 fn over(paths: &[&str]) -> Vec<Entry> {
     let entry = |path: &&str| match path.strip_suffix('/') {
         Some(_) => Entry::folder(inside(path)),
@@ -40,7 +40,7 @@ fn file(name: &'static str, bytes: impl Into<Vec<u8>>) -> Case {
     Case::new(name, 0, Made::File(bytes.into()))
 }
 
-/// Names that lead out of the folder or that some system takes for another.
+/// Returns names that lead out of the folder or that some system takes for another.
 pub(crate) fn names() -> Vec<Case> {
     vec![
         with_name("zip-slip", "bag/../../evil"),
@@ -102,7 +102,7 @@ pub(crate) fn names() -> Vec<Case> {
     ]
 }
 
-/// Entries and structure that readers understand differently, or that are no files.
+/// Returns entries and structure that readers understand differently, or that are no files.
 pub(crate) fn structure() -> Vec<Case> {
     let kind = |name, mode| {
         with(name, vec![Entry { mode, ..Entry::stored(inside("data/x"), "/etc/passwd") }])
@@ -168,24 +168,24 @@ fn x(content: &str) -> Entry {
 /// Files that the honest bag does not list.
 const SCRIPT: &str = "#!/bin/sh\necho code ran\nexit\n";
 
-/// The honest bag, with something done to the entry of `data/inputs/basic.yaml`.
+/// Makes the honest bag with something done to the entry of `data/inputs/basic.yaml`.
 fn changed(name: &'static str, change: impl FnOnce(Entry) -> Entry) -> Case {
     let mut all = entries();
     all[8] = change(all[8].clone());
     file(name, zip(&all))
 }
 
-/// The same, compressed.
+/// Makes the same bag with that entry compressed.
 fn deflated(name: &'static str, change: impl FnOnce(Entry) -> Entry) -> Case {
     changed(name, |entry| change(Entry::deflated(entry.central.name, entry.data)))
 }
 
-/// The honest bag, with something else behind its entries.
+/// Makes the honest bag with something else behind its entries.
 fn ended(name: &'static str, tail: &Tail) -> Case {
     file(name, zip_with(&entries(), tail))
 }
 
-/// The honest bag's files under another root.
+/// Makes the honest bag's files under another root.
 fn rooted(name: &'static str, root: &str, more: &[(&str, &str)]) -> Case {
     let tree = HONEST.tree.iter().map(|(path, bytes)| (path.as_str(), bytes.as_slice()));
     let more = more.iter().map(|(path, text)| (*path, text.as_bytes()));
@@ -193,7 +193,7 @@ fn rooted(name: &'static str, root: &str, more: &[(&str, &str)]) -> Case {
     file(name, zip(&tree.chain(more).map(named).collect::<Vec<_>>()))
 }
 
-/// The honest bag, whole, and bytes that belong to no file of it, or that readers take for different ones.
+/// Returns the honest bag, whole, and bytes that belong to no file of it, or that readers take for different ones.
 pub(crate) fn bytes_of_nobody() -> Vec<Case> {
     let hidden = zip(&[x("hidden")]);
     let entry = hidden[..hidden.windows(4).position(|w| w == b"PK\x01\x02").unwrap()].to_vec();
@@ -332,7 +332,7 @@ pub(crate) fn bytes_of_nobody() -> Vec<Case> {
     ]
 }
 
-/// Archives that would fill the memory or never end.
+/// Returns archives that would fill the memory or never end.
 pub(crate) fn bombs() -> Vec<Case> {
     let many = |count: u32| -> Vec<Entry> {
         (0..count).map(|i| Entry::stored(format!("bag/data/{i}"), "")).collect()
@@ -368,7 +368,7 @@ pub(crate) fn bombs() -> Vec<Case> {
     ]
 }
 
-/// What only a folder can hold.
+/// Returns what only a folder can hold.
 #[cfg(unix)]
 pub(crate) fn folders() -> Vec<Case> {
     use std::ffi::OsStr;

@@ -29,7 +29,7 @@ static MADE: LazyLock<(Value, Vec<u8>)> = LazyLock::new(|| {
     (serde_json::from_slice(&envelope).unwrap(), to_sign)
 });
 
-/// A key of nobody's but this test's: `seed` is all of its secret.
+/// Returns a key of nobody's but this test's: `seed` is all of its secret.
 fn key(seed: u8) -> PrivateKey {
     PrivateKey::from(Ed25519Keypair::from_seed(&[seed; 32]))
 }
@@ -61,19 +61,19 @@ fn envelope(kind: &str, payload: &[u8], signatures: &[String]) -> String {
     json!({"payload": payload, "payloadType": kind, "signatures": signatures}).to_string()
 }
 
-/// `payload`, signed by the reviewer whom everybody here trusts.
+/// Returns `payload`, signed by the reviewer whom everybody here trusts.
 fn signed(payload: &[u8]) -> String {
     envelope(TYPE, payload, &[sign(1, "reenact", &pae(TYPE, payload))])
 }
 
-/// The honest Statement with something changed, signed all the same.
+/// Returns the honest Statement with something changed, signed all the same.
 fn signed_with(change: impl FnOnce(&mut Value)) -> String {
     let mut statement: Value = serde_json::from_slice(&payload()).unwrap();
     change(&mut statement);
     signed(statement.to_string().as_bytes())
 }
 
-/// The answer of a reader who trusts the reviewer with `limits`, and has `attestation` of `bundle`.
+/// Returns the answer for a reader who trusts the reviewer with `limits`, and has `attestation` of `bundle`.
 fn read(limits: &str, bundle: &[u8], attestation: &str) -> Answer {
     let sandbox = Sandbox::new();
     sandbox.write("bundle", bundle);
@@ -159,7 +159,7 @@ fn a_signed_attestation_is_read_back() {
     assert!(answer.stdout.contains(says), "{}", answer.stdout);
 }
 
-/// Every attack: what it is, what the reader is told.
+/// Returns every attack: what it is, what the reader is told.
 fn attacks() -> Vec<(&'static str, String, String)> {
     let by = "expected a signature by a key of `signers`, found ";
     let reviewer = &*REVIEWER;

@@ -33,12 +33,12 @@ pub(crate) struct Case {
 }
 
 impl Case {
-    /// An attack that `rung` refuses, whatever is asked for above it.
+    /// Creates an attack that `rung` refuses, whatever is asked for above it.
     pub(crate) fn new(name: &'static str, rung: u8, made: Made) -> Self {
         Self { name, rung, level: rung.max(3), exit: 1, made }
     }
 
-    /// The honest bag with something done to it.
+    /// Creates an attack that does something to the honest bag.
     pub(crate) fn on_honest(name: &'static str, rung: u8, attack: impl FnOnce(&mut Tree)) -> Self {
         let mut tree = HONEST.tree.clone();
         attack(&mut tree);
@@ -114,7 +114,7 @@ fn verify(case: &Case, sandbox: &Sandbox) -> (String, f64) {
     (redacted(told), answer.seconds)
 }
 
-/// Digests, keys and measured numbers change with the engine: that one stands there is what matters.
+/// Hides digests, keys and measured numbers, which change with the engine: that one stands there is what matters.
 pub(crate) fn redacted(text: &str) -> String {
     let (mut out, mut word) = (String::new(), String::new());
     for c in text.chars().chain(['\n']) {

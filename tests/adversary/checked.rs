@@ -8,7 +8,7 @@ use reenact::bundle::{Form, Tree, archive};
 use std::fs;
 use std::process::Command;
 
-/// The honest bundle with one verdict turned, and every digest made right.
+/// Returns the honest bundle with one verdict turned, and every digest made right.
 fn turned() -> Tree {
     let mut tree = HONEST.tree.clone();
     forger::set_json(&mut tree, "data/results/claims.json", |claims| {
@@ -18,7 +18,7 @@ fn turned() -> Tree {
     tree
 }
 
-/// The honest bundle as another engine's, every digest made right.
+/// Returns the honest bundle as another engine's, every digest made right.
 fn of_another_engine() -> Tree {
     let mut tree = HONEST.tree.clone();
     forger::set_json(&mut tree, forger::RESOLVED, |resolved| resolved["engine"] = "0".into());
@@ -227,7 +227,7 @@ fn a_trial_that_differs_fails_the_sample_and_the_whole() {
     assert_eq!(told[1], ("full", "1 of 6 trials gave other bytes than the bundle holds"));
 }
 
-/// The line of the results digest of a run, which must have ended well.
+/// Returns the line of the results digest of a run, which must have ended well.
 fn results_of(answer: &Answer) -> String {
     assert_eq!(answer.code, 0, "{answer:?}");
     answer.stdout.lines().rev().nth(1).unwrap().to_owned()

@@ -11,7 +11,7 @@ use reenact::bundle::Tree;
 const NONE: &str = "data/trials/none.jsonl";
 const TRIALS: &str = "data/results/trials.csv";
 
-/// Changes after which nothing was made right: told alike in a zip and in a folder.
+/// Returns changes after which nothing was made right: reported alike in a zip and in a folder.
 pub(crate) fn fixity() -> Vec<Case> {
     let case = |name, attack: fn(&mut Tree)| {
         let mut tree = HONEST.tree.clone();
@@ -78,7 +78,7 @@ pub(crate) fn fixity() -> Vec<Case> {
     ]
 }
 
-/// The tag manifest alone made right.
+/// Makes the tag manifest alone right.
 fn reseal_tags(tree: &mut Tree) {
     let manifest = tree[MANIFEST].clone();
     reseal_manifests(tree);
@@ -93,7 +93,7 @@ fn reseal_tags(tree: &mut Tree) {
     });
 }
 
-/// Contradictions, every checksum of the bag made right.
+/// Returns contradictions, every checksum of the bag made right.
 pub(crate) fn coherence() -> Vec<Case> {
     // The bag made right, but not the crate or the resolved study.
     let bag = |name, attack: fn(&mut Tree)| Case {
@@ -229,7 +229,7 @@ pub(crate) fn coherence() -> Vec<Case> {
     ]
 }
 
-/// Formats that are not this program's.
+/// Returns formats that are not this program's.
 pub(crate) fn formats() -> Vec<Case> {
     let format = |name, rung, exit, attack: fn(&mut Tree)| Case {
         exit,

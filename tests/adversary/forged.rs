@@ -21,7 +21,7 @@ fn resealed(name: &'static str, attack: impl FnOnce(&mut Tree)) -> Case {
     })
 }
 
-/// Results that do not follow from the records.
+/// Returns results that do not follow from the records.
 pub(crate) fn results() -> Vec<Case> {
     vec![
         resealed("a changed number in trials.csv", |tree| {
@@ -143,7 +143,7 @@ pub(crate) fn results() -> Vec<Case> {
     ]
 }
 
-/// A study that is not the one whose trials were run.
+/// Returns studies that are not the one whose trials were run.
 pub(crate) fn studies() -> Vec<Case> {
     vec![
         resealed("another seed", |tree| replace(tree, STUDY, "seed: 7", "seed: 8")),
@@ -235,7 +235,8 @@ pub(crate) fn studies() -> Vec<Case> {
     ]
 }
 
-/// Fabrications with everything derived from them by the program itself: only running a trial again can tell.
+/// Returns fabrications with everything derived from them by the program itself: only running a trial again can show
+/// them.
 pub(crate) fn fabrications() -> Vec<Case> {
     let case = |name, attack: fn(&mut Tree)| {
         let case = Case::on_honest(name, 4, |tree| {

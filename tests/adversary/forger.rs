@@ -15,7 +15,7 @@ pub(crate) const INFO: &str = "bag-info.txt";
 pub(crate) const MANIFEST: &str = "manifest-sha256.txt";
 pub(crate) const TAG_MANIFEST: &str = "tagmanifest-sha256.txt";
 
-/// The text of a file.
+/// Returns the text of a file.
 pub(crate) fn text(tree: &Tree, path: &str) -> String {
     String::from_utf8(tree[path].clone()).unwrap()
 }
@@ -116,7 +116,7 @@ pub(crate) fn reseal(tree: &mut Tree) {
     reseal_bag(tree);
 }
 
-/// The crate's part of [`reseal`].
+/// Does the crate's part of [`reseal`].
 pub(crate) fn reseal_crate(tree: &mut Tree) {
     let old = stated_results(tree);
     let (results, study) = (results_digest(tree).to_string(), Sha256Digest::of(&tree[RESOLVED]));
@@ -138,7 +138,7 @@ pub(crate) fn reseal_crate(tree: &mut Tree) {
     tree.insert(METADATA.into(), format!("{metadata:#}\n").into_bytes());
 }
 
-/// The bag's part of [`reseal`].
+/// Does the bag's part of [`reseal`].
 pub(crate) fn reseal_bag(tree: &mut Tree) {
     let is_payload = |path: &str| path.starts_with("data/");
     let payload: Vec<_> = tree.iter().filter(|(path, _)| is_payload(path)).collect();
@@ -159,7 +159,7 @@ pub(crate) fn reseal_bag(tree: &mut Tree) {
     reseal_manifests(tree);
 }
 
-/// The bag's two lists of digests.
+/// Writes the bag's two lists of digests.
 pub(crate) fn reseal_manifests(tree: &mut Tree) {
     let lines = |tree: &Tree, wanted: &dyn Fn(&str) -> bool| -> String {
         let files = tree.iter().filter(|(path, _)| wanted(path));
@@ -179,8 +179,8 @@ fn stated_results(tree: &Tree) -> String {
     line.unwrap().to_owned()
 }
 
-/// The best forgery there is short of running the trials: the changed manifest and inputs are planned, every record gets
-/// the key of its place in that plan, and the program itself derives all the rest from them and seals it.
+/// Makes the best forgery there is short of running the trials: the changed manifest and inputs are planned, every
+/// record gets the key of its place in that plan, and the program itself derives all the rest from them and seals it.
 pub(crate) fn rederive(tree: Tree) -> Tree {
     let bundle = Bundle::open(Archive { form: Form::Bag, tree }).unwrap();
     let (plan, selection) = plan_of(&bundle).unwrap();

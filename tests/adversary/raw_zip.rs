@@ -54,7 +54,7 @@ pub(crate) struct Entry {
 }
 
 impl Entry {
-    /// An honest, uncompressed file.
+    /// Creates an honest, uncompressed file.
     pub(crate) fn stored(name: impl Into<Vec<u8>>, content: impl Into<Vec<u8>>) -> Self {
         let data = content.into();
         let central = Header {
@@ -82,7 +82,7 @@ impl Entry {
         }
     }
 
-    /// An honest, compressed file.
+    /// Creates an honest, compressed file.
     pub(crate) fn deflated(name: impl Into<Vec<u8>>, content: impl AsRef<[u8]>) -> Self {
         let mut deflater = DeflateEncoder::new(Vec::new(), Compression::default());
         deflater.write_all(content.as_ref()).unwrap();
@@ -91,39 +91,41 @@ impl Entry {
         entry.replaced(deflater.finish().unwrap())
     }
 
-    /// A folder's own entry.
+    /// Creates a folder's own entry.
     pub(crate) fn folder(name: impl Into<Vec<u8>>) -> Self {
         Self { mode: 0o040_755, attributes: 0x10, ..Self::stored(name, "") }
     }
 
-    /// A file of about `size` zeros, compressed by a factor of a hundred and fifty, that declares `declared` bytes.
+    /// Creates a file of about `size` zeros, compressed by a factor of a hundred and fifty, that declares `declared`
+    /// bytes.
     pub(crate) fn zeros(name: &str, size: u32, declared: u32) -> Self {
         let mut entry = Self::stored(name, "").replaced(deflated_zeros(size));
         (entry.central.method, entry.central.size) = (8, declared);
         entry
     }
 
-    /// The same with other bytes in the archive.
+    /// Returns the same entry with other bytes in the archive.
     pub(crate) fn replaced(mut self, data: Vec<u8>) -> Self {
         self.central.packed = length(&data);
         self.data = data;
         self
     }
 
-    /// The same with something else in the central directory, and in front of the data where nothing else stands there.
+    /// Returns the same entry with something else in the central directory, and in front of the data where nothing else
+    /// stands there.
     pub(crate) fn says(mut self, change: impl FnOnce(&mut Header)) -> Self {
         change(&mut self.central);
         self
     }
 
-    /// The same with something else in front of the data only.
+    /// Returns the same entry with something else in front of the data only.
     pub(crate) fn says_locally(mut self, change: impl FnOnce(&mut Header)) -> Self {
         let central = &self.central;
         change(self.local.get_or_insert_with(|| central.clone()));
         self
     }
 
-    /// The same as written by a program that could not go back: sizes and checksum stand behind the data.
+    /// Returns the same entry as written by a program that could not go back: sizes and checksum stand behind the data.
     pub(crate) fn streamed(self) -> Self {
         let mut streamed = self
             .says(|header| header.flags |= 1 << 3)
@@ -134,14 +136,14 @@ impl Entry {
     }
 }
 
-/// A data descriptor.
+/// Returns a data descriptor.
 pub(crate) fn descriptor(crc: u32, packed: u32, size: u32) -> Vec<u8> {
     let mut bytes = b"PK\x07\x08".to_vec();
     put(&mut bytes, &[(crc, 4), (packed, 4), (size, 4)]);
     bytes
 }
 
-/// An extra field.
+/// Returns an extra field.
 pub(crate) fn extra(id: u16, field: &[u8]) -> Vec<u8> {
     let mut bytes = Vec::new();
     put(&mut bytes, &[(u32::from(id), 2), (length(field), 2)]);
@@ -149,7 +151,7 @@ pub(crate) fn extra(id: u16, field: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// Info-ZIP's field 0x7075 or 0x6375: for readers that know it, `text` stands for `original`.
+/// Returns Info-ZIP's field 0x7075 or 0x6375: for readers that know it, `text` stands for `original`.
 pub(crate) fn unicode(id: u16, original: &[u8], text: &[u8]) -> Vec<u8> {
     let mut field = vec![1];
     put(&mut field, &[(crc32(original), 4)]);
@@ -174,12 +176,12 @@ pub(crate) struct Tail {
     pub(crate) reversed: bool,
 }
 
-/// The archive of `entries`.
+/// Writes the archive of `entries`.
 pub(crate) fn zip(entries: &[Entry]) -> Vec<u8> {
     zip_with(entries, &Tail::default())
 }
 
-/// The archive of `entries`, and what follows them.
+/// Writes the archive of `entries`, and what follows them.
 pub(crate) fn zip_with(entries: &[Entry], tail: &Tail) -> Vec<u8> {
     let (mut bytes, mut listed, mut offset) = (Vec::new(), Vec::new(), 0_u32);
     for entry in entries {
@@ -240,7 +242,7 @@ fn put_header(bytes: &mut Vec<u8>, header: &Header) {
     put(bytes, &[(length(&header.name), 2), (length(&header.extra), 2)]);
 }
 
-/// The end of central directory record.
+/// Returns the end of central directory record.
 pub(crate) fn end(entries: usize, start: usize, bytes: usize) -> Vec<u8> {
     // More than fit are declared as many as fit: the true number is for a zip64 record.
     let entries = u32::try_from(entries.min(0xffff)).unwrap();
@@ -254,14 +256,14 @@ fn length<T>(items: &[T]) -> u32 {
     u32::try_from(items.len()).unwrap()
 }
 
-/// Numbers in as many bytes as said, least first.
+/// Writes numbers in as many bytes as said, least first.
 fn put(bytes: &mut Vec<u8>, numbers: &[(u32, usize)]) {
     for (number, width) in numbers {
         bytes.extend(&u64::from(*number).to_le_bytes()[..*width]);
     }
 }
 
-/// CRC-32 as zip has it.
+/// Computes the CRC-32 as zip has it.
 pub(crate) fn crc32(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(!0, |crc, byte| {
         (0..8).fold(crc ^ u32::from(*byte), |crc, _| {
@@ -270,8 +272,8 @@ pub(crate) fn crc32(bytes: &[u8]) -> u32 {
     })
 }
 
-/// `size` zeros (a multiple of 258, and one) as one block of fixed Huffman codes (RFC 1951, section 3.2.6): a literal zero,
-/// then "258 bytes, from one byte back" in 13 bits again and again.
+/// Returns `size` zeros (a multiple of 258, and one) as one block of fixed Huffman codes (RFC 1951, section 3.2.6): a
+/// literal zero, then "258 bytes, from one byte back" in 13 bits again and again.
 fn deflated_zeros(size: u32) -> Vec<u8> {
     let mut bits = Bits::default();
     bits.put(0b1, 1); // the last block
@@ -292,7 +294,7 @@ struct Bits {
 }
 
 impl Bits {
-    /// A number, least bit first.
+    /// Appends a number, least bit first.
     fn put(&mut self, number: u32, width: usize) {
         for bit in 0..width {
             if self.filled.is_multiple_of(8) {
@@ -305,7 +307,7 @@ impl Bits {
         }
     }
 
-    /// A Huffman code, greatest bit first.
+    /// Appends a Huffman code, greatest bit first.
     fn put_code(&mut self, code: u32, width: usize) {
         self.put(code.reverse_bits() >> (32 - width), width);
     }

@@ -53,7 +53,7 @@ enum Change {
 /// An archive: its root folder, and what is done to the entries at some places.
 type Plan = (&'static str, Vec<(Index, Change)>);
 
-/// Bytes that mean something in a zip, and others.
+/// Draws bytes that mean something in a zip, and others.
 fn junk() -> impl Strategy<Value = Vec<u8>> {
     prop_oneof![
         prop::collection::vec(any::<u8>(), 0..24),
@@ -270,7 +270,7 @@ fn flip(header: &mut Header, field: u8, bit: u8) {
     }
 }
 
-/// A streamed entry that leaves room for sizes of eight bytes.
+/// Returns a streamed entry that leaves room for sizes of eight bytes.
 fn long(streamed: Entry) -> Entry {
     let Header { crc, packed, size, .. } = streamed.central;
     let mut descriptor = raw_zip::descriptor(crc, packed, 0)[..12].to_vec();
@@ -296,7 +296,7 @@ fn change_tail(tail: &mut Tail, change: &Change) {
     }
 }
 
-/// The files that we see, by the names they have in the archive; `None` where we refuse it.
+/// Returns the files that we see, by the names they have in the archive; `None` where we refuse it.
 fn seen_by_us(root: &str, zip: &[u8]) -> Option<Tree> {
     let archive = archive::read(zip, &Limits::default()).ok()?;
     let named = |(path, bytes): (String, Vec<u8>)| match archive.form {
@@ -307,7 +307,7 @@ fn seen_by_us(root: &str, zip: &[u8]) -> Option<Tree> {
     Some(archive.tree.into_iter().map(named).collect())
 }
 
-/// Whether a program is there; says loudly where it is not.
+/// Returns whether a program is there; says loudly where it is not.
 fn is_there(program: &str, version: &str) -> bool {
     let quiet = Command::new(program)
         .arg(version)
@@ -322,7 +322,7 @@ fn is_there(program: &str, version: &str) -> bool {
     is_there
 }
 
-/// What a program says to `input`; it must succeed.
+/// Returns what a program says to `input`; it must succeed.
 fn said(command: &mut Command, input: &str) -> Vec<u8> {
     let child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
     let mut child = child.unwrap();
@@ -397,7 +397,7 @@ fn what_we_accept_others_see_alike() {
     }
 }
 
-/// A bag as the programs that are installed here zip it, each by its name.
+/// Returns a bag as the programs that are installed here zip it, each by its name.
 pub(crate) fn as_tools_write(tree: &Tree, root: &str) -> Vec<(String, Vec<u8>)> {
     let folder = tempfile::tempdir().unwrap();
     for (path, bytes) in tree {

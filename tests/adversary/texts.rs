@@ -9,7 +9,7 @@ const WORLD: &str = "data/inputs/basic.yaml";
 /// How many of everything.
 const MANY: usize = 200_000;
 
-/// So many keys that begin like this.
+/// Returns `MANY` keys that begin like this.
 fn numbered(key: &str) -> String {
     let mut text = String::new();
     for i in 0..MANY {
@@ -18,7 +18,7 @@ fn numbered(key: &str) -> String {
     text
 }
 
-/// The honest bag with `what` appended to its manifest, and every digest right.
+/// Returns the honest bag with `what` appended to its manifest, and every digest right.
 fn appended(name: &'static str, what: impl FnOnce() -> String) -> Case {
     Case::on_honest(name, 3, |tree| {
         edit(tree, STUDY, |text| format!("{text}{}", what()));
@@ -26,7 +26,7 @@ fn appended(name: &'static str, what: impl FnOnce() -> String) -> Case {
     })
 }
 
-/// Texts that a manifest or a world may be, at the cost of a second.
+/// Returns texts that a manifest or a world may be, at the cost of a second.
 pub(crate) fn bombs() -> Vec<Case> {
     vec![
         appended("two hundred thousand unknown keys", || numbered("k")),

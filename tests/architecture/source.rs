@@ -44,8 +44,8 @@ impl Shipped {
         Self { tokens: kept, test_modules }
     }
 
-    /// Every path with at least two segments, use trees written out; `super` and `self` resolved for a file that is
-    /// the module `module` (empty for the crate's root).
+    /// Returns every path with at least two segments, use trees written out; `super` and `self` resolved for a file
+    /// that is the module `module` (empty for the crate's root).
     pub(crate) fn paths(&self, module: &[String]) -> Vec<NamedPath> {
         let mut paths = Vec::new();
         let mut at = 0;
@@ -125,7 +125,7 @@ fn starts_with(tokens: &[Token], texts: &[&str]) -> bool {
     tokens.len() >= texts.len() && tokens.iter().zip(texts).all(|(token, text)| token.text == *text)
 }
 
-/// Where the item that begins at `at` ends: after its `;` or its closing brace.
+/// Returns where the item that begins at `at` ends: after its `;` or its closing brace.
 fn end_of_item(tokens: &[Token], mut at: usize) -> usize {
     let (mut braces, mut others) = (0_i32, 0_i32);
     while at < tokens.len() {
@@ -168,7 +168,7 @@ fn tokens(code: &str) -> Vec<Token> {
     tokens
 }
 
-/// The text with comments removed and literals emptied; line breaks stay, so that line numbers do.
+/// Returns the text with comments removed and literals emptied; line breaks stay, so that line numbers do.
 fn without_comments_and_literals(text: &str) -> String {
     let chars: Vec<char> = text.chars().collect();
     let mut kept = String::new();
@@ -205,7 +205,7 @@ fn without_comments_and_literals(text: &str) -> String {
     kept
 }
 
-/// The number of hashes, where a raw string begins at `at`.
+/// Returns the number of hashes, where a raw string begins at `at`.
 fn raw_string(chars: &[char], at: usize) -> Option<usize> {
     let inside_word =
         at > 0 && (chars[at - 1].is_alphanumeric() && chars[at - 1] != 'b' || chars[at - 1] == '_');

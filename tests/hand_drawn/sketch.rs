@@ -58,7 +58,7 @@ pub(crate) struct Errors {
 }
 
 impl Sketch {
-    /// Of a plan on cells of 0.1 m; what is not free is wall.
+    /// Creates the sketch of a plan on cells of 0.1 m; what is not free is wall.
     pub(crate) fn of(plan: &OccupancyGrid) -> Self {
         let frame = *plan.frame();
         let is_wall = |cell: Cell| plan.get(cell).is_some_and(|o| o != Occupancy::Free);
@@ -112,7 +112,7 @@ impl Sketch {
         [span(self.walls.iter().map(x).collect()), span(self.walls.iter().map(y).collect())]
     }
 
-    /// How this plan differs from `truth`.
+    /// Returns how this plan differs from `truth`.
     pub(crate) fn errors(&self, truth: &Self) -> Errors {
         // By the true plan's cells: which rooms lie over which.
         let mut over: BTreeMap<(usize, usize), usize> = BTreeMap::new();
@@ -168,8 +168,8 @@ impl Sketch {
     }
 }
 
-/// Free cells of runs `along` an axis that are short enough for a door and at one end of which a wall ends. (Where both are
-/// walls that go on to the sides, it is the mouth of a corridor or a narrow room.)
+/// Returns the free cells of runs `along` an axis that are short enough for a door and at one end of which a wall ends.
+/// (Where both are walls that go on to the sides, it is the mouth of a corridor or a narrow room.)
 fn gaps(frame: GridFrame, along: Cell, is_wall: impl Fn(Cell) -> bool) -> Grid<bool> {
     let mut gaps = Grid::filled(frame, false);
     let (lines, length) =
@@ -200,7 +200,7 @@ fn gaps(frame: GridFrame, along: Cell, is_wall: impl Fn(Cell) -> bool) -> Grid<b
     gaps
 }
 
-/// The pieces of what is set, joined by sides.
+/// Returns the pieces of what is set, joined by sides.
 fn pieces(frame: GridFrame, set: &Grid<bool>) -> Vec<Vec<Cell>> {
     let mut seen = Grid::filled(frame, false);
     let mut all = Vec::new();
@@ -224,13 +224,13 @@ fn pieces(frame: GridFrame, set: &Grid<bool>) -> Vec<Vec<Cell>> {
     all
 }
 
-/// How many cells a piece reaches over, by the coordinate `of`.
+/// Returns how many cells a piece reaches over, by the coordinate `of`.
 fn extent(piece: &[Cell], of: impl Fn(&Cell) -> i32) -> i32 {
     let (low, high) = (piece.iter().map(&of).min(), piece.iter().map(&of).max());
     high.zip(low).map_or(0, |(high, low)| high - low + 1)
 }
 
-/// Of each of `from`, the distance to the nearest of `to` (m).
+/// Returns for each of `from` the distance to the nearest of `to` (m).
 fn distances(from: &[Point], to: &[Point]) -> Vec<f64> {
     let nearest =
         |at: &Point| to.iter().map(|other| other.distance(*at)).fold(f64::INFINITY, f64::min);

@@ -34,7 +34,7 @@ impl Floor {
         Self::with_radius(world, start, RADIUS)
     }
 
-    /// For a robot of another radius (m).
+    /// Creates the floor of a robot of another radius (m).
     pub(crate) fn with_radius(world: &World, start: Point, radius: f64) -> Self {
         let solids = world.contact(0.0, HEIGHT);
         let frame = GridFrame::covering(world.bounds().grown(1.0), CELL);
@@ -58,24 +58,24 @@ impl Floor {
         self.reached.get(cell) == Some(true)
     }
 
-    /// The reached cells' centres.
+    /// Returns the reached cells.
     fn cells(&self) -> impl Iterator<Item = Cell> + '_ {
         self.reached.frame().cells().filter(|cell| self.reached(*cell))
     }
 
-    /// What the centre reaches (m2).
+    /// Returns the area that the centre reaches (m2).
     pub(crate) fn area(&self) -> f64 {
         f64::from(u32::try_from(self.cells().count()).unwrap()) * CELL * CELL
     }
 
-    /// Share of the floor reached that `outlines` cover.
+    /// Computes the share of the floor reached that `outlines` cover.
     pub(crate) fn share_covered(&self, outlines: &[Outline]) -> f64 {
         let covered = near(outlines, *self.reached.frame(), 0.0);
         let both = self.cells().filter(|cell| covered.get(*cell) == Some(true)).count();
         f64::from(u32::try_from(both).unwrap()) * CELL * CELL / self.area()
     }
 
-    /// What of `polygon` the centre reaches (m2).
+    /// Returns the area of `polygon` that the centre reaches (m2).
     pub(crate) fn area_in(&self, polygon: &Outline) -> f64 {
         let frame = *self.reached.frame();
         let inside = self.cells().filter(|cell| polygon.contains(frame.center(*cell))).count();
@@ -86,7 +86,7 @@ impl Floor {
         self.cells().any(|cell| polygon.contains(self.reached.frame().center(cell)))
     }
 
-    /// Cells of 0.1 m of the floor plan of `world` that border what is reached, by their centres (m).
+    /// Returns the cells of 0.1 m of the floor plan of `world` that border what is reached, by their centres (m).
     pub(crate) fn walls(&self, world: &World) -> Vec<Point> {
         let layers = ["walls".to_owned()];
         let plan = FloorPlanSettings { height: LIDAR, resolution: 0.1, layers: Some(&layers) };
@@ -107,8 +107,8 @@ impl Floor {
         occupied.map(|cell| plan.frame().center(cell)).filter(|at| borders(*at)).collect()
     }
 
-    /// Rooms by their middles: pieces of the floor that stay when a robot of radius `half_door` m is too wide for its
-    /// doors; and what joins them.
+    /// Returns rooms by their middles: pieces of the floor that stay when a robot of radius `half_door` m is too wide
+    /// for its doors; and what joins them.
     pub(crate) fn rooms(&self, half_door: f64) -> (Vec<Point>, Vec<Passage<usize>>) {
         let frame = *self.reached.frame();
         let narrow = near(&self.solids, frame, half_door);
@@ -149,7 +149,7 @@ impl Floor {
         (middles, self.passages(room_of))
     }
 
-    /// Doors between named parts of the floor.
+    /// Returns the doors between named parts of the floor.
     pub(crate) fn doors(&self, parts: &[(String, Outline)]) -> Vec<Passage<String>> {
         let frame = *self.reached.frame();
         let mut part_of: Grid<Option<usize>> = Grid::filled(frame, None);
@@ -166,7 +166,7 @@ impl Floor {
             .collect()
     }
 
-    /// Pieces of the floor that belong to no part and touch two or more.
+    /// Returns the pieces of the floor that belong to no part and touch two or more.
     fn passages(&self, part: impl Fn(Cell) -> Option<usize>) -> Vec<Passage<usize>> {
         let frame = *self.reached.frame();
         components(frame, |cell| self.reached(cell) && part(cell).is_none())
@@ -180,7 +180,7 @@ impl Floor {
     }
 }
 
-/// Which cells have their centre within `reach` m of one of `outlines`.
+/// Returns which cells have their centre within `reach` m of one of `outlines`.
 fn near(outlines: &[Outline], frame: GridFrame, reach: f64) -> Grid<bool> {
     let mut grid = Grid::filled(frame, false);
     for outline in outlines {
@@ -198,7 +198,7 @@ fn near(outlines: &[Outline], frame: GridFrame, reach: f64) -> Grid<bool> {
     grid
 }
 
-/// The pieces of what is `inside`, joined by sides and corners.
+/// Returns the pieces of what is `inside`, joined by sides and corners.
 fn components(frame: GridFrame, inside: impl Fn(Cell) -> bool) -> Vec<Vec<Cell>> {
     let mut seen = Grid::filled(frame, false);
     let mut all = Vec::new();

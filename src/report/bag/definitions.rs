@@ -37,8 +37,8 @@ const DEFINITIONS: &[(&str, &str)] = &[
     define!("visualization_msgs/UVCoordinate"),
 ];
 
-/// The definition of `name` (`package/Type`) with those of all types within behind it, each once: schema encoding
-/// `ros2msg`.
+/// Returns the definition of `name` (`package/Type`) with those of all types within behind it, each once: schema
+/// encoding `ros2msg`.
 pub(super) fn definition(name: &str) -> String {
     let mut parts = vec![name.to_owned()];
     let mut text = String::new();
@@ -63,7 +63,8 @@ fn text_of(name: &str) -> Option<&'static str> {
     DEFINITIONS.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
 }
 
-/// The types, other than built-in ones, of the fields of `text`; those without a package are of the package of `name`.
+/// Returns the types, other than built-in ones, of the fields of `text`; those without a package are of the package of
+/// `name`.
 fn types_within(name: &str, text: &str) -> Vec<String> {
     let package = name.split('/').next().unwrap_or_default();
     let kinds = text.lines().filter_map(|line| line.split([' ', '[']).next());

@@ -18,7 +18,7 @@ const CORNERS: i32 = 24;
 /// Width of a wall's line (m).
 const LINE_M: f64 = 0.05;
 
-/// The outlines that stand at the scanner's height.
+/// Returns the outlines that stand at the scanner's height.
 pub(super) fn world(recording: &Recording) -> Vec<Marker> {
     let mut ends = Vec::new();
     for outline in &recording.world {
@@ -48,7 +48,7 @@ fn corners(outline: &Outline) -> Vec<Point> {
     }
 }
 
-/// The cells of all frontiers, their candidate locations with the utility, the chosen one in another colour.
+/// Returns the cells of all frontiers and their candidate locations with the utility, the chosen one in another colour.
 pub(super) fn frontiers(at: f64, decision: &Decision) -> Vec<Marker> {
     let mut markers = vec![Marker::clear(header(at, "world"))];
     for (i, frontier) in decision.frontiers.iter().enumerate() {
@@ -73,7 +73,7 @@ pub(super) fn frontiers(at: f64, decision: &Decision) -> Vec<Marker> {
     markers
 }
 
-/// Vertices with their labels, explored edges, edges to the unexplored, and the policy as arrows.
+/// Returns vertices with their labels, explored edges, edges to the unexplored, and the policy as arrows.
 pub(super) fn graph(at: f64, graph: &GraphView) -> Vec<Marker> {
     let mut markers = vec![Marker::clear(header(at, "world"))];
     let place = |v: usize| graph.vertices.get(v).map_or(Point::ZERO, |vertex| vertex.at);
@@ -120,7 +120,7 @@ pub(super) fn graph(at: f64, graph: &GraphView) -> Vec<Marker> {
     markers
 }
 
-/// A metre of every edge to unexplored space.
+/// Returns a metre of every edge to unexplored space.
 fn stubs(vertex: &VertexView) -> impl Iterator<Item = Point> + '_ {
     vertex.unexplored.iter().flat_map(|heading| {
         let (sin, cos) = math::sin_cos(*heading);

@@ -26,7 +26,7 @@ pub(super) struct Time {
 }
 
 impl Time {
-    /// Simulated time of `seconds`, to the microsecond: ticks of the clock are coarser.
+    /// Returns the simulated time of `seconds`, to the microsecond: ticks of the clock are coarser.
     pub(super) fn of(seconds: f64) -> Self {
         let nanoseconds = nanoseconds(seconds);
         Self {
@@ -36,7 +36,7 @@ impl Time {
     }
 }
 
-/// Simulated time as MCAP's log time.
+/// Returns simulated time as MCAP's log time.
 pub(super) fn nanoseconds(seconds: f64) -> u64 {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to hours")]
     let microseconds = (seconds * 1e6).round() as u64;

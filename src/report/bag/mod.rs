@@ -35,8 +35,8 @@ pub struct Bag {
     pub counts: BTreeMap<&'static str, u32>,
 }
 
-/// `recording` as an MCAP file. With `scan_rate_hz`, scans that follow the last one written by less than its period are left
-/// out; without it all that were recorded are written. The same recording gives the same bytes.
+/// Writes `recording` as an MCAP file. With `scan_rate_hz`, scans that follow the last one written by less than its
+/// period are left out; without it all that were recorded are written. The same recording gives the same bytes.
 ///
 /// # Errors
 /// Where a message cannot be encoded, which is a bug.
@@ -44,7 +44,7 @@ pub fn bag(recording: &Recording, scan_rate_hz: Option<f64>) -> Result<Bag, BagE
     bag_under_banner(recording, scan_rate_hz, None)
 }
 
-/// [`bag`] with what its readers must know of the bundle: a metadata record `reenact` with the key `banner`.
+/// Writes a [`bag`] with what its readers must know of the bundle: a metadata record `reenact` with the key `banner`.
 ///
 /// # Errors
 /// As there.
@@ -99,7 +99,8 @@ struct Writing<'a> {
 }
 
 impl Writing<'_> {
-    /// What holds all the time: where the robot's map lies in the world, where the scanner sits, what it was told before.
+    /// Writes what holds all the time: where the robot's map lies in the world, where the scanner sits, what map the
+    /// robot was given before.
     fn still(&mut self) -> Result<(), BagError> {
         let recording = self.recording;
         let mut transforms = vec![transform(0.0, "world", "map", recording.map_pose)];
@@ -194,7 +195,7 @@ fn transform(at: f64, parent: &'static str, child: &'static str, pose: Pose) -> 
     TransformStamped { header: header(at, parent), child_frame_id: child, transform: pose.into() }
 }
 
-/// A cell as `nav_msgs/OccupancyGrid` has it: a probability in percent, or -1.
+/// Returns a cell as `nav_msgs/OccupancyGrid` has it: a probability in percent, or -1.
 fn of_ros(value: Occupancy) -> i8 {
     match value {
         Occupancy::Unknown => -1,
@@ -243,7 +244,7 @@ fn laser_scan(at: f64, sensed: &Sensed) -> LaserScan {
     }
 }
 
-/// As wide as the message has it.
+/// Returns `value` as wide as the message has it.
 #[expect(clippy::cast_possible_truncation, reason = "ROS messages hold these as float32")]
 fn single(value: f64) -> f32 {
     value as f32

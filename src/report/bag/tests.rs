@@ -5,7 +5,7 @@ use crate::studies::recording::{ActionView, GraphView, VertexView};
 use crate::units::Tick;
 use mcap::MessageStream;
 
-/// Ten seconds of driving with a scan every 50 ms, and a graph.
+/// Records ten seconds of driving with a scan every 50 ms, and a graph.
 fn sensing() -> Recording {
     let mut recording = recording(100);
     let tick = Tick::period_of(20.0).unwrap();

@@ -29,7 +29,7 @@ pub(super) struct BagWriter {
 }
 
 impl BagWriter {
-    /// An empty bag. Nothing in it tells of when or where it was written.
+    /// Creates an empty bag. Nothing in it shows when or where it was written.
     pub(super) fn new() -> Result<Self, BagError> {
         let options = WriteOptions::new()
             .profile("ros2")
@@ -72,7 +72,7 @@ impl BagWriter {
         Ok(self.writer.add_channel(schema, topic, "cdr", &BTreeMap::new())?)
     }
 
-    /// The file's bytes, and how many messages each topic has.
+    /// Returns the file's bytes, and how many messages each topic has.
     pub(super) fn finish(mut self) -> Result<(Vec<u8>, BTreeMap<&'static str, u32>), BagError> {
         self.writer.finish()?;
         let counts = self.channels.into_iter().map(|(topic, (_, count))| (topic, count));

@@ -9,7 +9,7 @@ use crate::robot::{DriveKind, Robot};
 use crate::world::topology::Topology;
 use crate::world::{RegionKind, World};
 
-/// What was understood of a robot.
+/// Describes what was understood of a robot.
 pub fn describe_robot(robot: &Robot) -> String {
     let footprint = match &robot.footprint {
         Outline::Circle { radius, .. } => format!("circle of radius {} m", metres(*radius)),
@@ -83,7 +83,7 @@ pub fn describe_robot(robot: &Robot) -> String {
     text
 }
 
-/// What was understood of a world that is cut at `lidar_height` m.
+/// Describes what was understood of a world that is cut at `lidar_height` m.
 pub fn describe_world(world: &World, lidar_height: f64) -> String {
     let bounds = world.bounds();
     let mut text = format!(
@@ -143,7 +143,7 @@ pub fn describe_world(world: &World, lidar_height: f64) -> String {
     text
 }
 
-/// `, at C2c, 2 edges from the goal`: where a start is in the graph.
+/// Says where a start is in the graph: `, at C2c, 2 edges from the goal`.
 fn place(world: &World, graph: &Topology, start: Pose) -> String {
     let Some(number) = graph.vertex_near(start.position(), 0.5) else {
         return ", at no vertex".to_owned();
@@ -156,7 +156,7 @@ fn place(world: &World, graph: &Topology, start: Pose) -> String {
     }
 }
 
-/// What was understood of the map called `name`.
+/// Describes what was understood of the map called `name`.
 pub fn describe_grid(name: &str, grid: &OccupancyGrid) -> String {
     let (frame, bounds) = (grid.frame(), grid.frame().bounds());
     let mut text = format!(

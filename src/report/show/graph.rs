@@ -19,13 +19,13 @@ const SIZE: f64 = 11.0;
 /// How far (px) a directed edge lies to the right of the middle line.
 const OFFSET: f64 = 2.6;
 
-/// Whether S(e) of an edge in this `direction` is R (Definition 1): along E-W one faces north, along N-S west, so that
-/// east and north are on the right.
+/// Returns whether S(e) of an edge in this `direction` is R (Definition 1): along E-W one faces north, along N-S west,
+/// so that east and north are on the right.
 fn is_right(direction: Cardinal) -> bool {
     matches!(direction, Cardinal::East | Cardinal::North)
 }
 
-/// The graph over a pale plan of the walls at `height` m.
+/// Draws the graph over a pale plan of the walls at `height` m.
 pub(super) fn graph_sheet(world: &World, topology: &Topology, height: f64) -> Canvas {
     let bounds = world.bounds();
     let span = bounds.width().max(bounds.height());
@@ -60,7 +60,7 @@ pub(super) fn graph_sheet(world: &World, topology: &Topology, height: f64) -> Ca
     canvas
 }
 
-/// `49 vertices (26 corridor, 23 room), 49 edges (23 through doors), 1 loop`.
+/// Counts what the graph has: `49 vertices (26 corridor, 23 room), 49 edges (23 through doors), 1 loop`.
 pub(super) fn summary(topology: &Topology) -> String {
     let rooms = topology.vertices.iter().filter(|v| v.kind == RegionKind::Room).count();
     let doors = topology.edges().filter(|edge| edge.opening == Opening::Door).count();
@@ -74,7 +74,7 @@ pub(super) fn summary(topology: &Topology) -> String {
     )
 }
 
-/// The directed edge from `a` to `b` (px): an arrow to the right of the middle line.
+/// Draws the directed edge from `a` to `b` (px): an arrow to the right of the middle line.
 fn directed(canvas: &mut Canvas, a: (f64, f64), b: (f64, f64), right: bool) {
     let length = math::hypot(b.0 - a.0, b.1 - a.1).max(1e-9);
     let (ux, uy) = ((b.0 - a.0) / length, (b.1 - a.1) / length);
@@ -127,7 +127,7 @@ fn node(canvas: &mut Canvas, (x, y): (f64, f64), is_room: bool, name: &str) {
     );
 }
 
-/// A start's letter, white on a disc around (x, y) px; longer names in ink beside it.
+/// Draws a start's letter, white on a disc around (x, y) px; longer names in ink beside it.
 pub(super) fn badge(canvas: &mut Canvas, (x, y): (f64, f64), name: &str) {
     let disc = Element::new("circle").at("cx", x).at("cy", y).at("r", 7.5);
     canvas.push(disc.set("fill", ACCENT).set("stroke", "#fff").set("stroke-width", 1));
@@ -140,7 +140,7 @@ pub(super) fn badge(canvas: &mut Canvas, (x, y): (f64, f64), name: &str) {
     });
 }
 
-/// The goal's star around (x, y) px.
+/// Draws the goal's star around (x, y) px.
 pub(super) fn star((x, y): (f64, f64), radius: f64) -> Element {
     let corner = |i: u32| {
         let angle = std::f64::consts::PI * (f64::from(i) / 5.0 - 0.5);
@@ -156,7 +156,8 @@ pub(super) fn star((x, y): (f64, f64), radius: f64) -> Element {
         .set("stroke-linejoin", "round")
 }
 
-/// A tag as a small mark at (x, y) px: squares for vertices, arrowheads for exits, told by colour and shape.
+/// Draws a tag as a small mark at (x, y) px: squares for vertices, arrowheads for exits, distinguished by colour and
+/// shape.
 pub(super) fn tag_mark((x, y): (f64, f64), mark: Mark<'_>) -> Element {
     let shape = match mark {
         Mark::Vertex(_) => [(-3.0, -3.0), (3.0, -3.0), (3.0, 3.0), (-3.0, 3.0)].to_vec(),
@@ -183,7 +184,7 @@ pub(super) enum Mark<'a> {
     Exit(&'a str, Cardinal),
 }
 
-/// A mark that the building's sheet and the legend share, with what it means.
+/// Draws a mark that the building's sheet and the legend share, with what it means.
 pub(super) fn legend_entry(
     canvas: &mut Canvas,
     x: f64,

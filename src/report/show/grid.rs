@@ -15,7 +15,8 @@ const FILLS: [(Occupancy, &str, &str); 3] = [
 /// Around the known part of a mostly unknown map (m).
 const MARGIN: f64 = 1.0;
 
-/// The map called `name` with axes in metres, as an SVG file. Of a mostly unknown map only the known part is drawn.
+/// Draws the map called `name` with axes in metres, as an SVG file. Of a mostly unknown map only the known part is
+/// drawn.
 pub fn grid_svg(name: &str, whole: &OccupancyGrid) -> String {
     let grid = &known_part(whole);
     let frame = grid.frame();
@@ -57,7 +58,7 @@ pub fn grid_svg(name: &str, whole: &OccupancyGrid) -> String {
     canvas.finish(&format!("Grid map {name}"))
 }
 
-/// A group whose unit is a cell, from the upper left corner of the grid `frame`.
+/// Creates a group whose unit is a cell, from the upper left corner of the grid `frame`.
 pub(super) fn cells_group(canvas: &Canvas, frame: &GridFrame) -> Element {
     let (left, top) = canvas.at(Point::new(frame.origin.x, frame.bounds().max.y));
     let side = frame.resolution * canvas.scale();
@@ -66,7 +67,7 @@ pub(super) fn cells_group(canvas: &Canvas, frame: &GridFrame) -> Element {
         .set("shape-rendering", "crispEdges")
 }
 
-/// Path data of the cells that are `value`, as runs along rows in units of cells.
+/// Returns the path data of the cells that are `value`, as runs along rows in units of cells.
 pub(super) fn runs(grid: &OccupancyGrid, value: Occupancy) -> String {
     let mut data = String::new();
     for (row, cells) in rows(grid).enumerate() {
@@ -81,7 +82,7 @@ pub(super) fn runs(grid: &OccupancyGrid, value: Occupancy) -> String {
     data
 }
 
-/// The part of a map that holds all known cells, where that is less than half of it; else all.
+/// Returns the part of a map that holds all known cells, where that is less than half of it; else all.
 fn known_part(grid: &OccupancyGrid) -> OccupancyGrid {
     let frame = grid.frame();
     let mut known = Bounds::EMPTY;
@@ -107,8 +108,8 @@ fn known_part(grid: &OccupancyGrid) -> OccupancyGrid {
     OccupancyGrid::from_cells(cut, cells)
 }
 
-/// The map as an 8-bit grey PNG with one pixel per cell, north up, in the greys of ROS's `map_saver`: 0 occupied,
-/// 254 free, 205 unknown.
+/// Writes the map as an 8-bit grey PNG with one pixel per cell, north up, in the greys of ROS's `map_saver`: 0
+/// occupied, 254 free, 205 unknown.
 pub fn grid_png(grid: &OccupancyGrid) -> Vec<u8> {
     let frame = grid.frame();
     let size = |cells: i32| u32::try_from(cells).unwrap_or(0);
@@ -130,7 +131,7 @@ pub fn grid_png(grid: &OccupancyGrid) -> Vec<u8> {
     file
 }
 
-/// Rows of cells from the north.
+/// Returns rows of cells from the north.
 fn rows(grid: &OccupancyGrid) -> impl Iterator<Item = &[Occupancy]> {
     let width = usize::try_from(grid.frame().width).unwrap_or(0).max(1);
     grid.values().chunks(width).rev()

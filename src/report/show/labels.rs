@@ -20,7 +20,7 @@ pub(super) struct Taken<'a> {
     pub(super) solids: &'a [Outline],
 }
 
-/// Writes the names of `regions`; the key of those that became numbers.
+/// Writes the names of `regions`, and returns the key of those that became numbers.
 pub(super) fn name_regions(
     canvas: &mut Canvas,
     regions: &[Region],
@@ -73,7 +73,7 @@ fn label(canvas: &Canvas, at: Point, (size, turned): (f64, bool), text: &str) ->
     canvas.label(at, (0.0, 0.35 * size), size, text).set("transform", turn)
 }
 
-/// The room (m) that a text around `at` takes.
+/// Returns the room (m) that a text around `at` takes.
 fn extent(canvas: &Canvas, at: Point, text: &str, (size, turned): (f64, bool)) -> Bounds {
     #[expect(clippy::cast_precision_loss, reason = "names are short")]
     let long = 0.56 * size * text.chars().count() as f64 + 2.0 * MARGIN;
@@ -82,7 +82,7 @@ fn extent(canvas: &Canvas, at: Point, text: &str, (size, turned): (f64, bool)) -
     Bounds { min: at - half, max: at + half }
 }
 
-/// The place for `text` inside `region` that is nearest to its middle; `strict` keeps off what stands there too.
+/// Finds the place for `text` inside `region` that is nearest to its middle; `strict` keeps off what stands there too.
 fn place(
     canvas: &Canvas,
     region: &Outline,
@@ -129,7 +129,7 @@ fn overlap(a: Bounds, b: Bounds) -> bool {
     a.min.x < b.max.x && b.min.x < a.max.x && a.min.y < b.max.y && b.min.y < a.max.y
 }
 
-/// The centroid of a simple polygon; the mean of its corners where it has no area.
+/// Computes the centroid of a simple polygon; the mean of its corners where it has no area.
 fn middle(corners: &[Point]) -> Point {
     let (mut area, mut sum) = (0.0, Point::ZERO);
     for (i, a) in corners.iter().enumerate() {

@@ -49,7 +49,7 @@ pub struct FetchError(pub String);
 /// Hands over a file by its path relative to the descriptor's folder.
 pub type Fetch<'f> = dyn FnMut(&str) -> Result<Vec<u8>, FetchError> + 'f;
 
-/// Draws the robot, world or map in the file `name`, told apart by content: URDF, SDF, `map_server` YAML (with an
+/// Draws the robot, world or map in the file `name`, distinguished by content: URDF, SDF, `map_server` YAML (with an
 /// `image:`), topo-metric map or world YAML. Worlds are cut at `height` m; all their layers are drawn.
 ///
 /// `models` is asked for a world's meshes, `fetch` for a map's image.
@@ -93,7 +93,7 @@ pub fn draw(
     Ok(drawn_world(&world_document::read(&source, None)?, height))
 }
 
-/// The map of the descriptor `source`, which is called `name`.
+/// Reads the map of the descriptor `source`, which is called `name`.
 fn read_map(
     name: &str,
     source: &Source,
@@ -120,7 +120,7 @@ fn drawn_world(world: &crate::world::World, height: f64) -> Drawing {
     }
 }
 
-/// The graph that the world's tags mean, where any of them is a vertex tag of the usual colours.
+/// Returns the graph that the world's tags mean, where any of them is a vertex tag of the usual colours.
 fn graph_of(world: &crate::world::World) -> Option<Result<Topology, Vec<TagFault>>> {
     let scheme = TagScheme::default();
     let is_vertex = |color: &String| [&scheme.corridor, &scheme.room].contains(&color);
@@ -128,7 +128,7 @@ fn graph_of(world: &crate::world::World) -> Option<Result<Topology, Vec<TagFault
     any.then(|| Topology::read(&world.tags, &scheme))
 }
 
-/// Whether the first tag of an XML text, after declarations and comments, is `name`.
+/// Returns whether the first tag of an XML text, after declarations and comments, is `name`.
 fn root_is(text: &str, name: &str) -> bool {
     let mut rest = text;
     while let Some(start) = rest.find('<') {

@@ -37,7 +37,8 @@ pub struct Over<'a> {
     pub start: Point,
 }
 
-/// The world in the file `name` with its walls and `layers` (all where `None`), the meshes that `models` knows, and what it lacks.
+/// Reads the world in the file `name` with its walls and `layers` (all where `None`), the meshes that `models` knows,
+/// and what it lacks.
 ///
 /// # Errors
 /// Every fault of the file.
@@ -62,12 +63,12 @@ pub fn read_world(
     }
 }
 
-/// `world` cut at `height` m.
+/// Draws `world` cut at `height` m.
 pub fn draw_world(world: &World, height: f64) -> Drawing {
     drawn_world(world, height)
 }
 
-/// What is derived from `world` at `height` m in cells of `resolution` m.
+/// Draws what is derived from `world` at `height` m in cells of `resolution` m.
 ///
 /// # Errors
 /// Nothing to draw, or too much.
@@ -93,7 +94,7 @@ pub fn draw_derived(
     })
 }
 
-/// `world` at `height` m under the occupied cells of the map `over`, so that it is seen how far they lie apart.
+/// Draws `world` at `height` m under the occupied cells of the map `over`, so that one sees how far they lie apart.
 ///
 /// `fetch` is asked for the map's image as in [`super::draw`].
 ///
@@ -121,7 +122,7 @@ pub fn draw_over(
     Ok(drawing)
 }
 
-/// How `map`, laid with its origin relative to `start`, lies on `solids`, in words.
+/// Says in words how `map`, laid with its origin relative to `start`, lies on `solids`.
 fn alignment(map: &OccupancyGrid, start: Point, solids: &[Outline]) -> String {
     let frame = map.frame();
     let mut off: Vec<f64> = frame
@@ -163,12 +164,12 @@ fn alignment(map: &OccupancyGrid, start: Point, solids: &[Outline]) -> String {
     text
 }
 
-/// How far (m) `at` is from the nearest of `solids`; infinite where there is none.
+/// Returns how far (m) `at` is from the nearest of `solids`; infinite where there is none.
 fn distance(at: Point, solids: &[Outline]) -> f64 {
     solids.iter().map(|solid| solid.distance(at)).fold(f64::INFINITY, f64::min)
 }
 
-/// Whether `cell` of `map` is near one of `outlines`.
+/// Returns whether `cell` of `map` is near one of `outlines`.
 pub(super) fn is_near(map: &OccupancyGrid, outlines: &[Outline], cell: Cell) -> bool {
     let at = map.frame().center(cell);
     outlines.iter().any(|o| o.bounds().grown(NEAR).contains(at) && o.distance(at) <= NEAR)

@@ -11,7 +11,7 @@ const WHEEL_WIDTH: f64 = 0.3;
 /// The logical camera's cone.
 const CONE: &str = "#d98324";
 
-/// The robot from above, x to the right, with its dimensions, as an SVG file.
+/// Draws the robot from above, x to the right, with its dimensions, as an SVG file.
 pub fn robot_svg(robot: &Robot) -> String {
     let radius = robot.circumscribed_radius();
     let body = robot.footprint.bounds();
@@ -151,7 +151,7 @@ pub fn robot_svg(robot: &Robot) -> String {
     }
 }
 
-/// How far the sensors see, to scale with the body; `None` without any.
+/// Draws how far the sensors see, to scale with the body; `None` without any.
 fn reach_sheet(robot: &Robot) -> Option<Canvas> {
     let mut views = Vec::new();
     if let Some(lidar) = &robot.lidar {
@@ -200,7 +200,7 @@ fn reach_sheet(robot: &Robot) -> Option<Canvas> {
     Some(canvas)
 }
 
-/// The arc of `reach` m that the scanner looks along, in the base frame.
+/// Returns the arc of `reach` m that the scanner looks along, in the base frame.
 fn wedge(mount: Pose, min_angle: f64, max_angle: f64, reach: f64) -> Vec<Point> {
     (0..=48)
         .map(|i| {

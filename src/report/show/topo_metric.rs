@@ -7,12 +7,12 @@ use crate::geometry::{Bounds, Outline};
 use crate::studies::prior_map::tour::TopoMetricMap;
 use crate::world::World;
 
-/// The map called `name` alone.
+/// Draws the map called `name` alone.
 pub(super) fn drawn(name: &str, map: &TopoMetricMap) -> Drawing {
     drawing(name, map, &[], None)
 }
 
-/// The map called `name` over `world` at `height` m.
+/// Draws the map called `name` over `world` at `height` m.
 pub(super) fn drawn_over(name: &str, map: &TopoMetricMap, world: &World, height: f64) -> Drawing {
     drawing(name, map, &world.slice(height), Some(&world.name))
 }

@@ -23,7 +23,7 @@ const PRIOR_NEAR: &str = "#56b4e9";
 /// The same where nothing is: darker, so that it is also told in grey.
 const PRIOR_FAR: &str = "#b2182b";
 
-/// The world at `lidar_height` m, as an SVG file. What the plane misses is drawn as a thin outline.
+/// Draws the world at `lidar_height` m, as an SVG file. What the plane misses is drawn as a thin outline.
 pub fn world_svg(world: &World, lidar_height: f64) -> String {
     let graph = graph_of(world).and_then(Result::ok);
     let building = building_sheet(world, lidar_height, graph.as_ref(), None);
@@ -34,7 +34,7 @@ pub fn world_svg(world: &World, lidar_height: f64) -> String {
     }
 }
 
-/// The building at `lidar_height` m under the occupied cells of `prior`, in one colour.
+/// Draws the building at `lidar_height` m under the occupied cells of `prior`, in one colour.
 pub(super) fn world_under_svg(world: &World, lidar_height: f64, prior: &OccupancyGrid) -> String {
     building_sheet(world, lidar_height, None, Some(prior))
         .finish(&format!("World {} and prior map", world.name))
@@ -157,7 +157,7 @@ fn building_sheet(
     canvas
 }
 
-/// What the names of regions keep off: tags, goals, and starts with what is written beside them.
+/// Returns what the names of regions keep off: tags, goals, and starts with what is written beside them.
 fn marks(canvas: &Canvas, world: &World, graph: Option<&Topology>) -> Vec<Bounds> {
     let px = |at: Point, left: f64, right: f64, up: f64, down: f64| {
         let scale = canvas.scale();
@@ -179,7 +179,7 @@ fn marks(canvas: &Canvas, world: &World, graph: Option<&Topology>) -> Vec<Bounds
     tags.chain(starts).chain(stars).chain(goals).collect()
 }
 
-/// Tags, goals and starts of a world without a graph, each with its name.
+/// Draws tags, goals and starts of a world without a graph, each with its name.
 fn unmarked(canvas: &mut Canvas, world: &World) {
     for tag in &world.tags {
         let dot = Outline::Circle { center: tag.pose.position(), radius: 3.0 / canvas.scale() };
@@ -212,7 +212,7 @@ fn unmarked(canvas: &mut Canvas, world: &World) {
     }
 }
 
-/// Tags by their meaning, starts by their letters, the goal as a star.
+/// Draws tags by their meaning, starts by their letters, the goal as a star.
 fn marked(canvas: &mut Canvas, world: &World, graph: &Topology) {
     for start in world.starts.values() {
         let tip = start.transform(Point::new(30.0 / canvas.scale(), 0.0));
@@ -241,7 +241,7 @@ fn marked(canvas: &mut Canvas, world: &World, graph: &Topology) {
     }
 }
 
-/// Where stars mark goals (m): behind the goal's vertex, seen from its door.
+/// Returns where stars mark goals (m): behind the goal's vertex, seen from its door.
 fn goal_stars(canvas: &Canvas, graph: &Topology) -> Vec<Point> {
     let star = |number: usize| {
         let vertex = &graph.vertices[number];
