@@ -18,7 +18,7 @@ pub struct Dictionary<'a> {
 }
 
 impl Dictionary<'_> {
-    /// A column of `trials.csv`.
+    /// Describes a column of `trials.csv`.
     pub fn of_trials(&self, name: &str) -> Option<Column> {
         match name {
             "key" => Some(
@@ -33,7 +33,7 @@ impl Dictionary<'_> {
         }
     }
 
-    /// A column of `series.csv`.
+    /// Describes a column of `series.csv`.
     pub fn of_series(&self, name: &str) -> Option<Column> {
         let number = |meaning: &str| Column::number(name, unit_of(name), meaning).at_least(0.0);
         match name {
@@ -51,7 +51,7 @@ impl Dictionary<'_> {
         }
     }
 
-    /// A column of `circumstances/wall-times.csv`.
+    /// Describes a column of `circumstances/wall-times.csv`.
     pub fn of_wall_times(&self, name: &str) -> Option<Column> {
         let meaning = match WALL_TIME_COLUMNS.iter().position(|known| *known == name) {
             Some(0) => "Time that the trial took on the machine that ran it",
@@ -63,7 +63,7 @@ impl Dictionary<'_> {
         Some(Column::number(name, "s", meaning).at_least(0.0).empty_where(empty))
     }
 
-    /// A column of a file with the paper's own numbers.
+    /// Describes a column of a file with the paper's own numbers.
     pub fn of_published(&self, name: &str) -> Option<Column> {
         let silent = "the paper does not say";
         Some(match name {
@@ -86,17 +86,18 @@ impl Dictionary<'_> {
         })
     }
 
-    /// A column of the calibration that the deadline study's planner expects its maneuvers by.
+    /// Describes a column of the calibration from which the deadline study's planner takes its expectations of
+    /// maneuvers.
     pub fn of_calibration(name: &str) -> Option<Column> {
         deadline::columns::of_calibration(name)
     }
 
-    /// A column of the passages that a calibration rests on.
+    /// Describes a column of the passages on which a calibration rests.
     pub fn of_passages(name: &str) -> Option<Column> {
         deadline::columns::of_passages(name)
     }
 
-    /// A column of what `reenact vary` found.
+    /// Describes a column of what `reenact vary` found.
     pub fn of_sensitivity(name: &str) -> Option<Column> {
         let verdicts = Judgement::ALL.map(|verdict| verdict.to_string());
         Some(match name {

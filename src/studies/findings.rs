@@ -23,7 +23,7 @@ pub struct Findings<'a> {
 }
 
 impl<'a> Findings<'a> {
-    /// The findings of `records`, which stand in plan order.
+    /// Creates the findings of `records`, which stand in plan order.
     pub fn new(
         factors: &'a [Factor],
         records: &'a [TrialRecord],
@@ -33,14 +33,14 @@ impl<'a> Findings<'a> {
         Self { factors, design: Vec::new(), records, published, by_condition }
     }
 
-    /// The same with the conditions of the whole `design`.
+    /// Returns the same with the conditions of the whole `design`.
     #[must_use]
     pub fn designed(mut self, design: impl Iterator<Item = (&'a Condition, &'a Setup)>) -> Self {
         self.design = design.collect();
         self
     }
 
-    /// One row a trial: key, factors, number, outcome, then every measure.
+    /// Returns one row a trial: key, factors, number, outcome, then every measure.
     pub fn trials(&self) -> Table {
         let measures: BTreeSet<&str> =
             self.records.iter().flat_map(|r| r.measures.keys().map(String::as_str)).collect();
@@ -63,7 +63,7 @@ impl<'a> Findings<'a> {
         table
     }
 
-    /// The values of `factor` that were run, in the manifest's order.
+    /// Returns the values of `factor` that were run, in the manifest's order.
     pub(super) fn values_of(&self, factor: &str) -> Vec<String> {
         let known = self.factors.iter().find(|known| known.name == factor);
         let ran = |value: &String| {
@@ -75,7 +75,7 @@ impl<'a> Findings<'a> {
         })
     }
 
-    /// Every combination of values of `factors`, the last one fastest.
+    /// Returns every combination of values of `factors`, the last one fastest.
     pub(super) fn crossed(&self, factors: &[String]) -> Vec<Vec<(String, String)>> {
         let mut crossed = vec![Vec::new()];
         for factor in factors {
@@ -93,7 +93,7 @@ impl<'a> Findings<'a> {
         crossed
     }
 
-    /// Those combinations of values of `factors` that were run, in the order of [`Self::crossed`].
+    /// Returns those combinations of values of `factors` that were run, in the order of [`Self::crossed`].
     pub(super) fn ran(&self, factors: &[String]) -> Vec<Vec<(String, String)>> {
         let mut crossed = self.crossed(factors);
         crossed.retain(|cell| {
@@ -102,7 +102,7 @@ impl<'a> Findings<'a> {
         crossed
     }
 
-    /// The records whose condition has all values of `fixed`.
+    /// Returns the records whose condition has all values of `fixed`.
     pub(super) fn matching(&self, fixed: &[(String, String)]) -> Vec<&'a TrialRecord> {
         self.by_condition
             .iter()
@@ -111,18 +111,18 @@ impl<'a> Findings<'a> {
             .collect()
     }
 
-    /// The conditions that were run, each as often as it begins anew in plan order.
+    /// Returns the conditions that were run, each as often as it begins anew in plan order.
     fn conditions(&self) -> impl Iterator<Item = &'a [(String, String)]> {
         self.by_condition.iter().map(|records| records[0].condition.as_slice())
     }
 
-    /// Why a cell of these factor values has no number of ours, where `trials` of it were run.
+    /// Returns why a cell of these factor values has no number of ours, where `trials` of it were run.
     pub(super) fn absence(&self, fixed: &[(String, String)], trials: u64) -> Silence {
         let planned = |condition: &Condition| fixed.iter().all(|f| condition.0.contains(f));
         absence(self.design.iter().any(|(condition, _)| planned(condition)), trials)
     }
 
-    /// The row of the published table `name` for the values of `fixed` that it has columns for.
+    /// Returns the row of the published table `name` for the values of `fixed` that it has columns for.
     pub(super) fn published_row(
         &self,
         name: &str,
@@ -137,12 +137,12 @@ impl<'a> Findings<'a> {
         table.rows.iter().find(fits).map(|row| (table, row.as_slice()))
     }
 
-    /// What a column of the factor `name` says.
+    /// Returns what a column of the factor `name` says.
     pub(super) fn factor_column(&self, name: &str) -> Column {
         of_factor(self.factors, name).unwrap_or_else(|| Column::unknown(name))
     }
 
-    /// The values of `condition` in the order of the factors, as a table holds them.
+    /// Returns the values of `condition` in the order of the factors, as a table holds them.
     pub(super) fn factor_values(&self, condition: &Condition) -> Vec<Value> {
         self.factors
             .iter()
@@ -151,7 +151,7 @@ impl<'a> Findings<'a> {
     }
 }
 
-/// Six significant digits: more would only be noise in a table.
+/// Rounds to six significant digits: more would only be noise in a table.
 pub(super) fn rounded(x: f64) -> f64 {
     format!("{x:.5e}").parse().unwrap_or(x)
 }

@@ -78,13 +78,13 @@ pub const STUDIES: &[&dyn Study] = &[&deadline::Deadline, &prior_map::PriorMap, 
 pub struct Condition(pub Vec<(String, String)>);
 
 impl Condition {
-    /// The value of `factor`.
+    /// Returns the value of `factor`.
     pub fn value(&self, factor: &str) -> Option<&str> {
         self.0.iter().find(|(name, _)| name == factor).map(|(_, value)| value.as_str())
     }
 
-    /// A file name for this cell: the values joined by underscores, `all` where there is no factor.
-    /// Only `[A-Za-z0-9.-]` of each value survive; resolution refuses manifests where two cells clash.
+    /// Returns a file name for this cell: the values joined by underscores, `all` where there is no factor. Only
+    /// `[A-Za-z0-9.-]` of each value survive; resolution refuses manifests where two cells clash.
     pub fn slug(&self) -> String {
         let safe = |value: &String| {
             value
@@ -98,7 +98,7 @@ impl Condition {
 }
 
 impl std::fmt::Display for Condition {
-    /// `prior=floor-plan environment=basic`, as people read it.
+    /// Writes the factors as people read them: `prior=floor-plan environment=basic`.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let parts: Vec<_> = self.0.iter().map(|(name, value)| format!("{name}={value}")).collect();
         f.write_str(&parts.join(" "))

@@ -36,7 +36,8 @@ impl Outcome {
     /// The program failed inside the trial; the record says how. Never stored.
     pub const PANICKED: Self = Self::new("panicked", End::Fault, "the program failed");
 
-    /// An outcome called `name`, which `says` this of a trial. Studies list theirs in [`super::Study::outcomes`].
+    /// Creates an outcome called `name`, which `says` this of a trial. Studies list theirs in
+    /// [`super::Study::outcomes`].
     pub(super) const fn new(name: &'static str, end: End, says: &'static str) -> Self {
         Self { name, end, says }
     }
@@ -68,7 +69,7 @@ impl Outcome {
     }
 }
 
-/// The outcomes of all studies, those twice that two have, and the one of no study.
+/// Returns the outcomes of all studies, those twice that two have, and the one of no study.
 fn every() -> impl Iterator<Item = Outcome> {
     let of_studies = super::STUDIES.iter().flat_map(|study| study.outcomes().iter().copied());
     of_studies.chain([Outcome::PANICKED])

@@ -75,7 +75,7 @@ impl PublishedScatter {
 }
 
 impl Findings<'_> {
-    /// A requested figure: a scatter of the table it names among `tables`; without points where there is none.
+    /// Makes a requested figure: a scatter of the table it names among `tables`; without points where there is none.
     pub(super) fn scatter_figure(
         &self,
         title: &str,
@@ -235,13 +235,13 @@ fn unit_of(show: &Quantity) -> &'static str {
     }
 }
 
-/// Student's interval of a mean with its standard deviation over `runs`; `None` with one run.
+/// Computes Student's interval of a mean with its standard deviation over `runs`; `None` with one run.
 fn of_mean((mean, sd, runs): (f64, f64, f64)) -> Option<(f64, f64)> {
     let half = student_t_quantile(0.5 + 0.5 * CONFIDENCE, runs - 1.0) * sd / runs.sqrt();
     (runs > 1.0 && half.is_finite()).then_some((mean - half, mean + half))
 }
 
-/// How far a pair is from agreement, as the eye sees it.
+/// Computes how far a pair is from agreement, as the eye sees it.
 fn gap(pair: &Pair, logarithmic: bool) -> f64 {
     if logarithmic {
         math::ln(pair.ours / pair.published).abs()
@@ -259,7 +259,7 @@ fn farthest(pairs: &[Pair], logarithmic: bool) -> Vec<usize> {
     order
 }
 
-/// How many cells, how they correlate, how far they are apart.
+/// Says how many cells there are, how they correlate and how far they are apart.
 fn notes(pairs: &[Pair], unit: &str, logarithmic: bool) -> Vec<String> {
     if pairs.len() < 3 {
         return Vec::new();

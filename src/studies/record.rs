@@ -50,7 +50,7 @@ fn measures<'de, D: Deserializer<'de>>(
     deserializer.deserialize_map(Few)
 }
 
-/// Digest of records in plan order: of their lines, each ended by a line feed.
+/// Computes the digest of records in plan order: of their lines, each ended by a line feed.
 pub fn records_digest(records: &[TrialRecord]) -> Sha256Digest {
     let mut hasher = Hasher::new();
     for record in records {
@@ -119,7 +119,7 @@ pub enum RecordError {
 }
 
 impl TrialRecord {
-    /// The record of a trial that panicked with `cause`.
+    /// Creates the record of a trial that panicked with `cause`.
     pub fn panicked(spec: &super::TrialSpec, cause: String) -> Self {
         Self {
             key: spec.key,
@@ -134,12 +134,12 @@ impl TrialRecord {
         }
     }
 
-    /// The cell it belongs to.
+    /// Returns the cell to which it belongs.
     pub fn condition(&self) -> Condition {
         Condition(self.condition.clone())
     }
 
-    /// The canonical line, without its line feed.
+    /// Writes the canonical line, without its line feed.
     pub fn to_line(&self) -> String {
         json::canonical_of(self)
     }
@@ -163,7 +163,7 @@ impl TrialRecord {
         }
     }
 
-    /// About how much memory it takes (bytes), never much less.
+    /// Estimates how much memory it takes (bytes), never much less.
     pub fn weight(&self) -> usize {
         const ALLOCATION: usize = 32;
         let text = |text: &String| size_of::<String>() + ALLOCATION + text.len();
@@ -175,7 +175,7 @@ impl TrialRecord {
             + self.series.len() * size_of::<SeriesPoint>()
     }
 
-    /// When the states of this record's trial and those of `other` first differ, in words.
+    /// Says in words when the states of this record's trial and those of `other` first differ.
     pub fn parting(&self, other: &Self) -> String {
         match self.first_divergence(other) {
             Some(after) => format!(
@@ -186,7 +186,7 @@ impl TrialRecord {
         }
     }
 
-    /// The first instant (s of simulated time) after which this record and `other` differ, by their hash
+    /// Returns the first instant (s of simulated time) after which this record and `other` differ, by their hash
     /// chains; `None` where the chains agree as far as both go.
     pub fn first_divergence(&self, other: &Self) -> Option<f64> {
         first_divergence(&self.chain, &other.chain)
@@ -196,8 +196,8 @@ impl TrialRecord {
 /// Simulated time between two hashes of a chain (s).
 pub const CHAIN_STEP_S: f64 = 10.0;
 
-/// The first instant (s of simulated time) after which the trials of two hash chains differ, or one goes on alone;
-/// `None` where the chains are the same.
+/// Returns the first instant (s of simulated time) after which the trials of two hash chains differ, or one goes on
+/// alone; `None` where the chains are the same.
 pub fn first_divergence(a: &[String], b: &[String]) -> Option<f64> {
     let common = a.len().min(b.len());
     let first = (0..common).find(|&i| a[i] != b[i]).or((a.len() != b.len()).then_some(common))?;

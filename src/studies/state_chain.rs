@@ -14,7 +14,7 @@ pub(super) struct StateChain {
 }
 
 impl StateChain {
-    /// Whether a hash is due; the next one is then due 10 s later.
+    /// Returns whether a hash is due; the next one is then due 10 s later.
     pub(super) fn is_due(&mut self, now: Tick) -> bool {
         let due = now >= self.next;
         if due {
@@ -33,7 +33,7 @@ impl StateChain {
         self.hashes.push(hasher.digest());
     }
 
-    /// The chain as records hold it: the first 16 hex digits of each hash.
+    /// Returns the chain as records hold it: the first 16 hex digits of each hash.
     pub(super) fn to_hex(&self) -> Vec<String> {
         self.hashes.iter().map(|hash| hash.hex()[..16].to_owned()).collect()
     }

@@ -180,7 +180,7 @@ impl Calibrated for Passages {
         table.to_csv()
     }
 
-    /// The first three fields are what the plan gives.
+    /// Returns the row without its first three fields, which are those that the plan gives.
     fn told(&self, index: usize) -> Option<String> {
         self.rows.get(index).map(|row| joined(&fields(row)[3..]))
     }

@@ -43,8 +43,8 @@ pub struct Estimate {
 }
 
 impl Findings<'_> {
-    /// The cells of a table in the paper's order: rows, then side by side. Cells of conditions that do not exist are left
-    /// out together where a whole row is missing.
+    /// Returns the cells of a table in the paper's order: rows, then side by side. Cells of conditions that do not
+    /// exist are left out together where a whole row is missing.
     pub fn outcome_cells(&self, request: &OutcomeTable) -> Vec<OutcomeCell> {
         let only: Vec<(String, String)> =
             request.only.iter().map(|(f, v)| (f.clone(), v.0.clone())).collect();
@@ -67,7 +67,7 @@ impl Findings<'_> {
         cells
     }
 
-    /// The values that stand side by side.
+    /// Returns the values that stand side by side.
     pub fn columns_of(&self, request: &OutcomeTable) -> Vec<String> {
         let only = request.only.get(&request.by);
         let mut values = self.values_of(&request.by);
@@ -106,7 +106,7 @@ impl Findings<'_> {
     }
 }
 
-/// What of the trials is compared with the paper's number; `None` where none has the quantity.
+/// Computes the quantity of the trials that is compared with the paper's number; `None` where no trial has it.
 fn compared(quantity: &Quantity, trials: &[&TrialRecord]) -> Option<Ours> {
     Some(match quantity {
         Quantity::Share(outcomes) => {
@@ -162,7 +162,7 @@ fn estimate(quantity: &Quantity, trials: &[&TrialRecord]) -> Option<Estimate> {
     }
 }
 
-/// The interval of a share that the paper prints (percent) of `n` trials.
+/// Computes the interval of a share that the paper prints (percent) of `n` trials.
 pub(in crate::studies) fn published_share(percent: f64, n: u64) -> Option<(f64, f64)> {
     if n == 0 || !(0.0..=100.0).contains(&percent) {
         return None;
@@ -171,7 +171,7 @@ pub(in crate::studies) fn published_share(percent: f64, n: u64) -> Option<(f64, 
     Some((100.0 * interval.low, 100.0 * interval.high))
 }
 
-/// The values of `measure` of those `trials` that have one.
+/// Returns the values of `measure` of those `trials` that have one.
 pub(in crate::studies) fn measured(trials: &[&TrialRecord], measure: &str) -> Vec<f64> {
     trials.iter().filter_map(|record| value_of(record, measure)).collect()
 }
@@ -180,7 +180,8 @@ fn value_of(record: &TrialRecord, measure: &str) -> Option<f64> {
     record.measures.get(measure).copied().flatten()
 }
 
-/// The ratio estimator and its linearised interval (Cochran 1977, Sampling Techniques, section 2.11), in percent.
+/// Computes the ratio estimator and its linearised interval (Cochran 1977, Sampling Techniques, section 2.11), in
+/// percent.
 fn ratio(pairs: &[(f64, f64)]) -> Option<Estimate> {
     let part: f64 = pairs.iter().map(|p| p.0).sum();
     let whole: f64 = pairs.iter().map(|p| p.1).sum();

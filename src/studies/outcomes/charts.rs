@@ -14,7 +14,7 @@ use crate::table::Value;
 const DEADLINE: &str = "deadline-s";
 const TIME: &str = "time-s";
 
-/// Outcomes in the order in which they are stacked, the best first. Panicked trials are counted nowhere.
+/// Returns the outcomes in the order in which they are stacked, the best first. Panicked trials are counted nowhere.
 fn stack() -> Vec<(Outcome, Look)> {
     let looks = [
         (End::Success, Look::Good),
@@ -29,7 +29,7 @@ fn stack() -> Vec<(Outcome, Look)> {
     looks.into_iter().flat_map(of).collect()
 }
 
-/// A factor's value in words: `deadline 680 s`, `furnished true`.
+/// Returns a factor's value in words: `deadline 680 s`, `furnished true`.
 pub(in crate::studies) fn named(factor: &str, value: &str) -> String {
     let units = [("-m-s", "m/s"), ("-s", "s"), ("-m", "m"), ("-deg", "°"), ("-percent", "%")];
     for (suffix, unit) in units {
@@ -42,12 +42,12 @@ pub(in crate::studies) fn named(factor: &str, value: &str) -> String {
     format!("{} {value}", factor.replace('-', " "))
 }
 
-/// Values in words, separated by commas.
+/// Returns values in words, separated by commas.
 fn all_named(values: &[(String, String)]) -> String {
     values.iter().map(|(f, v)| named(f, v)).collect::<Vec<_>>().join(", ")
 }
 
-/// Panels of `cells`, `abreast` rows each, in lines by the first of several factors that have rows.
+/// Returns panels of `cells`, `abreast` rows each, in lines by the first of several factors that have rows.
 fn lines<C, R>(
     cells: &[C],
     abreast: usize,
@@ -109,7 +109,7 @@ impl OutcomeShares {
 }
 
 impl Findings<'_> {
-    /// A requested figure: estimates with intervals, the paper's numbers under ours.
+    /// Makes a requested figure: estimates with intervals, the paper's numbers under ours.
     fn outcome_figure(&self, title: &str, request: &OutcomeTable) -> EstimateChart {
         let names = self.columns_of(request);
         let cells = self.outcome_cells(request);
@@ -160,7 +160,8 @@ impl Findings<'_> {
         }
     }
 
-    /// A requested figure: how the ways in which trials ended add up, the paper's shares in thin bars under ours.
+    /// Makes a requested figure: the shares of trials by how they ended, stacked; the paper's shares in thin bars under
+    /// ours.
     fn shares_figure(&self, title: &str, request: &OutcomeShares) -> ShareChart {
         let table = OutcomeTable {
             show: Quantity::Share(Vec::new()),
@@ -242,7 +243,8 @@ mod tests {
     use crate::table::Table;
     use std::collections::BTreeMap;
 
-    /// Ten trials each of two strategies within two deadlines; `slow` is late in the three last, without a time.
+    /// Returns ten trials each of two strategies within two deadlines; `slow` is late in the last three, without a
+    /// time.
     fn records() -> Vec<TrialRecord> {
         let line = format!(
             "{{\"key\":\"{}\",\"condition\":[],\"trial\":0,\"outcome\":\"reached\",\"measures\":{{}},\"series\":[],\

@@ -85,7 +85,7 @@ pub struct Percent {
 }
 
 impl Quantity {
-    /// What the cells are, with the unit.
+    /// Says what the cells are, with the unit.
     pub fn describe(&self) -> String {
         match self {
             Self::Share(outcomes) => {
@@ -100,7 +100,7 @@ impl Quantity {
         }
     }
 
-    /// The title of an axis along which it runs.
+    /// Returns the title of an axis along which it runs.
     pub fn axis_title(&self) -> String {
         let told = |measure: &str| measure.replace('-', " ");
         match self {
@@ -121,7 +121,7 @@ impl Quantity {
         }
     }
 
-    /// The measures it is made of.
+    /// Returns the measures of which it is made.
     pub fn measures(&self) -> Vec<&str> {
         match self {
             Self::Share(_) => Vec::new(),

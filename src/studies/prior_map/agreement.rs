@@ -71,8 +71,8 @@ struct Both<'a> {
 }
 
 impl Findings<'_> {
-    /// Agreement of each of `tables` (with its id) that a request asks for: as a whole, by each factor of its rows, by
-    /// what stands side by side.
+    /// Computes the agreement of each of `tables` (with its id) that a request asks for: as a whole, by each factor of
+    /// its rows, by what stands side by side.
     pub fn agreement(
         &self,
         wanted: &AgreementTable,

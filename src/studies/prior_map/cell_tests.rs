@@ -129,7 +129,7 @@ impl Findings<'_> {
         }
     }
 
-    /// The runs among the first `n` trials of a cell that got there.
+    /// Summarises the runs among the first `n` trials of a cell that got there.
     fn first_runs(&self, request: &CoverageTable, cell: &CoverageCell, n: u64) -> Summary {
         let mut fixed = cell.rows.clone();
         fixed.push((request.by.clone(), cell.by.clone()));
@@ -148,7 +148,7 @@ fn difference(a: Summary, b: Summary) -> Option<Difference> {
     Some(Difference { g: hedges_g(a, b), p: welch(a, b).tails.two_sided })
 }
 
-/// What the paper prints of a cell, where it prints a spread.
+/// Returns what the paper prints of a cell, where it prints a spread.
 fn printed(cell: &CoverageCell) -> Option<Summary> {
     let (mean, sd, n) = cell.published?;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count of runs")]

@@ -55,36 +55,36 @@ pub struct Effect {
 }
 
 impl Effect {
-    /// The effect (percent).
+    /// Returns the effect (percent).
     pub fn percent_moved(&self) -> Option<f64> {
         self.log_ratio.map(in_percent)
     }
 
-    /// Ends of its interval (percent).
+    /// Returns the ends of its interval (percent).
     pub fn interval_percent(&self) -> Option<(f64, f64)> {
         let interval = self.test?.interval(CONFIDENCE);
         Some((in_percent(interval.low), in_percent(interval.high)))
     }
 
-    /// ln(the paper's mean / ours at the first level): what would have to be moved.
+    /// Computes ln(the paper's mean / ours at the first level): what would have to be moved.
     pub fn log_gap(&self) -> Option<f64> {
         let (published, ours) = (self.published?, self.mean_against?);
         (published > 0.0).then(|| ln(published / ours))
     }
 
-    /// That gap (percent).
+    /// Returns that gap (percent).
     pub fn gap_percent(&self) -> Option<f64> {
         self.log_gap().map(in_percent)
     }
 
-    /// The effect as a share of that gap: 1 closes it, below 0 widens it.
+    /// Computes the effect as a share of that gap: 1 closes it, below 0 widens it.
     pub fn share_of_gap(&self) -> Option<f64> {
         let gap = self.log_gap().filter(|gap| *gap != 0.0)?;
         self.log_ratio.map(|moved| moved / gap)
     }
 }
 
-/// What a log ratio is in percent.
+/// Converts a log ratio to percent.
 fn in_percent(log_ratio: f64) -> f64 {
     100.0 * (exp(log_ratio) - 1.0)
 }
@@ -97,7 +97,7 @@ struct Group {
 }
 
 impl Findings<'_> {
-    /// Effects in the order of the request: factor, level, values of `within`, coverage.
+    /// Computes the effects in the order of the request: factor, level, values of `within`, coverage.
     pub fn effects(&self, wanted: &EffectsTable) -> Vec<Effect> {
         let mut effects = Vec::new();
         for factor in &wanted.factors {
@@ -162,7 +162,7 @@ impl Findings<'_> {
         }
     }
 
-    /// The runs of each combination of the other factors' values.
+    /// Returns the runs of each combination of the other factors' values.
     fn groups(
         &self,
         wanted: &EffectsTable,
@@ -184,7 +184,7 @@ impl Findings<'_> {
         groups
     }
 
-    /// The paper's mean for a cell; factors of one value name it too.
+    /// Returns the paper's mean for a cell; factors of one value name it too.
     fn published_mean(
         &self,
         wanted: &EffectsTable,

@@ -178,7 +178,7 @@ mod tests {
     }
 
     proptest! {
-        /// The sector is that of the angles, but for its very edges.
+        /// Checks that the sector is that of the angles, but for its very edges.
         #[test]
         fn sectors_are_angles(x in -30..=30_i32, y in -30..=30_i32, heading in -7.0..7.0_f64, degrees in 1.0..359.0_f64) {
             prop_assume!((x, y) != (0, 0));
@@ -188,7 +188,7 @@ mod tests {
             prop_assert_eq!(view(degrees).facing(heading).contains(Cell::new(x, y)), off < half);
         }
 
-        /// No heading sees more than the best one, and one that begins at a cell sees as much.
+        /// Checks that no heading sees more than the best one, and that one which begins at a cell sees as much.
         #[test]
         fn the_best_heading_is_the_best(
             cells in prop::collection::btree_set((-6..=6_i32, -6..=6_i32), 1..40), degrees in 5.0..360.0_f64,

@@ -121,7 +121,7 @@ fn nearest_to_centroid(chain: &[Cell]) -> Cell {
     nearest.copied().unwrap_or(centroid)
 }
 
-/// Returns, for every cell of the chain, the next one back to `from`; and the cell that takes the most steps.
+/// Returns for every cell of the chain the next one back to `from`, and the cell that takes the most steps.
 fn furthest(chain: &[Cell], from: Cell) -> (BTreeMap<Cell, Cell>, Cell) {
     let members: std::collections::BTreeSet<Cell> = chain.iter().copied().collect();
     let mut way_back = BTreeMap::from([(from, from)]);
@@ -218,7 +218,8 @@ mod tests {
     }
 
     proptest! {
-        /// Every frontier cell is free, reachable and next to the unknown; no cell is in two chains.
+        /// Checks that every frontier cell is free, reachable and next to the unknown, and that no cell is in two
+        /// chains.
         #[test]
         fn frontiers_are_what_the_paper_says(raw in prop::collection::vec(0_u8..6, 144)) {
             let frame = GridFrame { resolution: 0.1, origin: Point::ZERO, width: 12, height: 12 };

@@ -186,7 +186,7 @@ mod tests {
         OccupancyGrid::filled(frame, value)
     }
 
-    /// Prior: a wall at x = 1 m in the world, free elsewhere.
+    /// Returns a prior with a wall at x = 1 m in the world, free elsewhere.
     fn prior() -> OccupancyGrid {
         let mut prior = grid(Point::ZERO, Occupancy::Free);
         for y in 0..40 {
@@ -248,8 +248,8 @@ mod tests {
     }
 
     proptest! {
-        /// Sets of cells that are read by words hold what the map and the prior hold cell by cell, wherever the map's
-        /// cell (0, 0) lies on the lattice, and beyond both.
+        /// Checks that sets of cells read by words hold what the map and the prior hold cell by cell, wherever the
+        /// map's cell (0, 0) lies on the lattice, and beyond both.
         #[test]
         fn words_are_cells(
             raw in prop::collection::vec(0_u8..3, 40 * 40), x in -70..70_i32, y in -70..70_i32, px in -3.0..3.0_f64,
@@ -274,7 +274,7 @@ mod tests {
         }
     }
 
-    /// The same world seen from a start pose elsewhere and turned by a quarter.
+    /// Checks the same world seen from a start pose elsewhere and turned by a quarter.
     #[test]
     fn alignment_moves_and_turns_the_prior() {
         let start = Pose::new(2.0, 1.0, std::f64::consts::FRAC_PI_2);

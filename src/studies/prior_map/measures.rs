@@ -28,7 +28,7 @@ pub struct MeasureCell {
 }
 
 impl Findings<'_> {
-    /// The cells of a table: rows that were run, then measures.
+    /// Returns the cells of a table: rows that were run, then measures.
     pub fn measure_cells(&self, request: &MeasuresTable) -> Vec<MeasureCell> {
         let cell = |rows: &Vec<(String, String)>, measure: &String| {
             let here = self.matching(rows);
@@ -116,7 +116,7 @@ impl Layout for MeasuresTable {
             .agreement(unit, |cell| cell.agreement)
     }
 
-    /// One line a cell of the design; the measures stand side by side, the paper's in parentheses.
+    /// Sets one line a cell of the design; the measures stand side by side, the paper's in parentheses.
     fn set(&self, cells: &[MeasureCell], _: &Findings<'_>) -> Set {
         let abreast = Abreast { cells, of: self.measures.len(), label: |cell| values(&cell.rows) };
         let heads = self.rows.iter().chain(&self.measures).cloned().collect();

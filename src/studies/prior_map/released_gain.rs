@@ -126,7 +126,8 @@ mod tests {
         cells
     }
 
-    /// A door of 8 cells in a known wall lets the rays of a prior through and, inflated, none without.
+    /// Checks that a door of 8 cells in a known wall lets the rays of a prior through and, inflated, lets none through
+    /// without a prior.
     #[test]
     fn a_known_door_stops_the_baseline_and_not_the_prior() {
         let mut map = OccupancyGrid::filled(FRAME, Occupancy::Unknown);
@@ -152,8 +153,8 @@ mod tests {
         assert_eq!(cells(gain(&rays, &map, &costs, Some(&outside)).at(p)), 1, "0 becomes 1");
     }
 
-    /// The share of a disc that the rays meet: 94.5 % at 60 cells in the release, whose rays skip cells in two sectors
-    /// that ours do not.
+    /// Checks the share of a disc that the rays meet: 94.5 % at 60 cells in the release, whose rays skip cells in two
+    /// sectors that ours do not.
     #[test]
     fn rays_thin_out_with_their_length() {
         for (range, low, high) in [(60, 0.93, 0.97), (100, 0.70, 0.77), (250, 0.34, 0.39)] {
@@ -167,7 +168,8 @@ mod tests {
     }
 
     proptest! {
-        /// Every ray is a chain of neighbours that leaves none out and ends within half a cell of the range.
+        /// Checks that every ray is a chain of neighbours that leaves none out and ends within half a cell of the
+        /// range.
         #[test]
         fn rays_are_chains(range in 1..120_i32) {
             let rays = Rays::new(range);

@@ -53,7 +53,7 @@ impl CoverageCurve {
 }
 
 impl Findings<'_> {
-    /// The curves: one row at the first crossing of every whole percent and at every 10 s.
+    /// Returns the curves: one row at the first crossing of every whole percent and at every 10 s.
     pub fn series(&self) -> Table {
         let mut columns = vec!["key".to_owned()];
         columns.extend(self.factors.iter().map(|factor| factor.name.clone()));
@@ -73,14 +73,15 @@ impl Findings<'_> {
         table
     }
 
-    /// The factors in the rows of a table that its published numbers do not tell apart, choices that the paper leaves open.
+    /// Returns the factors in the rows of a table that its published numbers do not distinguish: choices that the paper
+    /// leaves open.
     pub fn readings(&self, request: &CoverageTable) -> Vec<String> {
         let published = request.published.as_ref().and_then(|name| self.published.get(name));
         let open = |factor: &&String| published.is_some_and(|table| table.column(factor).is_none());
         request.rows.iter().filter(open).cloned().collect()
     }
 
-    /// The cells of a table in the paper's order: rows, then coverage, then side by side.
+    /// Returns the cells of a table in the paper's order: rows, then coverage, then side by side.
     pub fn coverage_cells(&self, request: &CoverageTable) -> Vec<CoverageCell> {
         let mut cells = Vec::new();
         // A reading that the design does not have is no row of cells that nobody reached.
@@ -141,7 +142,7 @@ impl Findings<'_> {
         }
     }
 
-    /// A requested figure: median coverage with a band from the 10th to the 90th percentile of trials, and the
+    /// Makes a requested figure: median coverage with a band from the 10th to the 90th percentile of trials, and the
     /// paper's points where a table of the same metric has them.
     fn coverage_figure(
         &self,
@@ -216,7 +217,7 @@ impl Findings<'_> {
     }
 }
 
-/// What the paper prints, as it is compared.
+/// Returns what the paper prints, as it is compared.
 fn printed((value, sd, n): (f64, Option<f64>, Option<f64>)) -> Printed {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count of runs")]
     let n = n.map(|n| n.max(0.0) as u64);
@@ -226,7 +227,7 @@ fn printed((value, sd, n): (f64, Option<f64>, Option<f64>)) -> Printed {
 /// A curve is drawn through this many pieces.
 const SAMPLES: u32 = 120;
 
-/// Coverage of a run at `x`: what it last had, and what it ended with once it has ended.
+/// Returns the coverage of a run at `x`: what it last had, and what it ended with once it has ended.
 fn value_at(run: &[(f64, f64)], x: f64) -> f64 {
     run.iter().take_while(|p| p.0 <= x).last().map_or(0.0, |p| p.1)
 }

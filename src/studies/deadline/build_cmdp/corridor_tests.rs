@@ -26,7 +26,8 @@ fn plan(navigation: &Navigation) -> Solution {
     }
 }
 
-/// Slow everywhere when the deadline allows; else exactly the smallest share of fast edges that meets it.
+/// Checks that all is slow when the deadline allows it, and else exactly the smallest share of edges fast that meets
+/// it.
 #[test]
 fn the_expected_number_of_fast_edges_is_least() {
     for edges in [1_u32, 2, 5, 30] {
@@ -71,7 +72,7 @@ fn a_deadline_that_cannot_be_met_yields_the_fastest_plan_and_says_so() {
     }
 }
 
-/// At the knife edge itself, and within rounding of it, nothing is relaxed.
+/// Checks that nothing is relaxed at the knife edge itself, nor within rounding of it.
 #[test]
 fn the_knife_edge_belongs_to_the_feasible_side() {
     for nudge in [0.0, 1e-15, -1e-15, 1e-12, -1e-12, 1e-10, -1e-10, 1e-8] {
@@ -86,7 +87,8 @@ fn the_knife_edge_belongs_to_the_feasible_side() {
     }
 }
 
-/// Failure at most 0.2 asks for slow, time at most 25 for fast: the failure bound stays, the time gives.
+/// Checks bounds in conflict: failure at most 0.11 asks for slow, time at most 25 for fast. The failure bound stays,
+/// the time gives.
 #[test]
 fn of_two_bounds_in_conflict_the_time_gives() {
     let solution = plan(&corridor(5, 25.0, 0.11, Reading::Additive));
@@ -97,7 +99,8 @@ fn of_two_bounds_in_conflict_the_time_gives() {
     assert_eq!(solution.relaxed[0].index, TIME);
 }
 
-/// The additive bound of 0.99 cannot be met by 120 edges; by the other reading it does not bind.
+/// Checks that the additive bound of 0.99, which 120 edges cannot meet, is dropped; by the other reading it does not
+/// bind.
 #[test]
 fn a_failure_bound_that_cannot_be_met_is_dropped() {
     let solution = plan(&corridor(120, 2000.0, 0.99, Reading::Additive));
@@ -111,7 +114,7 @@ fn a_failure_bound_that_cannot_be_met_is_dropped() {
     assert!(relative(solution.primary, 1.0 - survival) < 1e-9);
 }
 
-/// Reading R on one edge: the probability of failing itself.
+/// Checks that reading R minimises the probability of failing itself, on one edge.
 #[test]
 fn reach_minimises_the_probability_of_failing() {
     let solution = plan(&corridor(1, 7.0, 0.99, Reading::Reach));

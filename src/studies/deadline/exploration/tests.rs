@@ -46,7 +46,8 @@ fn permuted(seed: u64) -> impl Fn(usize, Option<Cardinal>) -> String {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]
 
-    /// "It is easy to prove that this strategy will eventually explore the whole environment": so do the others.
+    /// Checks "It is easy to prove that this strategy will eventually explore the whole environment", and that the
+    /// others do so too.
     #[test]
     fn every_strategy_explores_everything(seed in 0_u64..1_000_000, which in 0_usize..5, start in 0_usize..8) {
         let building = without_goal(Building::random(seed, 8, 6, true));
@@ -57,7 +58,7 @@ proptest! {
         }
     }
 
-    /// ... and so finds every goal, and stops there.
+    /// Checks that every strategy therefore finds every goal, and stops there.
     #[test]
     fn every_goal_is_found_and_counts_on_arrival(seed in 0_u64..1_000_000, which in 0_usize..5) {
         let building = Building::random(seed, 8, 6, true);
@@ -67,7 +68,7 @@ proptest! {
         prop_assert_eq!(visited.iter().position(|v| *v == goal), Some(visited.len() - 1));
     }
 
-    /// Nothing depends on the names of tags.
+    /// Checks that nothing depends on the names of tags.
     #[test]
     fn permuting_ids_changes_nothing(seed in 0_u64..1_000_000, which in 0_usize..5) {
         let building = Building::random(seed, 10, 8, true);
@@ -79,7 +80,7 @@ proptest! {
         prop_assert_eq!(told(&plain), told(&permuted(seed)));
     }
 
-    /// S1 without a rule among corridors is the random strategy where rooms have one door: move for move.
+    /// Checks that S1 without a rule among corridors is the random strategy, move for move, where rooms have one door.
     #[test]
     fn uniform_corridors_first_is_random_where_rooms_have_one_door(seed in 0_u64..1_000_000) {
         let building = Building::random(seed, 9, 9, false);
@@ -90,8 +91,8 @@ proptest! {
         prop_assert_eq!(walk(&building, &uniform, start, seed), random);
     }
 
-    /// Each plan has the schedule's deadline for its number of edges, and leads from where it was made to its target, where
-    /// an unexplored edge is followed.
+    /// Checks that each plan has the schedule's deadline for its number of edges, and leads from where it was made to
+    /// its target, where an unexplored edge is followed.
     #[test]
     fn decisions_keep_algorithms_2_and_3(seed in 0_u64..1_000_000, which in 0_usize..5) {
         let building = without_goal(Building::random(seed, 10, 8, true));
@@ -120,7 +121,7 @@ proptest! {
     }
 }
 
-/// With a second door a room is worth returning to, and S1 differs from the random strategy.
+/// Checks that S1 differs from the random strategy where rooms have a second door and so are worth returning to.
 #[test]
 fn uniform_corridors_first_is_not_random_where_rooms_have_two_doors() {
     let mut uniform = rules(Strategy::CorridorsFirst);
@@ -142,8 +143,8 @@ fn the_same_seeds_give_the_same_exploration_and_others_another() {
     }
 }
 
-/// K = 3, the start counting: in a corridor of many vertices that is two moves; with a dead end beside the start three, back
-/// through it.
+/// Checks K = 3, the start counting: in a corridor of many vertices that is two moves; with a dead end beside the start
+/// three, back through it.
 #[test]
 fn the_first_moves_are_random_until_there_are_k_vertices() {
     let mut line = Building::default();
@@ -170,7 +171,7 @@ fn the_first_moves_are_random_until_there_are_k_vertices() {
     assert_eq!(moves, [2, 3].into());
 }
 
-/// The first of three exits is taken a third of the time each; five standard errors.
+/// Checks that each of three exits is taken first a third of the time, within five standard errors.
 #[test]
 fn the_first_moves_take_unexplored_edges_uniformly() {
     let mut cross = Building::default();
@@ -243,7 +244,7 @@ fn what_does_not_fit_the_map_ends_the_task_with_its_reason() {
     );
 }
 
-/// Speed where no plan covers a move: slow, fast, or by the schedule, which has 30, 15 and 9 s for an edge.
+/// Checks the speed where no plan covers a move: slow, fast, or by the schedule, which has 30, 15 and 9 s for an edge.
 #[test]
 fn unplanned_moves_have_the_speed_of_their_rule() {
     let building = without_goal(Building::office());
@@ -263,7 +264,8 @@ fn unplanned_moves_have_the_speed_of_their_rule() {
     assert!(first.is_some_and(|at_s| (500.0..600.0).contains(&at_s)) && !all, "{first:?}");
 }
 
-/// The planner changes speeds and nothing else: with the same choices, ablations visit the same vertices on a tree.
+/// Checks that the planner changes speeds and nothing else: with the same choices, ablations visit the same vertices on
+/// a tree.
 #[test]
 fn planners_are_compared_on_equal_choices() {
     let building = without_goal(Building::office());

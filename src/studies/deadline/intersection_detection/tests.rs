@@ -208,7 +208,7 @@ fn a_start_in_a_room_is_a_room() {
     assert_eq!(nowhere.look_around(), None);
 }
 
-/// a to b: kind, exits, target and arrival; the room d is never taken for the corridor's end.
+/// Checks kind, exits, target and arrival from a to b, and that the room d is never taken for the corridor's end.
 #[test]
 fn a_corridor_is_followed_to_its_next_vertex_and_its_end() {
     let mut rig = Rig::new(building(), Pose::new(0.0, 0.0, FRAC_PI_2));
@@ -252,7 +252,7 @@ fn the_target_is_where_the_far_end_is() {
     assert!(target.distance(expected) < 1e-9, "{target:?}, {expected:?}");
 }
 
-/// Frames without sight: the position is predicted by the commanded speeds, for a while.
+/// Checks that in frames without sight the position is predicted by the commanded speeds, for a while.
 #[test]
 fn a_moment_without_sight_is_bridged() {
     let mut rig = Rig::new(building(), Pose::new(0.0, 0.0, 0.0));
@@ -275,7 +275,8 @@ fn a_moment_without_sight_is_bridged() {
     assert!(rig.ids.target().is_some());
 }
 
-/// The next vertex but one is taken for the far end while that is out of view, and corrected when it is seen.
+/// Checks that the next vertex but one is taken for the far end while the next is out of view, and that this is
+/// corrected when it is seen.
 #[test]
 fn a_nearer_vertex_takes_over() {
     let mut rig = Rig::new(building(), Pose::new(3.2, 0.0, 0.0));
@@ -289,7 +290,7 @@ fn a_nearer_vertex_takes_over() {
     assert!(rig.ids.target().unwrap().distance(Point::new(1.3, 0.0)) < 1e-9, "b");
 }
 
-/// A vertex that is passed a little aside counts too: abreast, or out of view.
+/// Checks that a vertex also counts as reached when it is passed a little aside: abreast, or out of view.
 #[test]
 fn a_vertex_driven_past_is_arrived_at() {
     let mut rig = Rig::new(building(), Pose::new(0.0, 0.6, 0.0));
@@ -353,8 +354,8 @@ const TOUR: [(i64, i64); 11] = [
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
 
-    /// Whatever the noise, the missing frames and the slip, the tour visits what is there; and permuted ids change
-    /// nothing.
+    /// Checks that the tour visits what is there, whatever the noise, the missing frames and the slip, and that
+    /// permuted ids change nothing.
     #[test]
     fn a_tour_is_told_right(
         seed in 0_u64..1_000_000, blind in 0.0..0.4, slip in 0.75..1.25, sway in 0.0..0.25,

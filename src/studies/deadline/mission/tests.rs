@@ -115,7 +115,7 @@ fn a_trial_without_a_new_vertex_for_long_has_stalled() {
     assert_eq!(record.outcome, Outcome::STALLED);
 }
 
-/// An id carries no meaning but whether a tag was seen before.
+/// Checks that an id carries no meaning but whether a tag was seen before.
 #[test]
 fn permuting_the_ids_of_tags_changes_no_trial() {
     let mut renamed = building();
@@ -183,7 +183,8 @@ fn a_robot_that_cannot_feel_its_way_collides() {
     assert!(collided, "contact ends a passage");
 }
 
-/// When this fails, see docs/determinism.md, "Golden trials": raise the engine version if trials were meant to change.
+/// Checks the golden trial. When this fails, see docs/determinism.md, "Golden trials": raise the engine version if
+/// trials were meant to change.
 #[test]
 fn the_golden_trial_has_not_changed() {
     let spec = trial(building(), "A", exploration(Strategy::NormalizedFrontier, 120.0), 0);

@@ -89,7 +89,7 @@ fn programme(plan: &Plan) -> Plan {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(100))]
 
-    /// A plan without a programme is the programme's: the same policy, the same status, the same totals.
+    /// Checks that a plan without a programme is the programme's: the same policy, the same status, the same totals.
     #[test]
     fn shortcuts_are_the_programmes_policy(seed in 0_u64..1_000_000) {
         let (map, from, to, deadline_s, expectations) = some_task(seed);
@@ -104,7 +104,7 @@ proptest! {
         }
     }
 
-    /// The exported document's solution is the executed policy, to the bit.
+    /// Checks that the exported document's solution is the executed policy, to the bit.
     #[test]
     fn the_exported_model_has_the_executed_policy(seed in 0_u64..1_000_000, reach: bool) {
         let (map, from, to, deadline_s, expectations) = some_task(seed);
@@ -114,7 +114,7 @@ proptest! {
         prop_assert_eq!(disagreement(&plan, &map), None);
     }
 
-    /// Every plan arrives, whatever the draws, and takes at least as many steps as a shortest path.
+    /// Checks that every plan arrives, whatever the draws, and takes at least as many steps as a shortest path.
     #[test]
     fn a_plan_arrives(seed in 0_u64..1_000_000) {
         let (map, from, to, deadline_s, expectations) = some_task(seed);
@@ -176,7 +176,8 @@ fn disagreement(plan: &Plan, map: &ToposemanticMap) -> Option<String> {
     None
 }
 
-/// By the reading that minimises the probability of failing, where slow maneuvers never fail: an optimum of zero.
+/// Checks that the optimum is zero by the reading that minimises the probability of failing, where slow maneuvers never
+/// fail.
 #[test]
 fn a_way_that_cannot_fail_is_planned() {
     let (map, from, to, deadline_s, expectations) = some_task(189_231);
@@ -186,7 +187,7 @@ fn a_way_that_cannot_fail_is_planned() {
     assert_eq!(disagreement(&plan, &map), None);
 }
 
-/// Corridor of n equal edges: all slow while t_d allows, then as little speed as meets it, then all fast.
+/// Checks a corridor of n equal edges: all slow while t_d allows, then as little speed as meets it, then all fast.
 #[test]
 fn a_corridor_is_sped_up_as_far_as_needed() {
     let (map, from, to) = corridor(10);
@@ -232,7 +233,8 @@ fn ablations_take_the_shortest_path_at_their_speed() {
     }
 }
 
-/// P_f is a bound on a sum by default: 40 slow edges at 0.004 add up to 0.16, and a bound of 0.1 cannot be met.
+/// Checks that P_f is a bound on a sum by default: 40 slow edges at 0.004 add up to 0.16, and a bound of 0.1 cannot be
+/// met.
 #[test]
 fn a_failure_bound_that_cannot_be_met_is_dropped_and_written_so() {
     let (map, from, to) = corridor(40);

@@ -22,7 +22,7 @@ parameters!(
 );
 
 impl NormalizedFrontier {
-    /// Chooses, of several vertices with the highest value, the closer one, as the paper says; of several closest any.
+    /// Chooses the closer one of several vertices with the highest value, as the paper says; of several closest any.
     pub(super) fn choose(
         &self,
         candidates: &Candidates<'_>,

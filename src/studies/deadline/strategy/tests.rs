@@ -86,7 +86,7 @@ fn frontier_is_uniform_over_those_with_the_most_unexplored_edges() {
     assert!(is_uniform(from_the_middle, &[0, 2]), "both are one edge away: {from_the_middle:?}");
 }
 
-/// S(v) = 0.5 deg / 3 - 0.5 d / 2, from a: a 0.5, b 1/6 - 1/4, c 0.5 - 0.5, the room 1/6 - 1/2.
+/// Checks S(v) = 0.5 deg / 3 - 0.5 d / 2, from a: a 0.5, b 1/6 - 1/4, c 0.5 - 0.5, the room 1/6 - 1/2.
 #[test]
 fn normalised_frontier_is_the_papers_equation() {
     let (map, [a, b, c, r]) = map();
@@ -100,7 +100,8 @@ fn normalised_frontier_is_the_papers_equation() {
     assert_eq!(counts(&rules(Strategy::NormalizedFrontier), 3), [0, 0, 0, 3000], "1/6 where it is");
 }
 
-/// With deg only (γ = 1) it is the frontier whose ties go to the nearest; with distance only (γ = 0) the nearest.
+/// Checks the ends of γ: with deg only (γ = 1) it is the frontier whose ties go to the nearest; with distance only
+/// (γ = 0) the nearest.
 #[test]
 fn normalised_frontier_at_the_ends_of_gamma() {
     let mut rules = rules(Strategy::NormalizedFrontier);
@@ -110,8 +111,8 @@ fn normalised_frontier_at_the_ends_of_gamma() {
     assert_eq!(counts(&rules, 3), [0, 0, 0, 3000]);
 }
 
-/// "We choose a closer vertex when one or more equivalent ones are present": 3 edges 2 away are worth what 1 edge 0 away
-/// is not, but γ can make them: γ (3/3) - (1-γ) 2/2 = γ/3 gives γ = 3/5.
+/// Checks "We choose a closer vertex when one or more equivalent ones are present": 3 edges 2 away and 1 edge 0 away
+/// are worth the same where γ (3/3) - (1-γ) 2/2 = γ/3, which gives γ = 3/5.
 #[test]
 fn normalised_frontier_breaks_ties_by_distance() {
     let (map, [a, _, c, r]) = map();
@@ -124,7 +125,7 @@ fn normalised_frontier_breaks_ties_by_distance() {
     }
 }
 
-/// One candidate, where the robot stands: every distance is zero.
+/// Checks one candidate, where the robot stands: every distance is zero.
 #[test]
 fn normalised_frontier_with_all_distances_zero() {
     let mut map = ToposemanticMap::new();
@@ -169,7 +170,8 @@ fn nothing_left_is_nothing_chosen() {
     }
 }
 
-/// From the middle of the corridor c1 it goes to c1's ends although a crossing corridor is as near, and comes back from it.
+/// Checks that from the middle of the corridor c1 it goes to c1's ends although a crossing corridor is as near, and
+/// comes back from that.
 #[test]
 fn a_corridor_is_completed_before_another_begins() {
     // c1: a - b - c going east, all with a door; a second corridor goes north from b.
@@ -193,7 +195,7 @@ fn a_corridor_is_completed_before_another_begins() {
     assert_eq!(chooser.next(&map, far.0, &mut stream(3)), Some(n), "c1 is finished");
 }
 
-/// Finished when it cannot be extended: the doors of c1 are left for later.
+/// Checks that c1 is finished, by this reading, when it cannot be extended: its doors are left for later.
 #[test]
 fn a_corridor_that_cannot_be_extended_is_finished_by_the_other_reading() {
     let mut map = ToposemanticMap::new();
@@ -213,8 +215,8 @@ fn a_corridor_that_cannot_be_extended_is_finished_by_the_other_reading() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
 
-    /// Any strategy, driven through any building, only ever chooses a vertex with unexplored edges, keeps its rule, and
-    /// leaves nothing unexplored.
+    /// Checks that any strategy, driven through any building, only ever chooses a vertex with unexplored edges, keeps
+    /// its rule, and leaves nothing unexplored.
     #[test]
     fn every_choice_keeps_the_rule(seed in 0_u64..1_000_000, which in 0_usize..5) {
         let strategy = [

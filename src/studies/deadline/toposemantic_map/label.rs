@@ -122,7 +122,7 @@ mod tests {
         assert_eq!(SemanticLabel::Room { number: 12 }.to_string(), "R12");
     }
 
-    /// Figure 1: west and south are left, east and north are right.
+    /// Checks figure 1: west and south are left, east and north are right.
     #[test]
     fn sides_follow_figure_1() {
         assert_eq!(Cardinal::ALL.map(side), [Side::Right, Side::Right, Side::Left, Side::Left]);

@@ -32,7 +32,7 @@ fn labels(map: &ToposemanticMap) -> Vec<String> {
     map.ids().map(|v| map.label(v).to_string()).collect()
 }
 
-/// Figure 1a: "c1a is on the left of c1b, and c1c is on the right of c1b".
+/// Checks figure 1a: "c1a is on the left of c1b, and c1c is on the right of c1b".
 #[test]
 fn figure_1a_three_vertices_along_e_w() {
     let mut map = ToposemanticMap::new();
@@ -46,7 +46,7 @@ fn figure_1a_three_vertices_along_e_w() {
     assert_eq!(map.check(), Ok(()));
 }
 
-/// Figure 1b: "c2a on the right of c2b and c2c on the left of c2b", where north is right.
+/// Checks figure 1b: "c2a on the right of c2b and c2c on the left of c2b", where north is right.
 #[test]
 fn figure_1b_three_vertices_along_n_s() {
     let mut map = ToposemanticMap::new();
@@ -59,8 +59,8 @@ fn figure_1b_three_vertices_along_n_s() {
     assert_eq!(map.check(), Ok(()));
 }
 
-/// Figure 1c: c1a on the left of c1b, a room on the left of c1b; c2a on the right of c2b, the room to the left of c2b. A
-/// room with two doors, then: south of c1b and west of c2b.
+/// Checks figure 1c: c1a on the left of c1b, a room on the left of c1b; c2a on the right of c2b, the room to the left
+/// of c2b. The room then has two doors: south of c1b and west of c2b.
 #[test]
 fn figure_1c_corridors_and_a_room_between_them() {
     let mut map = ToposemanticMap::new();
@@ -109,7 +109,7 @@ fn a_dead_end_is_a_corridor_vertex_of_degree_one() {
     assert_eq!((map.place(end), map.label(end).to_string()), (Place::Corridor, "c1b".to_owned()));
 }
 
-/// Round a block: the last edge arrives at the first vertex and resolves its open exit too.
+/// Checks the last edge round a block: it arrives at the first vertex and resolves the open exit there too.
 #[test]
 fn a_loop_closes_at_both_ends() {
     let mut map = ToposemanticMap::new();
@@ -128,7 +128,7 @@ fn a_loop_closes_at_both_ends() {
     assert_eq!(labels(&map), ["c1a", "c1b", "c2a", "c3a"]);
 }
 
-/// The vertex tag may be out of view; any tag of the group is enough, and the others are learnt.
+/// Checks that any tag of the group is enough where the vertex tag is out of view, and that the others are learnt.
 #[test]
 fn a_vertex_is_recognised_by_any_of_its_tags() {
     let mut map = ToposemanticMap::new();
@@ -246,7 +246,7 @@ fn what_does_not_fit_is_told_and_changes_nothing() {
     );
 }
 
-/// `check` finds breaches that no operation makes.
+/// Checks that `check` finds breaches that no operation makes.
 #[test]
 fn an_inconsistent_map_is_found() {
     let mut map = ToposemanticMap::new();
@@ -294,7 +294,7 @@ fn an_inconsistent_map_is_found() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
 
-    /// Random walks through random buildings: Definition 1 holds throughout, every edge of the map is one of the
+    /// Checks random walks through random buildings: Definition 1 holds throughout, every edge of the map is one of the
     /// building, and every edge walked is explored.
     #[test]
     fn a_walk_maps_the_building(seed in 0_u64..1_000_000, corridors in 2_usize..16, rooms in 0_usize..8) {
@@ -328,7 +328,7 @@ proptest! {
         }
     }
 
-    /// Whatever is claimed, in whatever order, the map stays consistent or refuses and stays as it is.
+    /// Checks that the map stays consistent, or refuses and stays as it is, whatever is claimed in whatever order.
     #[test]
     fn nonsense_never_breaks_the_map(seed in 0_u64..1_000_000) {
         let mut stream = Seeds::new(seed, Vec::new()).stream("nonsense");

@@ -19,7 +19,7 @@ const PRINTED: [(&str, &str, [f64; 2]); 8] = [
     ("open", "bounding-box", [131.0, 223.0]),
 ];
 
-/// Fifteen trials a cell, of `value(printed)` on average with 3 % of spread; trials of `late` never reach 95 %.
+/// Returns fifteen trials a cell, of `value(printed)` on average with 3 % of spread; trials of `late` never reach 95 %.
 fn records(value: impl Fn(f64) -> f64, late: std::ops::Range<u32>) -> Vec<TrialRecord> {
     let line = format!(
         "{{\"key\":\"{}\",\"condition\":[],\"trial\":0,\"outcome\":\"explored\",\"measures\":{{}},\"series\":[],\
@@ -117,7 +117,7 @@ fn gains_agree_where_ratios_do_whatever_the_levels() {
     assert_eq!(parts.iter().map(|part| part.ratios).collect::<Vec<_>>(), [10, 2, 4, 4, 6, 4]);
 }
 
-/// Every sign is right and the score still says that the gains are not the paper's.
+/// Checks that, with every sign right, the score still says that the gains are not the paper's.
 #[test]
 fn a_strategy_with_the_right_signs_and_the_wrong_sizes_scores_badly() {
     let flat =
@@ -165,7 +165,8 @@ fn cells_are_tested_at_all_runs_and_at_the_papers_number() {
     assert_eq!(*print.value(basic, "bounding-box"), Value::from("not in the design"));
 }
 
-/// Two choices that the paper leaves open, one of which exists only under the other: three readings, each with its score.
+/// Checks two choices that the paper leaves open, one of which exists only under the other: three readings, each with
+/// its score.
 #[test]
 fn every_reading_that_was_run_has_its_own_score() {
     let mut factors = factors();

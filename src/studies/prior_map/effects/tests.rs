@@ -74,7 +74,7 @@ pub(super) fn request(factors: &[&str], within: &[&str], at: &[u32]) -> EffectsT
     }
 }
 
-/// `check` sees the findings of [`records`].
+/// Calls `check` with the findings of [`records`].
 pub(super) fn with_findings(check: impl Fn(&Findings<'_>)) {
     let (factors, records, published) = (factors(), records(), published());
     let findings = Findings::new(&factors, &records, &published);

@@ -18,7 +18,7 @@ const WHOLE: [&str; 8] = [
     "turning-rad-per-m",
 ];
 
-/// Every measure that a trial of this study can have, but for coverages at distances that a manifest asks for.
+/// Returns every measure that a trial of this study can have, but for coverages at distances that a manifest asks for.
 pub fn measures() -> Vec<String> {
     let mut names: Vec<String> = WHOLE.map(str::to_owned).to_vec();
     names.push("mean-speed-m-s".to_owned());
@@ -31,7 +31,7 @@ pub fn measures() -> Vec<String> {
     names
 }
 
-/// What the measure `name` says; `None` where trials of this study have none of that name.
+/// Returns what the measure `name` says; `None` where trials of this study have none of that name.
 pub fn measure(name: &str) -> Option<Column> {
     whole(name).or_else(|| pose_error(name)).or_else(|| at_milestone(name)).or_else(|| {
         let distance: u32 = name.split('-').rev().nth(1)?.parse().ok()?;

@@ -351,7 +351,7 @@ fn a_robot_that_estimates_its_pose_explores_where_one_that_trusts_odometry_is_lo
     assert!(!record.measures.contains_key("pose-error-m-rms"), "nothing was estimated");
 }
 
-/// The golden trial of a mind that estimates its pose, also on other threads.
+/// Checks the golden trial of a mind that estimates its pose, also on other threads.
 #[test]
 fn the_golden_estimating_trial_has_not_changed() {
     let line = || {
@@ -384,7 +384,7 @@ fn a_time_limit_and_a_walled_in_robot_are_recorded_as_such() {
     assert_eq!(record.measures["distance-m-at-95"], None);
 }
 
-/// The golden trial: its bytes are part of the determinism contract (docs/determinism.md).
+/// Checks the golden trial: its bytes are part of the determinism contract (docs/determinism.md).
 #[test]
 fn the_golden_trial_has_not_changed() {
     let line = studies::execute(&spec(0, true, Parameters::default())).to_line();

@@ -238,7 +238,7 @@ mod tests {
         assert_eq!(open_tour(&distances, 0, &[1, 2, 3]), [1, 2, 3]);
     }
 
-    /// The distance of a local optimum from the exact tour is measured, on the same 400 graphs every time; there is no
+    /// Measures the distance of a local optimum from the exact tour, on the same 400 graphs every time; there is no
     /// bound (a search among others found one 1.27 times as long as the exact tour).
     #[test]
     fn improved_tours_come_near_the_exact_ones() {
