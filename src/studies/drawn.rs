@@ -16,8 +16,8 @@ pub struct Drawn {
 }
 
 impl Drawn {
-    /// Makes the figure `title` of this `kind`, which `caption` says how to read; `words` tell what it shows, as far as more than
-    /// its title can be told.
+    /// Makes the figure `title` of this `kind`, which `caption` says how to read; `words` say what it shows beyond its
+    /// title, as far as that can be said.
     pub(super) fn new(
         (kind, title): (&str, &str),
         svg: String,

@@ -77,7 +77,7 @@ pub trait Study: Sync {
         false
     }
 
-    /// Makes what the trials of a condition need. `None` where that cannot be had, which has been told then.
+    /// Makes what the trials of a condition need. `None` where that cannot be had, which has been reported then.
     fn setup(&self, condition: &mut dyn ConditionAsWritten) -> Option<Setup>;
 }
 
@@ -106,7 +106,7 @@ pub trait ConditionAsWritten {
     /// Returns what the manifest writes as the study's parameters, for this condition.
     fn parameters(&self) -> Value;
 
-    /// Tells that those are no parameters of the study, for this `reason`.
+    /// Reports that those are no parameters of the study, for this `reason`.
     fn refuse_parameters(&mut self, reason: String);
 
     /// Returns robot, world and start.
@@ -122,7 +122,7 @@ pub trait ConditionAsWritten {
     /// Returns what follows from what the manifest's `calibration` measured.
     fn calibration(&mut self) -> Option<Expectations>;
 
-    /// Tells what is wrong or looks it.
+    /// Reports what is wrong or looks wrong.
     fn tell(&mut self, remark: Remark);
 }
 

@@ -14,7 +14,7 @@ use crate::table::Value;
 const DEADLINE: &str = "deadline-s";
 const TIME: &str = "time-s";
 
-/// Outcomes in the order in which they are stacked, the best first. Panicked trials are counted nowhere.
+/// Returns the outcomes in the order in which they are stacked, the best first. Panicked trials are counted nowhere.
 fn stack() -> Vec<(Outcome, Look)> {
     let looks = [
         (End::Success, Look::Good),
@@ -42,12 +42,12 @@ pub(in crate::studies) fn named(factor: &str, value: &str) -> String {
     format!("{} {value}", factor.replace('-', " "))
 }
 
-/// Values in words, separated by commas.
+/// Returns the values in words, separated by commas.
 fn all_named(values: &[(String, String)]) -> String {
     values.iter().map(|(f, v)| named(f, v)).collect::<Vec<_>>().join(", ")
 }
 
-/// Panels of `cells`, `abreast` rows each, in lines by the first of several factors that have rows.
+/// Returns panels of `cells`, `abreast` rows each, in lines by the first of several factors that have rows.
 fn lines<C, R>(
     cells: &[C],
     abreast: usize,

@@ -60,7 +60,7 @@ impl Effect {
         self.log_ratio.map(in_percent)
     }
 
-    /// Ends of its interval (percent).
+    /// Returns the ends of its interval (percent).
     pub fn interval_percent(&self) -> Option<(f64, f64)> {
         let interval = self.test?.interval(CONFIDENCE);
         Some((in_percent(interval.low), in_percent(interval.high)))
@@ -97,7 +97,7 @@ struct Group {
 }
 
 impl Findings<'_> {
-    /// Effects in the order of the request: factor, level, values of `within`, coverage.
+    /// Returns the effects in the order of the request: factor, level, values of `within`, coverage.
     pub fn effects(&self, wanted: &EffectsTable) -> Vec<Effect> {
         let mut effects = Vec::new();
         for factor in &wanted.factors {

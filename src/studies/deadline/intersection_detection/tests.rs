@@ -252,7 +252,7 @@ fn the_target_is_where_the_far_end_is() {
     assert!(target.distance(expected) < 1e-9, "{target:?}, {expected:?}");
 }
 
-/// Frames without sight: the position is predicted by the commanded speeds, for a while.
+/// Checks frames without sight: the position is predicted by the commanded speeds, for a while.
 #[test]
 fn a_moment_without_sight_is_bridged() {
     let mut rig = Rig::new(building(), Pose::new(0.0, 0.0, 0.0));
