@@ -5,77 +5,77 @@
 
 use std::f64::consts::{PI, TAU};
 
-/// Sine of `x` (rad).
+/// Returns the sine of `x` (rad).
 pub fn sin(x: f64) -> f64 {
     libm::sin(x)
 }
 
-/// Cosine of `x` (rad).
+/// Returns the cosine of `x` (rad).
 pub fn cos(x: f64) -> f64 {
     libm::cos(x)
 }
 
-/// Sine and cosine of `x` (rad).
+/// Returns the sine and cosine of `x` (rad).
 pub fn sin_cos(x: f64) -> (f64, f64) {
     libm::sincos(x)
 }
 
-/// Tangent of `x` (rad).
+/// Returns the tangent of `x` (rad).
 pub fn tan(x: f64) -> f64 {
     libm::tan(x)
 }
 
-/// Angle (rad) of the vector (`x`, `y`), in (-π, π].
+/// Returns the angle (rad) of the vector (`x`, `y`), in (-π, π].
 pub fn atan2(y: f64, x: f64) -> f64 {
     libm::atan2(y, x)
 }
 
-/// Arc cosine (rad); NaN outside [-1, 1].
+/// Returns the arc cosine (rad); NaN outside [-1, 1].
 pub fn acos(x: f64) -> f64 {
     libm::acos(x)
 }
 
-/// Arc sine (rad); NaN outside [-1, 1].
+/// Returns the arc sine (rad); NaN outside [-1, 1].
 pub fn asin(x: f64) -> f64 {
     libm::asin(x)
 }
 
-/// Natural exponential.
+/// Returns the natural exponential.
 pub fn exp(x: f64) -> f64 {
     libm::exp(x)
 }
 
-/// Natural logarithm.
+/// Returns the natural logarithm.
 pub fn ln(x: f64) -> f64 {
     libm::log(x)
 }
 
-/// Natural logarithm of 1 + `x`, accurate for small `x`.
+/// Returns the natural logarithm of 1 + `x`, accurate for small `x`.
 pub fn ln_1p(x: f64) -> f64 {
     libm::log1p(x)
 }
 
-/// Exponential minus one, accurate for small `x`.
+/// Returns the exponential minus one, accurate for small `x`.
 pub fn exp_m1(x: f64) -> f64 {
     libm::expm1(x)
 }
 
-/// Decimal logarithm.
+/// Returns the decimal logarithm.
 pub fn log10(x: f64) -> f64 {
     libm::log10(x)
 }
 
-/// `x` to the power `y`.
+/// Returns `x` to the power `y`.
 pub fn pow(x: f64, y: f64) -> f64 {
     libm::pow(x, y)
 }
 
-/// Length of the vector (`x`, `y`) without undue overflow.
+/// Returns the length of the vector (`x`, `y`) without undue overflow.
 pub fn hypot(x: f64, y: f64) -> f64 {
     libm::hypot(x, y)
 }
 
-/// The equivalent angle in (-π, π].
+/// Returns the equivalent angle in (-π, π].
 pub fn wrap_angle(angle: f64) -> f64 {
     if angle > -PI && angle <= PI {
         return angle;

@@ -164,7 +164,7 @@ mod tests {
         assert_eq!(lazy.at(7).normal().to_bits(), eager.at(7).normal().to_bits());
     }
 
-    /// Pinned numbers: a change here changes every trial, so the engine version must be raised with it.
+    /// Checks the pinned numbers: a change here changes every trial, so the engine version must be raised with it.
     #[test]
     fn the_algorithm_is_pinned() {
         let mut stream = seeds(0).stream("pin");

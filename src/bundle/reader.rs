@@ -99,7 +99,7 @@ impl Bundle {
             }
         }
         if faults.is_empty() {
-            // What is no input is told at level 3, where the whole document is derived again.
+            // What is no input is reported at level 3, where the whole document is derived again.
             let inputs = resolved.study.inputs.read().unwrap_or_default();
             let study_inputs = inputs.iter().filter_map(|input| input.read().ok()).collect();
             Ok(Self { form, tree, resolved, study_inputs })

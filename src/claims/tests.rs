@@ -32,7 +32,7 @@ const TABLE_1: [(&str, i64, [u64; 5]); 12] = [
     ("C", 563, [0, 25, 17, 23, 10]),
 ];
 
-/// A trials table with `successes` of `trials` per cell of Table 1's design.
+/// Returns a trials table with `successes` of `trials` per cell of Table 1's design.
 fn deadline_trials(trials: u64, successes: impl Fn(usize, usize) -> u64) -> Table {
     let mut table =
         Table::new(["key", "start", "deadline-s", "strategy", "trial", "outcome", "time-s"]);
@@ -63,7 +63,7 @@ fn as_printed() -> Table {
     deadline_trials(50, |i, j| TABLE_1[i].2[j])
 }
 
-/// The published table beside the manifest: percent, with runs.
+/// Returns the published table beside the manifest: percent, with runs.
 fn published() -> BTreeMap<String, Table> {
     let mut table = Table::new(["start", "deadline-s", "strategy", "value", "n"]);
     for (start, deadline, row) in TABLE_1 {
@@ -222,8 +222,8 @@ fn claims_that_the_papers_table_does_not_bear_out() {
     );
 }
 
-/// Five guessed constants score a rank correlation of .77 and an RMSE of 10.2 points on the paper's Table 1, so
-/// neither alone shows anything; the skill and the contrasts beside them say so.
+/// Checks what five guessed constants score on the paper's Table 1: a rank correlation of .77 and an RMSE of 10.2
+/// points, so neither alone shows anything; the skill and the contrasts beside them say so.
 #[test]
 fn guessed_constants_agree_with_the_paper_but_have_no_contrasts() {
     let guess = deadline_trials(20, |i, j| match (TABLE_1[i].0, i % 4, j) {
@@ -254,14 +254,14 @@ fn guessed_constants_agree_with_the_paper_but_have_no_contrasts() {
     assert!(itself.comparisons[0].effect.as_ref().unwrap().value < 1e-15);
 }
 
-/// Values with exactly this mean and standard deviation.
+/// Returns values with exactly this mean and standard deviation.
 fn printed(n: u32, mean: f64, sd: f64) -> Vec<f64> {
     let raw: Vec<f64> = (0..n).map(f64::from).collect();
     let shape = crate::stats::summary::Summary::of(&raw);
     raw.iter().map(|x| mean + (x - shape.mean) / shape.sd * sd).collect()
 }
 
-/// Trials of the basic environment, unfurnished, at 80 % (prior-knowledge study, Table 1).
+/// Returns trials of the basic environment, unfurnished, at 80 % (prior-knowledge study, Table 1).
 fn prior_trials() -> Table {
     let mut table = Table::new(["key", "prior", "trial", "outcome", "distance-m-at-80"]);
     for (prior, mean, sd) in [

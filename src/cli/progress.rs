@@ -185,7 +185,7 @@ impl Observer for Progress {
                         Some(label) => format!("{label}: {heading}"),
                         None => heading,
                     };
-                    // The bar's own way to print fills the line with spaces and lets the terminal wrap it.
+                    // The bar's own printing fills the line with spaces and lets the terminal wrap it.
                     let heading = wrapped(&heading, 0, self.terminal.columns());
                     self.bar.suspend(|| self.terminal.note(&heading));
                 }

@@ -111,8 +111,8 @@ mod tests {
         }
     }
 
-    /// One state between a start and the goal that is left with probability 1e-13 only: 1 - P(x, x) would
-    /// have lost four digits.
+    /// Checks one state between a start and the goal that is left with probability 1e-13 only: 1 - P(x, x) would have
+    /// lost four digits.
     #[test]
     fn hardly_leaving_a_state_costs_no_accuracy() {
         let p = 1e-13;

@@ -141,7 +141,7 @@ fn secondary(builder: &mut CmdpBuilder, k: usize, value: &Value) -> Result<(), D
     Ok(())
 }
 
-/// The answer as one line of JSON.
+/// Writes the answer as one line of JSON.
 pub fn write(cmdp: &Cmdp, outcome: &Outcome) -> String {
     let Outcome::Optimal(solution) = outcome else {
         return r#"{"status":"infeasible","primary":null,"secondary":[],"policy":[]}"#.to_owned();
@@ -160,8 +160,8 @@ pub fn write(cmdp: &Cmdp, outcome: &Outcome) -> String {
     )
 }
 
-/// The model as a document that [`read`] takes, with names for its states and actions: one line of JSON. The names
-/// are for people.
+/// Writes the model as a document that [`read`] takes, with names for its states and actions: one line of JSON. The
+/// names are for people.
 ///
 /// # Panics
 /// Where there is not one name per state and per action.
@@ -209,7 +209,7 @@ fn entry(place: String, error: &EntryError) -> DocumentError {
     malformed(place, error.to_string())
 }
 
-/// What a JSON value is, in words, without repeating a hostile amount of it.
+/// Says what a JSON value is, in words, without repeating a hostile amount of it.
 fn kind(value: &Value) -> String {
     match value {
         Value::Null => "null".to_owned(),
@@ -221,7 +221,7 @@ fn kind(value: &Value) -> String {
     }
 }
 
-/// `object[key]`, which must exist.
+/// Returns `object[key]`, which must exist.
 fn member<'a>(
     object: &'a Map<String, Value>,
     place: &str,
@@ -248,7 +248,7 @@ fn list<'a>(
     }
 }
 
-/// How many names the list `key` has.
+/// Counts the names in the list `key`.
 fn names(root: &Map<String, Value>, key: &str) -> Result<usize, DocumentError> {
     let items = list(root, "", key)?;
     for (i, item) in items.iter().enumerate() {
@@ -283,7 +283,7 @@ fn number(value: &Value) -> Result<f64, Unfit> {
     value.as_f64().ok_or_else(|| Unfit::new("a number", value))
 }
 
-/// A row of N indices and a number; `shape` names its elements.
+/// Reads a row of N indices and a number; `shape` names its elements.
 fn row<const N: usize>(value: &Value, shape: &str) -> Result<([usize; N], f64), Unfit> {
     let Value::Array(items) = value else {
         return Err(Unfit::new(shape, value));

@@ -309,7 +309,7 @@ fn interior_or_nothing(
     (programme.flow_rows > 0).then(|| interior(programme))
 }
 
-/// Returns, per criterion, the cost of each pair of the model.
+/// Returns the cost of each pair of the model per criterion.
 fn model_criteria(cmdp: &Cmdp) -> Vec<Vec<f64>> {
     (0..=cmdp.secondary().len())
         .map(|k| cmdp.pairs().iter().map(|pair| pair.costs[k]).collect())

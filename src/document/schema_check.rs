@@ -181,7 +181,7 @@ impl<'s> Checker<'s> {
         }
     }
 
-    /// Names of all properties that `schema` or any of its alternatives knows.
+    /// Collects the names of all properties that `schema` or any of its alternatives knows.
     fn property_names(&self, schema: &'s Value, names: &mut BTreeSet<&'s str>) {
         let schema = self.resolve(schema);
         if let Some(own) = schema.get("properties").and_then(Value::as_object) {
@@ -286,7 +286,7 @@ fn check_range(schema: &Value, spot: &Spot<'_>, faults: &mut Faults) {
         Some("int32") => Some((f64::from(i32::MIN), f64::from(i32::MAX))),
         _ => None,
     };
-    // What the number's width forbids is told only where it is what was violated.
+    // What the number's width forbids is named only where it is what was violated.
     let least = bound("minimum").or(format_bounds.map(|b| b.0).filter(|&b| value < b));
     let most = bound("maximum").or(format_bounds.map(|b| b.1).filter(|&b| value > b));
     let (above, below) = (bound("exclusiveMinimum"), bound("exclusiveMaximum"));

@@ -174,7 +174,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     proptest! {
-        /// Along rows and along columns, runs hold the set's own members.
+        /// Checks that along rows and along columns, runs hold the set's own members.
         #[test]
         fn runs_tell_members(
             cells in prop::collection::btree_set((-90..=90_i32, -70..=70_i32), 0..200),

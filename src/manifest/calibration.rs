@@ -60,8 +60,8 @@ impl Resolver<'_> {
         }
     }
 
-    /// The experiment that the manifest `path`, written at `pointer`, describes. It and all that it reads are inputs, too:
-    /// whoever doubts the pairs can measure them again.
+    /// Returns the experiment that the manifest `path`, written at `pointer`, describes. It and all that it reads are
+    /// inputs, too: whoever doubts the pairs can measure them again.
     fn calibration_experiment(&mut self, path: &str, pointer: &str) -> Option<Experiment> {
         let source = self.text(path, pointer, InputKind::Calibration)?;
         let written_in = self.faults.written_in(pointer);
@@ -128,7 +128,7 @@ struct OfCalibration<'f, 'a> {
 }
 
 impl<'f, 'a> OfCalibration<'f, 'a> {
-    /// Files beside `manifest`, which is [`normalised`] and was written in `written_in`.
+    /// Creates the files beside `manifest`, which is [`normalised`] and was written in `written_in`.
     fn new(library: &'f mut Library<'a>, manifest: &str, written_in: WrittenIn) -> Self {
         Self { library: RefCell::new(library), manifest: manifest.to_owned(), written_in }
     }

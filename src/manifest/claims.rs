@@ -10,7 +10,7 @@ use crate::studies::StudyKind;
 /// Collects every fault of the claims.
 pub(super) fn check(resolver: &mut Resolver<'_>, conditions: &[ResolvedCondition]) {
     let doc = resolver.doc;
-    // Those that cannot be read have been told.
+    // Faults of those that cannot be read have been collected.
     let published: Vec<String> = doc.published.keys().cloned().collect();
     let mut metrics = measures(doc.study);
     for ResolvedCondition { setup, .. } in conditions {
@@ -41,7 +41,7 @@ pub(super) fn check(resolver: &mut Resolver<'_>, conditions: &[ResolvedCondition
     }
 }
 
-/// `pointer` without the numbers of items where one thing is written and no list of them.
+/// Returns `pointer` without the numbers of items where one thing is written and no list of them.
 fn as_written(tree: &Tree, pointer: &str) -> String {
     let mut found = String::new();
     for part in pointer.split('/').skip(1) {
@@ -56,7 +56,7 @@ fn as_written(tree: &Tree, pointer: &str) -> String {
     found
 }
 
-/// What a claim or table of a study may speak of: success, outcomes and the columns of `results/trials.csv`.
+/// Returns what a claim or table of a study may speak of: success, outcomes and the columns of `results/trials.csv`.
 pub(super) fn measures(kind: StudyKind) -> Vec<String> {
     let outcomes = kind.outcomes().iter().map(|outcome| format!("outcome:{}", outcome.name()));
     let mut names: Vec<String> = std::iter::once("success".to_owned()).chain(outcomes).collect();

@@ -21,7 +21,7 @@ const MOST_EXCLUSIONS: usize = 1000;
 /// Columns of tables that no factor may be named after.
 const RESERVED: [&str; 7] = ["key", "trial", "outcome", "coverage-percent", "value", "sd", "n"];
 
-/// The factors of `doc` and its conditions, last factor fastest, those of `include` at the end.
+/// Crosses the factors of `doc`: returns them and the conditions, last factor fastest, those of `include` at the end.
 pub(super) fn cross(doc: &ManifestDoc, faults: &mut Faults<'_>) -> (Vec<Factor>, Vec<Condition>) {
     let mut factors: Vec<Factor> = Vec::new();
     let mut cells = vec![Condition(Vec::new())];
@@ -92,7 +92,7 @@ pub(super) fn cross(doc: &ManifestDoc, faults: &mut Faults<'_>) -> (Vec<Factor>,
     if cells.is_empty() {
         faults.at_key("/exclude", "no condition is left", "everything is excluded");
     }
-    // Values written twice have been told.
+    // Faults of values written twice have been collected.
     let mut seen = BTreeSet::new();
     cells.retain(|cell| seen.insert(cell.clone()));
     let mut slugs: BTreeMap<String, &Condition> = BTreeMap::new();
@@ -126,7 +126,7 @@ fn check_name(name: &str, pointer: &str, faults: &mut Faults<'_>) {
     }
 }
 
-/// Faults of a partial condition in `include` or `exclude`; whether there was none.
+/// Collects the faults of a partial condition in `include` or `exclude`; returns whether there was none.
 fn check_cell(
     cell: &BTreeMap<String, FactorValue>,
     factors: &[Factor],

@@ -162,7 +162,7 @@ pub struct PublishedFile {
 }
 
 impl PublishedDoc {
-    /// The file's path as written.
+    /// Returns the file's path as written.
     pub fn path(&self) -> &str {
         match self {
             Self::Path(path) => path,
@@ -170,7 +170,7 @@ impl PublishedDoc {
         }
     }
 
-    /// Factors that the paper did not vary.
+    /// Returns the factors that the paper did not vary.
     pub fn for_all(&self) -> &[String] {
         match self {
             Self::Path(_) => &[],

@@ -124,7 +124,7 @@ pub struct Meanings {
 }
 
 impl Experiment {
-    /// The cells of the design and what their trials need, in crossed order.
+    /// Returns the cells of the design and what their trials need, in crossed order.
     pub fn design(&self) -> impl Iterator<Item = (&Condition, &Setup)> + Clone {
         self.conditions.iter().map(|resolved| (&resolved.condition, &resolved.setup))
     }

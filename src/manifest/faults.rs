@@ -22,7 +22,7 @@ impl<'a> Faults<'a> {
         Self { tree, list: FaultList::default(), known: BTreeSet::new() }
     }
 
-    /// An error at the value that `pointer` names, not yet collected.
+    /// Makes an error at the value that `pointer` names, not yet collected.
     pub(super) fn fault(&self, pointer: &str, message: impl Into<String>) -> Diagnostic {
         if self.is_full() {
             return Diagnostic::placeless(message);
@@ -30,7 +30,7 @@ impl<'a> Faults<'a> {
         self.tree.fault(self.tree.place(pointer), message)
     }
 
-    /// An error at the key of the value that `pointer` names, not yet collected.
+    /// Makes an error at the key of the value that `pointer` names, not yet collected.
     pub(super) fn key_fault(&self, pointer: &str, message: impl Into<String>) -> Diagnostic {
         if self.is_full() {
             return Diagnostic::placeless(message);
@@ -60,7 +60,7 @@ impl<'a> Faults<'a> {
         self.push(fault.warning());
     }
 
-    /// Collects a fault; conditions that share one share its telling.
+    /// Collects a fault; one that several conditions share is kept once.
     pub(super) fn push(&mut self, fault: Diagnostic) {
         let place =
             fault.place.as_ref().map(|(source, span)| (Arc::clone(&source.name), span.start));
@@ -69,7 +69,8 @@ impl<'a> Faults<'a> {
         }
     }
 
-    /// Whether a further error is only counted: to look for its place and for what was meant takes longer than all the rest.
+    /// Returns whether a further error is only counted: to look for its place and for what was meant takes longer than
+    /// all the rest.
     pub(super) fn is_full(&self) -> bool {
         self.list.is_full(Severity::Error)
     }
@@ -80,7 +81,7 @@ impl<'a> Faults<'a> {
         }
     }
 
-    /// What a path at `pointer` is relative to.
+    /// Returns what a path at `pointer` is relative to.
     pub(super) fn written_in(&self, pointer: &str) -> WrittenIn {
         match self.tree.place(pointer).source {
             0 => WrittenIn::Manifest,
@@ -92,7 +93,7 @@ impl<'a> Faults<'a> {
         self.list.any_error()
     }
 
-    /// All faults: those of the manifest in its order, then those of other files.
+    /// Returns all faults: those of the manifest in its order, then those of other files.
     pub(super) fn finish(self) -> Vec<Diagnostic> {
         let mut list = self.list.finish();
         let rank = |fault: &Diagnostic| {
@@ -107,7 +108,7 @@ impl<'a> Faults<'a> {
     }
 }
 
-/// `pointer` one step further, as RFC 6901 writes it.
+/// Returns `pointer` one step further, as RFC 6901 writes it.
 pub(super) fn step(pointer: &str, key: &str) -> String {
     format!("{pointer}/{}", key.replace('~', "~0").replace('/', "~1"))
 }

@@ -9,7 +9,7 @@ use crate::studies::{FigureLayout, Outcome, PublishedScatter, TableLayout};
 use crate::table::Table;
 use std::collections::BTreeMap;
 
-/// Faults of the requests for figures.
+/// Collects the faults of the requests for figures.
 pub(super) fn check_figures(
     doc: &ManifestDoc,
     factors: &[Factor],

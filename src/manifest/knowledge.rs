@@ -27,7 +27,7 @@ pub(super) enum Knowledge {
 }
 
 impl Knowledge {
-    /// The map, where it is one.
+    /// Returns the map, where it is one.
     pub(super) fn map(&self) -> Option<&UsedPrior> {
         match self {
             Self::Map(map) => Some(map),
@@ -35,7 +35,7 @@ impl Knowledge {
         }
     }
 
-    /// The graph, where it is one.
+    /// Returns the graph, where it is one.
     pub(super) fn topo_metric_map(&self) -> Option<Arc<TopoMetricMap>> {
         match self {
             Self::Map(_) => None,
@@ -43,7 +43,7 @@ impl Knowledge {
         }
     }
 
-    /// Digest of what it means.
+    /// Returns the digest of what it means.
     pub(super) fn meaning(&self) -> MeaningDigest {
         match self {
             Self::Map(map) => map.meaning,
@@ -51,7 +51,7 @@ impl Knowledge {
         }
     }
 
-    /// What it was resolved from.
+    /// Returns what it was resolved from.
     pub(super) fn described(&self) -> Value {
         match self {
             Self::Map(map) => map.described.clone(),
@@ -83,7 +83,7 @@ pub(super) struct Exploration<'a> {
     pub(super) parameters: &'a Parameters,
 }
 
-/// `grid` at `frame`, its unknown cells as `unknown` says, and what that means.
+/// Returns `grid` at `frame`, its unknown cells as `unknown` says, and the digest of what that means.
 pub(super) fn read_as(
     grid: &OccupancyGrid,
     frame: GridFrame,
@@ -104,7 +104,7 @@ pub(super) fn read_as(
     (Arc::new(grid), meaning)
 }
 
-/// Digest of where a grid lies and what it holds.
+/// Computes the digest of where a grid lies and what it holds.
 pub(super) fn meaning(grid: &OccupancyGrid) -> MeaningDigest {
     let mut hasher = Hasher::new();
     hasher.update(b"reenact-grid-1\0").update(json::canonical_of(grid.frame())).update([0]);

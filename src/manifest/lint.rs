@@ -69,7 +69,7 @@ fn spot(point: Point) -> String {
     format!("({:.2}, {:.2}) m", point.x, point.y)
 }
 
-/// Values that look as if they were written in another unit, by the unit in their key.
+/// Warns of values that look as if they were written in another unit, by the unit in their key.
 fn units(parameters: &Value, faults: &mut Faults<'_>) {
     for (group, values) in parameters.as_object().into_iter().flatten() {
         for (key, value) in values.as_object().into_iter().flatten() {
@@ -95,7 +95,7 @@ fn units(parameters: &Value, faults: &mut Faults<'_>) {
     }
 }
 
-/// Tells where a prior map must be resampled to the robot's `map` (m).
+/// Reports where a prior map must be resampled to the robot's `map` (m).
 pub(super) fn resolution(map: f64, prior: &UsedPrior, faults: &mut Faults<'_>) {
     let own = prior.grid.frame().resolution;
     if own != map {
@@ -154,7 +154,7 @@ fn share(points: &[Point], holds: impl Fn(Point) -> bool) -> f64 {
     share
 }
 
-/// Whether the grid has an occupied cell within reach of `point`.
+/// Returns whether the grid has an occupied cell within reach of `point`.
 fn near(grid: &OccupancyGrid, point: Point) -> bool {
     let resolution = grid.frame().resolution;
     #[expect(clippy::cast_possible_truncation, reason = "a few cells")]
@@ -169,7 +169,7 @@ fn near(grid: &OccupancyGrid, point: Point) -> bool {
     })
 }
 
-/// Points along the outlines, `spacing` m apart.
+/// Returns points along the outlines, `spacing` m apart.
 fn along(outlines: &[Outline], spacing: f64) -> Vec<Point> {
     let mut points = Vec::new();
     for outline in outlines {

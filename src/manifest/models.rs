@@ -26,7 +26,7 @@ pub(super) struct Shelf<'r, 'a> {
 }
 
 impl Shelf<'_, '_> {
-    /// The path of the file that `uri` names.
+    /// Returns the path of the file that `uri` names.
     fn path_of(&self, uri: &str) -> Result<(String, WrittenIn), Unplaced> {
         Ok(match mesh_path(uri, &self.doc.models)? {
             MeshPath::Model(path) => (normalised(&path), self.folders),
@@ -61,7 +61,8 @@ impl Shelf<'_, '_> {
 }
 
 impl Resolver<'_> {
-    /// What the manifest knows of the meshes of `doc`, written at `pointer`; faults of its stand-ins. The world is at `world`.
+    /// Returns what the manifest knows of the meshes of `doc`, written at `pointer`, and collects the faults of its
+    /// stand-ins. The world is at `world`.
     pub(super) fn stand_ins<'d>(
         &mut self,
         doc: &'d WorldFile,
@@ -80,7 +81,7 @@ impl Resolver<'_> {
         stand_ins
     }
 
-    /// Faults and warnings of what `shelf` had to hand over for the world at `pointer`.
+    /// Collects the faults and warnings of what `shelf` had to hand over for the world at `pointer`.
     pub(super) fn told_by(&mut self, told: Told, doc: &WorldFile, pointer: &str) {
         for problem in told.unpinned {
             self.faults.at(&format!("{pointer}/file"), problem, "named by this world");

@@ -6,7 +6,7 @@ use crate::factor::Factor;
 use crate::studies::FactorValue;
 use std::collections::BTreeSet;
 
-/// A name like `name` that [`is_kebab`], to suggest.
+/// Suggests a name like `name` that [`is_kebab`].
 pub(super) fn kebab(name: &str) -> String {
     let lower = name.to_ascii_lowercase();
     let parts: Vec<&str> =
@@ -14,7 +14,7 @@ pub(super) fn kebab(name: &str) -> String {
     if parts.is_empty() { "a-name".to_owned() } else { parts.join("-") }
 }
 
-/// Whether `name` is of lower-case letters, digits and single hyphens between them.
+/// Returns whether `name` is of lower-case letters, digits and single hyphens between them.
 pub(super) fn is_kebab(name: &str) -> bool {
     name.split('-').all(|part| {
         !part.is_empty() && part.bytes().all(|b| b.is_ascii_lowercase() || b.is_ascii_digit())
@@ -22,7 +22,7 @@ pub(super) fn is_kebab(name: &str) -> bool {
 }
 
 impl Faults<'_> {
-    /// What may have been meant by `word`, for a fault that is told.
+    /// Returns what may have been meant by `word`, for a fault that is kept.
     pub(super) fn near(&self, word: &str, known: &[&str]) -> String {
         if self.is_full() { String::new() } else { known_or_near(word, known) }
     }
@@ -53,7 +53,7 @@ impl Faults<'_> {
         self.push(fault);
     }
 
-    /// Whether `value` is one of the factor `name`; a fault at `pointer` where it is not.
+    /// Returns whether `value` is one of the factor `name`; collects a fault at `pointer` where it is not.
     pub(super) fn check_level(
         &mut self,
         factors: &[Factor],
@@ -71,7 +71,7 @@ impl Faults<'_> {
         false
     }
 
-    /// The factor `name`; a fault at `pointer` (or its key) where there is none.
+    /// Returns the factor `name`; collects a fault at `pointer` (or its key) where there is none.
     pub(super) fn check_factor<'f>(
         &mut self,
         factors: &'f [Factor],
@@ -89,8 +89,8 @@ impl Faults<'_> {
         found
     }
 
-    /// Faults of a `values` mapping at `pointer` whose keys should be those of `factor`: all of them where it is to be
-    /// `complete`.
+    /// Collects the faults of a `values` mapping at `pointer` whose keys should be those of `factor`: all of them where
+    /// it is to be `complete`.
     pub(super) fn check_levels<'k>(
         &mut self,
         keys: impl IntoIterator<Item = &'k String>,

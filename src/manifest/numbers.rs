@@ -7,8 +7,8 @@ use crate::studies::StudyKind;
 use crate::table::{Table, Value};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Columns of a tidy CSV of published numbers besides the factors', and whether each must be there: tables of the prior-map
-/// study are by coverage, or by measure.
+/// Returns the columns of a tidy CSV of published numbers besides the factors', and whether each must be there: tables
+/// of the prior-map study are by coverage, or by measure.
 fn columns(kind: StudyKind, by_measure: bool) -> [(&'static str, bool); 5] {
     let by_coverage = kind.has_series() && !by_measure;
     [
@@ -130,7 +130,7 @@ pub(super) fn read(
     fine.then_some(table)
 }
 
-/// Bytes of the one-based line `number`.
+/// Returns the bytes of the one-based line `number`.
 fn line(source: &Source, number: usize) -> std::ops::Range<usize> {
     let start = source
         .text

@@ -12,7 +12,7 @@ use std::borrow::Cow;
 #[serde(transparent)]
 pub struct ParametersDoc(pub Map<String, Value>);
 
-/// Whether this is a value in one of the ways that [`Wrapped`] knows, not a group of parameters.
+/// Returns whether this is a value in one of the forms that [`Wrapped`] knows, not a group of parameters.
 pub(super) fn is_wrapped(node: &Node) -> bool {
     ["value", "factor", "by"].iter().any(|key| node.get(key).is_some())
 }
@@ -49,14 +49,14 @@ pub(super) enum WrappedValue<'a> {
 }
 
 impl ParametersDoc {
-    /// All values that are not plain, in the order of their pointers.
+    /// Returns all values that are not plain, in the order of their pointers.
     pub(super) fn wrapped(&self, kind: StudyKind) -> Vec<Wrapped<'_>> {
         let mut found = Vec::new();
         collect(&self.0, &groups(kind), "/parameters", &mut found);
         found
     }
 
-    /// The parameters for one condition: wrapped values taken out by `value_of` (factor to its value).
+    /// Returns the parameters for one condition: wrapped values taken out by `value_of` (factor to its value).
     pub(super) fn for_condition<'c>(
         &self,
         kind: StudyKind,
@@ -66,7 +66,7 @@ impl ParametersDoc {
     }
 }
 
-/// The parameters' tree of groups: what is an object in the defaults is a group, the rest are values.
+/// Returns the parameters' tree of groups: what is an object in the defaults is a group, the rest are values.
 fn groups(kind: StudyKind) -> Map<String, Value> {
     match kind.defaults() {
         Value::Object(groups) => groups,
@@ -132,7 +132,7 @@ fn unwrap_all<'c>(
     plain
 }
 
-/// A factor's value as a parameter takes it: a number, `true` or `false` where it reads as one, else text.
+/// Reads a factor's value as a parameter takes it: a number, `true` or `false` where it reads as one, else text.
 fn level_as_written(level: &str) -> Value {
     match serde_json::from_str(level) {
         Ok(value @ (Value::Number(_) | Value::Bool(_))) => value,
@@ -145,7 +145,7 @@ impl JsonSchema for ParametersDoc {
         "Parameters".into()
     }
 
-    /// Those of any study: `manifest::schema` puts those of one in their place.
+    /// Returns the schema of any study's parameters: `manifest::schema` puts those of one in their place.
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         let mut schema = Schema::default();
         schema.insert("anyOf".to_owned(), StudyKind::all().map(schema_of).collect());
@@ -153,7 +153,7 @@ impl JsonSchema for ParametersDoc {
     }
 }
 
-/// The schema of the parameters of one study as manifests write them.
+/// Returns the schema of the parameters of one study as manifests write them.
 pub(super) fn schema_of(kind: StudyKind) -> Value {
     // Inlined, because its groups differ from the study's own schemas in what their values may be.
     let settings = schemars::generate::SchemaSettings::draft2020_12().for_deserialize();

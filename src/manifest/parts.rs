@@ -23,7 +23,7 @@ pub(super) struct Parts {
 }
 
 impl Resolver<'_> {
-    /// Returns the parts of `condition`, where all could be had; those that could not have been told.
+    /// Returns the parts of `condition`, where all could be had; the faults of those that could not are collected.
     pub(super) fn parts(&mut self, condition: &Condition) -> Option<Parts> {
         let doc = self.doc;
         let robot = self.choose(&doc.robot, "/robot", condition);
@@ -57,7 +57,7 @@ impl Resolver<'_> {
         self.start_written(start, &pointer, world, condition)
     }
 
-    /// The start that `start`, written at `pointer`, is in `world`.
+    /// Returns the start that `start`, written at `pointer`, is in `world`.
     pub(super) fn start_written(
         &mut self,
         start: &StartDoc,

@@ -83,7 +83,7 @@ fn image_beside([_, image]: &[String; 2]) -> String {
     image.rsplit('/').next().unwrap_or_default().to_owned()
 }
 
-/// Every previous map of `doc` and where it is written.
+/// Returns every previous map of `doc` and where it is written.
 fn all(doc: &ManifestDoc) -> Vec<(String, &PreviousMapDoc)> {
     fn collect<'d>(
         choice: &'d Choice<PriorDoc>,
@@ -109,7 +109,7 @@ fn all(doc: &ManifestDoc) -> Vec<(String, &PreviousMapDoc)> {
     found
 }
 
-/// The prior maps that earlier explorations start from, and where they are named.
+/// Returns the prior maps that earlier explorations start from, and where they are named.
 pub(super) fn priors_then(doc: &ManifestDoc) -> Vec<(String, &str)> {
     all(doc)
         .into_iter()
@@ -117,7 +117,7 @@ pub(super) fn priors_then(doc: &ManifestDoc) -> Vec<(String, &str)> {
         .collect()
 }
 
-/// The reasons for the choice of explorations.
+/// Returns the reasons for the choice of explorations.
 pub(super) fn assumptions(doc: &ManifestDoc) -> Vec<Assumption> {
     let assumption = |(pointer, map): (String, &PreviousMapDoc)| Assumption {
         path: pointer[1..].replace('/', "."),
@@ -134,7 +134,7 @@ pub(super) fn assumptions(doc: &ManifestDoc) -> Vec<Assumption> {
 }
 
 impl<'a> Resolver<'a> {
-    /// The map of the exploration `doc`, written at `pointer`, for the trials of `own`.
+    /// Returns the map of the exploration `doc`, written at `pointer`, for the trials of `own`.
     pub(super) fn previous_map<'d>(
         &mut self,
         doc: &'d PreviousMapDoc,
@@ -239,8 +239,8 @@ enum NoMap {
     Faulty(Vec<Diagnostic>),
 }
 
-/// The trial. Its identity holds what a trial's does but for the condition and the engine, and its random streams are no
-/// others': an earlier exploration shares noise with no trial of the experiment.
+/// Specifies the trial. Its identity holds what a trial's does but for the condition and the engine, and its random
+/// streams are no others': an earlier exploration shares noise with no trial of the experiment.
 fn spec(
     trial: u32,
     seed: u64,

@@ -26,7 +26,7 @@ const FACTOR: &str = "prior";
 pub(super) const NONE: &str = "none";
 
 impl<'a> Resolver<'a> {
-    /// Faults of the names of prior maps.
+    /// Collects the faults of the names of prior maps.
     pub(super) fn check_prior_names(&mut self) {
         let doc = self.doc;
         let mut known: Vec<&str> = vec![NONE];
@@ -71,7 +71,7 @@ impl<'a> Resolver<'a> {
         }
     }
 
-    /// The prior knowledge of `condition`, where it has some.
+    /// Returns the prior knowledge of `condition`, where it has some.
     ///
     /// # Errors
     /// Where it could not be had.
@@ -88,7 +88,7 @@ impl<'a> Resolver<'a> {
         self.prior_called(name, &whole, &mut Vec::new())
     }
 
-    /// The prior knowledge `name` as `exploration` uses it. `before` are the prior maps that are made of it.
+    /// Returns the prior knowledge `name` as `exploration` uses it. `before` are the prior maps that are made of it.
     pub(super) fn prior_called<'d>(
         &mut self,
         name: &'d str,
@@ -167,7 +167,7 @@ impl<'a> Resolver<'a> {
         Ok(Some(Knowledge::Map(UsedPrior { grid, meaning, described, pointer, own })))
     }
 
-    /// Every condition reads it anew: it is small.
+    /// Reads a topo-metric map, for every condition anew: it is small.
     fn topo_metric_map(&mut self, doc: &TopoMetricPrior, pointer: &str) -> Option<Knowledge> {
         let place = format!("{pointer}/topo-metric-map");
         let source = self.text(&doc.topo_metric_map, &place, InputKind::Prior)?;

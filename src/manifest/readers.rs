@@ -19,7 +19,7 @@ pub(super) enum Derived {
 }
 
 impl Derived {
-    /// The key that asks for it in a manifest.
+    /// Returns the key that asks for it in a manifest.
     pub(super) fn key(self) -> &'static str {
         match self {
             Self::FloorPlan => "floor-plan-of",
@@ -45,14 +45,14 @@ impl Derived {
     }
 }
 
-/// Whether the file `name` is a Gazebo world, by its ending.
+/// Returns whether the file `name` is a Gazebo world, by its ending.
 pub(super) fn is_sdf(name: &str) -> bool {
     let extension = name.rsplit('.').next().unwrap_or_default().to_ascii_lowercase();
     extension == "world" || extension == "sdf"
 }
 
-/// A world, by the ending of its file's name: all its layers, or its walls and those of `layers`; with the meshes that
-/// `models` knows.
+/// Reads a world, by the ending of its file's name: all its layers, or its walls and those of `layers`; with the meshes
+/// that `models` knows.
 pub(super) fn world(
     source: &Source,
     layers: Option<&[String]>,
@@ -65,12 +65,12 @@ pub(super) fn world(
     }
 }
 
-/// A topo-metric map.
+/// Reads a topo-metric map.
 pub(super) fn topo_metric_map(source: &Source) -> Result<TopoMetricMap, Vec<Diagnostic>> {
     tour::read(source)
 }
 
-/// A `map_server` map from its descriptor and the bytes of its image.
+/// Reads a `map_server` map from its descriptor and the bytes of its image.
 pub(super) fn map(
     source: &Source,
     image_name: &str,
@@ -81,7 +81,7 @@ pub(super) fn map(
     map_server::read(source, image_name, image, options)
 }
 
-/// A map as [`map_server::write`] writes it.
+/// Reads a map as [`map_server::write`] writes it.
 pub(super) fn explored(
     source: &Source,
     image_name: &str,

@@ -15,7 +15,7 @@ use crate::studies::{FactorValue, StudyKind, TableLayout, coverage_tables};
 use crate::table::Table;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Faults of the requests for tables, and of the ids of figures.
+/// Collects the faults of the requests for tables, and of the ids of figures.
 pub(super) fn check_requests(
     doc: &ManifestDoc,
     factors: &[Factor],
@@ -59,7 +59,7 @@ pub(super) fn check_requests(
     }
 }
 
-/// Tells where the layout at `pointer` is another study's.
+/// Reports that the layout at `pointer` is another study's.
 pub(super) fn foreign(doc: &ManifestDoc, pointer: &str, faults: &mut Faults<'_>) {
     let layout = pointer.rsplit('/').next().unwrap_or_default();
     let owner = StudyKind::all().find(|kind| kind.layouts().contains(&layout));
@@ -106,7 +106,7 @@ pub(super) fn check_outcomes(
     );
 }
 
-/// The measures that are columns of numbers: success and outcomes are not.
+/// Returns the measures that are columns of numbers: success and outcomes are not.
 fn numeric(kind: StudyKind) -> Vec<String> {
     let mut known = measures(kind);
     known.retain(|name| name != "success" && !name.starts_with("outcome:"));
@@ -143,7 +143,7 @@ fn check_measures(
     }
 }
 
-/// Faults of the measures that tables ask for, which depend on what the conditions record.
+/// Collects the faults of the measures that tables ask for, which depend on what the conditions record.
 pub(super) fn check_recorded(
     doc: &ManifestDoc,
     conditions: &[ResolvedCondition],
@@ -203,7 +203,7 @@ fn check_milestones(at: &[u32], pointer: &str, faults: &mut Faults<'_>) {
     }
 }
 
-/// Effects are of factors that have something to compare, in runs that share no noise.
+/// Checks that effects are of factors that have something to compare, in runs that share no noise.
 fn check_effects(
     wanted: &EffectsTable,
     pointer: &str,
@@ -249,7 +249,7 @@ fn check_effects(
     }
 }
 
-/// Agreement is of coverage tables that have something to agree with.
+/// Checks that agreement is of coverage tables that have something to agree with.
 fn check_agreement(
     wanted: &AgreementTable,
     pointer: &str,
@@ -276,7 +276,7 @@ fn check_agreement(
     }
 }
 
-/// The factors that stand side by side and in rows.
+/// Checks the factors that stand side by side and in rows.
 pub(super) fn check_columns(
     by: &str,
     rows: &[String],
@@ -318,7 +318,7 @@ pub(super) fn check_published(
     }
 }
 
-/// The published numbers `name`, where they are named, known and could be read.
+/// Returns the published numbers `name`, where they are named, known and could be read.
 fn check_known<'p>(
     name: Option<&String>,
     place: &str,

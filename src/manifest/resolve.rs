@@ -44,7 +44,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// ```
 ///
 /// # Errors
-/// Every fault that can be told at this point, warnings among them, in the order of the manifest.
+/// Every fault that can be found at this point, warnings among them, in the order of the manifest.
 pub fn resolve(
     source: &Source,
     overrides: &[String],
@@ -54,7 +54,7 @@ pub fn resolve(
     let mut library = Library::new(inputs);
     settings::underlay(&mut tree, overrides, &mut library)?;
     overrides::apply(&mut tree, overrides)?;
-    // The study says which parameters there are; one that is not known is told by the schema.
+    // The study says which parameters there are; the schema refuses one that is not known.
     let kind = tree.root.get("study").and_then(Node::scalar_text);
     let kind = kind.as_deref().and_then(StudyKind::named);
     let Parsed { value: doc, tree } = parse_tree_by::<ManifestDoc>(tree, &schema(kind))?;
@@ -146,7 +146,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// Faults of licences and pins of files that nobody read.
+    /// Collects the faults of licences and pins of files that nobody read.
     fn check_unread(&mut self) {
         let doc = self.doc;
         let read = self.library.files.paths();
@@ -162,7 +162,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// Values with reasons; faults of those that depend on a factor.
+    /// Returns the values with reasons; collects the faults of those that depend on a factor.
     fn assumptions(&mut self) -> Vec<Assumption> {
         let mut assumptions = Vec::new();
         for wrapped in self.doc.parameters.wrapped(self.doc.study) {
@@ -237,7 +237,7 @@ impl Resolver<'_> {
         Some(ResolvedCondition { condition, setup, meanings, described })
     }
 
-    /// Faults of keys that belong to other studies.
+    /// Collects the faults of keys that belong to other studies.
     fn check_study_keys(&mut self) {
         let doc = self.doc;
         let written = [

@@ -43,12 +43,12 @@ impl<'a> Resolver<'a> {
         made
     }
 
-    /// Returns what `read` yields; `None` where it has faults, which are told.
+    /// Returns what `read` yields; `None` where it has faults, which are collected.
     pub(super) fn told<T>(&mut self, read: Result<T, Vec<Diagnostic>>) -> Option<T> {
         read.map_err(|faults| self.faults.extend(faults)).ok()
     }
 
-    /// What `choice` is for `condition`, and where that is written.
+    /// Returns what `choice` is for `condition`, and where that is written.
     pub(super) fn choose<'c, T>(
         &mut self,
         choice: &'c Choice<T>,

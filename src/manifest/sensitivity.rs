@@ -7,8 +7,8 @@ use super::resolver::Resolver;
 use crate::claims::Sensitivity;
 use crate::claims::sensitivity::in_words;
 
-/// The file that the manifest names, where it names one; a warning for every assumption of which it tells something else
-/// or nothing.
+/// Reads the file that the manifest names, where it names one; warns of every assumption of which it says something
+/// else or nothing.
 pub(super) fn read(resolver: &mut Resolver<'_>, assumptions: &[Assumption]) -> Option<Robustness> {
     const PLACE: &str = "/sensitivity";
     let path = resolver.doc.sensitivity.as_deref()?;

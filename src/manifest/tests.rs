@@ -9,7 +9,8 @@ use crate::world::originals;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-/// What `settings` and the manifest's own `parameters` make of the range, the noise and the resolution.
+/// Returns the parameters and the experiment that `settings`, the manifest's own `parameters` and `overrides` make of
+/// the range, the noise and the resolution.
 fn with_settings(overrides: &[&str]) -> (prior_map::Parameters, Experiment) {
     struct Shared;
     impl Inputs for Shared {
@@ -68,7 +69,7 @@ impl Inputs for Folder {
     }
 }
 
-/// Warnings and prior of the basic world with `prior`, which is written in flow style.
+/// Returns the warnings for the basic world with `prior`, which is written in flow style, and its experiment.
 fn basic(folder: PathBuf, prior: &str) -> (String, Experiment) {
     let text = format!(
         "reenact: 1\nname: a\ntitle: A\nstudy: prior-map\nseed: 1\ntrials: 1\nrobot: robots/kobuki.urdf\n\

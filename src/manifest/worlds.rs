@@ -27,7 +27,7 @@ pub(super) struct UsedWorld {
 }
 
 impl Resolver<'_> {
-    /// The world that `doc`, written at `pointer`, is for `condition`.
+    /// Returns the world that `doc`, written at `pointer`, is for `condition`.
     pub(super) fn world(
         &mut self,
         doc: &WorldDoc,
@@ -42,8 +42,8 @@ impl Resolver<'_> {
         }
     }
 
-    /// A building of a family. No file is sealed for it: the manifest holds what it is made of, and how it is made
-    /// belongs to the engine's version; what it means enters the trials' keys like that of any world.
+    /// Generates a building of a family. No file is sealed for it: the manifest holds what it is made of, and how it is
+    /// made belongs to the engine's version; what it means enters the trials' keys like that of any world.
     fn generated_world(
         &mut self,
         doc: &GenerateDoc,
@@ -149,7 +149,7 @@ impl Resolver<'_> {
         Some((Arc::new(world), meaning))
     }
 
-    /// `world` with its walls and `layers` alone; faults where there is no such layer.
+    /// Returns `world` with its walls and `layers` alone; collects faults where there is no such layer.
     fn choose_layers(
         &mut self,
         mut world: World,

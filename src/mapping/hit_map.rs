@@ -325,7 +325,8 @@ mod tests {
             }
         }
 
-        /// Copy on write: a change to one copy does not show in the other, and nothing is copied that is not written.
+        /// Checks copy on write: a change to one copy does not show in the other, and nothing is copied that is not
+        /// written.
         #[test]
         fn a_copy_keeps_what_it_had(
             before in prop::collection::vec(place(), 1..20),

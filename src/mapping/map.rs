@@ -358,7 +358,8 @@ mod tests {
     }
 
     proptest! {
-        /// Growing never loses a known cell, and the cells reported as changed are exactly those that changed.
+        /// Checks that growing never loses a known cell, and that the cells reported as changed are exactly those that
+        /// changed.
         #[test]
         fn changes_tell_the_whole_story(
             poses in prop::collection::vec((-20.0..20.0, -20.0..20.0, -3.0..3.0), 1..6),

@@ -221,8 +221,8 @@ mod tests {
         assert!(worst < 0.1 && drifted > 0.3, "{worst} m, odometry {drifted} m");
     }
 
-    /// The reported changes add up to the map, and the map is what the best particle's trajectory makes of the scans:
-    /// also where another particle became best.
+    /// Checks that the reported changes add up to the map, and that the map is what the best particle's trajectory
+    /// makes of the scans: also where another particle became best.
     #[test]
     fn changes_tell_the_whole_story_across_changes_of_the_best_particle() {
         let vague = FilterRule {

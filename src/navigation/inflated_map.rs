@@ -142,7 +142,8 @@ mod tests {
 
     const SIDE: i32 = 240;
 
-    /// Rooms of free cells, walls with doors between them, and some obstacles and unknown cells strewn in.
+    /// Returns a map of rooms of free cells, walls with doors between them, and some obstacles and unknown cells strewn
+    /// in.
     fn rooms(strewn: &[(i32, i32, u8)]) -> OccupancyGrid {
         let frame = GridFrame { resolution: 0.1, origin: Point::ZERO, width: SIDE, height: SIDE };
         let wall = |cell: Cell| {

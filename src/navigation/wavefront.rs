@@ -288,7 +288,8 @@ mod tests {
     }
 
     proptest! {
-        /// In whatever order cells are queried: distances are the least, and every reached cell has a path down.
+        /// Checks that in whatever order cells are queried, distances are the least, and every reached cell has a path
+        /// down.
         #[test]
         fn distances_are_the_least_and_paths_end_at_the_goal(
             walls in prop::collection::vec((0..15, 0..15, 0_u8..100), 0..80),

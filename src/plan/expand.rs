@@ -39,13 +39,13 @@ pub enum FindError {
 }
 
 impl Plan {
-    /// All trials of `experiment`.
+    /// Plans all trials of `experiment`.
     pub fn of(experiment: Experiment) -> Self {
         let trials = expand(&experiment, &Selection::default());
         Self { experiment, trials, partial: false }
     }
 
-    /// The trials of `experiment` that `selection` wants.
+    /// Plans the trials of `experiment` that `selection` wants.
     ///
     /// # Errors
     /// Where `selection` names factors or values that are not there, or leaves no condition.
@@ -55,7 +55,7 @@ impl Plan {
         Ok(Self { experiment, trials, partial: selection.is_partial() })
     }
 
-    /// How many trials of `experiment` `selection` wants, without making them.
+    /// Counts the trials of `experiment` that `selection` wants, without making them.
     pub fn size(experiment: &Experiment, selection: &Selection) -> u64 {
         let wanted =
             experiment.design().filter(|(condition, _)| selection.wants(condition)).count();
@@ -67,7 +67,7 @@ impl Plan {
         }
     }
 
-    /// The trial that `wanted` names: at least 8 hex digits of its key, or `CONDITION/NUMBER` with the
+    /// Finds the trial that `wanted` names: by at least 8 hex digits of its key, or as `CONDITION/NUMBER` with the
     /// condition's slug.
     ///
     /// # Errors
@@ -97,7 +97,7 @@ impl Plan {
         }
     }
 
-    /// What the key of `spec` is made of, in lines.
+    /// Says what the key of `spec` is made of, in lines.
     pub fn explain(&self, spec: &TrialSpec) -> String {
         explain(&self.experiment, spec)
     }
@@ -107,7 +107,7 @@ impl Plan {
         ResolvedStudy::of(&self.experiment, ENGINE_VERSION)
     }
 
-    /// Digest of what was asked.
+    /// Computes the digest of what was asked.
     pub fn study_digest(&self) -> StudyDigest {
         study_digest(&self.experiment)
     }
@@ -149,7 +149,7 @@ fn expand(experiment: &Experiment, selection: &Selection) -> Vec<TrialSpec> {
     trials
 }
 
-/// Where a trial's random streams come from: the study, the factors that do not share noise, the number.
+/// Returns where a trial's random streams come from: the study, the factors that do not share noise, the number.
 fn seeds(experiment: &Experiment, condition: &Condition, trial: u32) -> Seeds {
     let mut coordinates = vec![("study".to_owned(), experiment.kind.name().to_owned())];
     // Sorted, so that the order of factors in the manifest moves no number.

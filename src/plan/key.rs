@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 /// changes; the golden digests in `tests/` fail when that is forgotten.
 pub const ENGINE_VERSION: &str = "1";
 
-/// The content of a trial's key.
+/// Returns the content of a trial's key.
 ///
 /// | field | holds |
 /// |---|---|
@@ -66,17 +66,18 @@ pub(super) fn levels(condition: &Condition) -> BTreeMap<String, String> {
     condition.0.iter().cloned().collect()
 }
 
-/// The key of that content.
+/// Computes the key of that content.
 pub(super) fn key_of(content: &Value) -> TrialKey {
     TrialKey(Sha256Digest::of(json::canonical(content)))
 }
 
-/// What was asked: digest of `study.resolved.json`, and so of the manifest's meaning and all input files.
+/// Computes the digest of what was asked: of `study.resolved.json`, and so of the manifest's meaning and all input
+/// files.
 pub fn study_digest(experiment: &Experiment) -> StudyDigest {
     StudyDigest(Sha256Digest::of(ResolvedStudy::of(experiment, ENGINE_VERSION).to_text()))
 }
 
-/// The content of a trial's key in lines that two people can compare.
+/// Writes the content of a trial's key in lines that two people can compare.
 pub fn explain(experiment: &Experiment, spec: &TrialSpec) -> String {
     let mut conditions = experiment.conditions.iter();
     let Some(resolved) = conditions.find(|resolved| resolved.condition == spec.condition) else {
@@ -101,7 +102,7 @@ pub fn explain(experiment: &Experiment, spec: &TrialSpec) -> String {
     text
 }
 
-/// One `path = value` line per leaf, sorted by path.
+/// Appends one `path = value` line per leaf, sorted by path.
 fn lines(path: &str, value: &Value, text: &mut String) {
     match value {
         Value::Object(map) if !map.is_empty() => {

@@ -90,7 +90,7 @@ impl TryFrom<Written> for Selection {
 }
 
 impl Selection {
-    /// A selection as the command line writes it: `--only` any number of times (values of one factor add up),
+    /// Reads a selection as the command line writes it: `--only` any number of times (values of one factor add up),
     /// `--trials` and `--shard I/N`.
     ///
     /// # Errors
@@ -125,7 +125,7 @@ impl Selection {
         Ok(selection)
     }
 
-    /// The same as the command line writes it, a word each; nothing for a whole plan.
+    /// Returns the selection as the command line writes it, a word each; nothing for a whole plan.
     pub fn options(&self) -> Vec<String> {
         let only = self.only.iter().map(|(factor, values)| {
             ["--only".to_owned(), format!("{factor}={}", values.join(","))]
@@ -135,7 +135,7 @@ impl Selection {
         only.chain(trials).chain(shard).flatten().collect()
     }
 
-    /// Whether anything of a plan is left out (or, with `--trials`, changed).
+    /// Returns whether anything of a plan is left out (or, with `--trials`, changed).
     pub fn is_partial(&self) -> bool {
         *self != Self::default()
     }
@@ -166,7 +166,7 @@ impl Selection {
         }
     }
 
-    /// Whether `condition` has one of the wanted values of every restricted factor.
+    /// Returns whether `condition` has one of the wanted values of every restricted factor.
     pub(super) fn wants(&self, condition: &Condition) -> bool {
         self.only.iter().all(|(factor, values)| {
             condition.value(factor).is_some_and(|value| values.iter().any(|v| v == value))

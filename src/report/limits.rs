@@ -196,7 +196,7 @@ mod tests {
         assert_eq!(limits, expected);
     }
 
-    /// A partial run draws what it has, and nothing where it has nothing.
+    /// Checks that a partial run draws what it has, and nothing where it has nothing.
     #[test]
     fn a_figure_of_a_partial_run_shows_what_there_is_or_is_left_out() {
         let (bundle, plan, _) = quickstart();

@@ -279,8 +279,8 @@ mod tests {
         assert!(!engine.is_touching(), "1 cm away");
     }
 
-    /// Random drives between pillars and walls, up to the first contact: to the bit before it, and within the engine's
-    /// own tolerance at it, where its state of the pair plays a part.
+    /// Compares random drives between pillars and walls up to the first contact: to the bit before it, and within the
+    /// engine's own tolerance at it, where its state of the pair plays a part.
     #[test]
     fn free_motion_has_the_engine_s_bits_and_contact_comes_at_the_same_step() {
         let solid = [

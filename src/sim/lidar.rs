@@ -219,7 +219,7 @@ mod tests {
     }
 
     proptest! {
-        /// Exactness: against every wall tried for every beam, within rounding.
+        /// Checks exactness: against every wall tried for every beam, within rounding.
         #[test]
         fn equals_brute_force(
             visible in outlines(), x in -10.0..10.0, y in -10.0..10.0, heading in -4.0..4.0,

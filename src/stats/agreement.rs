@@ -131,7 +131,7 @@ mod tests {
         assert!(found.slope.is_nan() && found.intervals.is_none());
     }
 
-    /// A block counts once, however often its points are listed.
+    /// Checks that a block counts once, however often its points are listed.
     #[test]
     fn telling_the_points_of_a_block_twice_narrows_nothing() {
         let y = [0.2, 0.7, 2.4, 2.9, 3.8, 5.1];

@@ -312,7 +312,7 @@ impl Tally {
         self.good + self.fair + self.bad
     }
 
-    /// Returns, for example, `118 of 180 published percentages are compatible with ours at 95 %`.
+    /// Says it in a sentence, for example `118 of 180 published percentages are compatible with ours at 95 %`.
     pub fn in_words(self) -> String {
         let (good, all) = (self.good, self.all());
         let are = if good == 1 { "is" } else { "are" };

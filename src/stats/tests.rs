@@ -213,7 +213,7 @@ fn correlation_by_ranks() {
     assert_eq!(spearman_interval(0.3, 3, 0.95).low, -1.0);
 }
 
-/// Drawn orders estimate what all orders count: nine pairs, one more than are enumerated exactly.
+/// Checks that drawn orders estimate what all orders count: nine pairs, one more than are enumerated exactly.
 #[test]
 fn drawn_permutations_agree_with_all_of_them() {
     let x: Vec<f64> = (0..9).map(f64::from).collect();
@@ -306,7 +306,7 @@ fn the_bootstrap_knows_the_spread_of_a_mean() {
     assert_ne!(found, draw(4));
 }
 
-/// A resample of shares is a binomial draw: mean and spread of many against np and np(1 - p), and the ends.
+/// Checks that a resample of shares is a binomial draw: mean and spread of many against np and np(1 - p), and the ends.
 #[test]
 fn shares_are_resampled_as_zeros_and_ones_would_be() {
     let seen = [Proportion::new(60, 200), Proportion::new(0, 40), Proportion::new(40, 40)];
@@ -324,7 +324,7 @@ fn shares_are_resampled_as_zeros_and_ones_would_be() {
     assert_eq!((ends.interval.low, ends.interval.high), (1.0, 1.0));
 }
 
-/// The arithmetic of the bootstrap to the last digits: the same resamples, drawn by this stream, through numpy.
+/// Checks the arithmetic of the bootstrap to the last digits: the same resamples, drawn by this stream, through numpy.
 #[test]
 fn the_bootstrap_takes_numpys_quantiles_of_its_resamples() {
     let values = [3.1, 4.1, 5.9, 2.6, 5.3, 5.8, 9.7, 9.3, 2.3, 8.4, 6.2, 6.4];
@@ -337,8 +337,8 @@ fn the_bootstrap_takes_numpys_quantiles_of_its_resamples() {
     assert_close(found.estimate, 5.758_333_333_333_333, FINE);
 }
 
-/// Pairs (5, 7 and 1, 3), (12 and 10, 14): differences 4 and 0. Variances within are 2 and (2 + 8) / 2 = 5, of the sides'
-/// means 2 (1/2 + 1) / 4 = 0.75 and 5 (1/2 + 1/2) / 4 = 1.25, with 1 and 2 degrees of freedom.
+/// Checks the pairs (5, 7 and 1, 3), (12 and 10, 14): differences 4 and 0. Variances within are 2 and (2 + 8) / 2 = 5,
+/// of the sides' means 2 (1/2 + 1) / 4 = 0.75 and 5 (1/2 + 1/2) / 4 = 1.25, with 1 and 2 degrees of freedom.
 #[test]
 fn matched_means_are_compared_pair_by_pair() {
     let pairs = [

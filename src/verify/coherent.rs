@@ -17,11 +17,11 @@ pub(super) fn bag_facts(bundle: &Bundle) -> Vec<Fault> {
     else {
         return Vec::new();
     };
-    // A crate that lost its bag was bagged again, maybe by another version, and tells nothing of the run there.
+    // A crate that lost its bag was bagged again, maybe by another version, and says nothing of the run there.
     let told = bundle.circumstance().filter(|_| info.tells_circumstances());
     let mut right = in_bag(bundle, told.as_ref());
     if told.is_none() {
-        // Metadata that tell nothing are told themselves.
+        // Metadata that say nothing are reported as a fault of their own.
         right.keep_circumstances(&info);
     }
     if let Some(agent) = info.get(bag::AGENT).filter(|agent| told.is_none() && is_agent(agent)) {

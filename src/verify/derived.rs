@@ -36,8 +36,8 @@ pub(super) fn check(bundle: &Bundle, replanned: &dyn Replanned) -> Derived {
             return found;
         }
     };
-    // What describes the bundle follows from the same and from the circumstances, which the metadata tells in every form of a
-    // bundle: engine and format say how, whatever version of the program was at work.
+    // What describes the bundle follows from the same and from the circumstances, which the metadata state in every
+    // form of a bundle: engine and format say how, whatever version of the program was at work.
     let told = bundle.circumstance();
     if told.is_none() {
         let metadata = BundlePath::payload(format::METADATA);

@@ -22,7 +22,7 @@ pub(super) fn check(archive: &Archive) -> Vec<Fault> {
         )),
     }
     let mut listed = BTreeMap::new();
-    // Where there is no list to hold files against, that alone is told.
+    // Where there is no list to hold files against, that alone is reported.
     let mut unread = Vec::new();
     for file in [format::MANIFEST, format::TAG_MANIFEST] {
         let Some(bytes) = tree.get(file) else {
@@ -75,7 +75,7 @@ pub(super) fn check(archive: &Archive) -> Vec<Fault> {
             "a list of files to fetch",
         ));
     }
-    // Those that no list names have been told.
+    // Those that no list names have been reported.
     for path in listed.keys().filter(|path| in_payload(path).is_none()) {
         if !is_tag_file(path) && path != "fetch.txt" {
             let expected = "only the tag files that docs/bundle-format.md lists";

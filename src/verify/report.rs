@@ -109,7 +109,7 @@ impl Report {
             };
             let mut broken = told(|severity| severity == Severity::Error);
             if broken.is_empty() && self.state(*level) == "failed" {
-                // All trials are a sample, too: what fails the sample is told there.
+                // All trials are a sample, too: where they fail, the sample says what failed.
                 broken = self.sample.iter().map(super::Sample::in_words).collect();
             }
             let failed = told(|severity| severity == Severity::Failure);

@@ -255,7 +255,7 @@ mod tests {
         );
     }
 
-    /// The worlds' outer walls must be tight, or the footprint would keep the inner ones.
+    /// Checks that the worlds' outer walls are tight: otherwise the footprint would keep the inner ones.
     #[test]
     fn the_original_worlds_lose_their_inner_walls() {
         let Some(folder) = originals::folder("the_original_worlds_lose_their_inner_walls") else {

@@ -193,7 +193,7 @@ pub(super) mod tests {
         assert_eq!(told(&cut), "row 3: expected 64 hex digits as records-at-tried, found `c0`");
     }
 
-    /// What was judged before digests were written down can still be judged again.
+    /// Checks that what was judged before digests were written down can still be judged again.
     #[test]
     fn tables_without_digests_are_read() {
         let seven = |line: &str| line.split(',').take(7).collect::<Vec<_>>().join(",") + "\n";

@@ -11,7 +11,7 @@ const PRINTED: [(&str, [[f64; 2]; 3]); 3] = [
 ];
 const PRIORS: [&str; 3] = ["none", "floor-plan", "footprint"];
 
-/// Twelve runs a cell around `mean(printed)`, spread by a factor that grows with the trial's number; trials of
+/// Makes up twelve runs a cell around `mean(printed)`, spread by a factor that grows with the trial's number; trials of
 /// `late` never reach 95 %.
 fn runs(mean: impl Fn(f64) -> f64, late: &[i64]) -> Table {
     let columns =
@@ -123,7 +123,7 @@ fn the_first_trials_stand_beside_all_and_decide_nothing() {
     let words = beside.comparisons[0].at_both_numbers().unwrap();
     assert!(words.starts_with("at n = 4 p ") && words.contains("; at n = 12 p "), "{words}");
     assert_eq!(plain.comparisons[0].at_both_numbers(), None);
-    // Where the first trials say nothing, that is told.
+    // Where the first trials say nothing, a note says so.
     let expect = "{less: {metric: distance-m-at-95, censored: reached-only, minimum-n: 5, where: {prior: footprint, \
                   environment: open}, than: {where: {environment: open, prior: none}}, also-at-n: 2}}";
     let found = judged(&runs(|x| x, &[0, 1]), expect);
@@ -159,7 +159,7 @@ fn spreads_are_tested_by_the_distances_from_the_median() {
     assert_eq!(found.judgement, Judgement::Supported);
 }
 
-/// Sum of squares of the second group's distances around their mean.
+/// Returns the sum of squares of the second group's distances around their mean.
 fn spread() -> f64 {
     let mean = 32.0 / 6.0;
     [7.5, 5.5, 0.5, 0.5, 6.5, 11.5].iter().map(|x: &f64| (x - mean) * (x - mean)).sum()

@@ -15,7 +15,7 @@ fn printed(name: &str) -> Table {
     Table::from_csv(text).unwrap()
 }
 
-/// The printed number of a cell, if there is one.
+/// Returns the printed number of a cell, if there is one.
 fn number(table: &Table, cell: &[String; 3]) -> Option<f64> {
     let names = ["start", "deadline-s", "strategy"];
     let here = |row: &&Vec<Value>| {
@@ -29,8 +29,8 @@ fn of_fifty(percent: f64) -> u64 {
     (percent / 2.0).round() as u64
 }
 
-/// Fifty trials a cell, ended as Tables 1 and 2 count them. `corridors-first` from B within 2899 s sums to 98 %: its
-/// missing trial counts as late. No spread of times is printed; these lie within a tenth of their mean.
+/// Returns fifty trials a cell, ended as Tables 1 and 2 count them. `corridors-first` from B within 2899 s sums to
+/// 98 %: its missing trial counts as late. No spread of times is printed; these lie within a tenth of their mean.
 fn as_printed_in_full() -> Table {
     let tables = ["success-percent", "collision-percent", "late-percent", "time-s"].map(printed);
     let columns = ["key", "start", "deadline-s", "strategy", "trial", "outcome", "time-s"];
@@ -105,8 +105,8 @@ fn the_claims_speak_of_what_there_is() {
     }
 }
 
-/// What the paper's own numbers say of each claim. A statement that the printed order merely does not bear out is
-/// inconclusive, not contradicted: fifty trials a cell leave it open.
+/// Checks what the paper's own numbers say of each claim. A statement that the printed order merely does not bear out
+/// is inconclusive, not contradicted: fifty trials a cell leave it open.
 #[test]
 fn the_papers_own_tables_decide_these_claims() {
     use Judgement::{CannotBeTested, Contradicted, Inconclusive, Supported};
@@ -182,7 +182,7 @@ fn the_papers_own_tables_decide_these_claims() {
     }
 }
 
-/// `plan --power` makes up no other trials than these.
+/// Checks that trials outside of a claim's pools do not matter: `plan --power` makes up no others than those within.
 #[test]
 fn trials_outside_of_a_claims_pools_cannot_matter() {
     let tables: BTreeMap<String, Table> =

@@ -6,7 +6,7 @@ use crate::factor::Factor;
 /// Factors with their values, metrics, published tables.
 pub(super) type Things = (Vec<Factor>, Vec<String>, Vec<String>);
 
-/// A fault on one line: where, numbers of items left out, what, and what may have been meant.
+/// Puts a fault on one line: where, numbers of items left out, what, and what may have been meant.
 pub(super) fn told(fault: &ClaimFault<'_>) -> String {
     let steps = fault.pointer.split('/').skip(1).filter(|step| step.parse::<usize>().is_err());
     let place = steps.collect::<Vec<_>>().join(".");
@@ -15,13 +15,13 @@ pub(super) fn told(fault: &ClaimFault<'_>) -> String {
     format!("{place}{colon}{}{help}", fault.message)
 }
 
-/// The faults of one claim among `things`.
+/// Returns the faults of one claim among `things`.
 pub(super) fn faults_among(claim: &Claim, (factors, metrics, published): &Things) -> Vec<String> {
     let known = Known { factors, metrics, published };
     claim.check(known).iter().map(told).collect()
 }
 
-/// What the examples speak of.
+/// Returns what the examples speak of.
 pub(super) fn known() -> Things {
     let owned = |names: &[&str]| names.iter().map(|s| (*s).to_owned()).collect::<Vec<_>>();
     let factors = vec![
@@ -54,7 +54,7 @@ pub(super) fn faults(expect: &str) -> Vec<String> {
     faults_among(&claim(expect), &known())
 }
 
-/// The fenced YAML of a text, each line without `prefix`.
+/// Returns the fenced YAML of a text, each line without `prefix`.
 pub(super) fn examples(text: &str, prefix: &str) -> Vec<String> {
     let mut found = Vec::new();
     let mut open: Option<String> = None;
@@ -177,7 +177,7 @@ fn faults_are_named_with_their_place_and_the_nearest_name() {
     assert!(unknown.unwrap_err().to_string().contains("metrik"));
 }
 
-/// They are counted, and never made.
+/// Checks that cells are counted, and never made.
 #[test]
 fn cells_without_number_are_refused_at_once() {
     let values: Vec<String> = (0..1000).map(|i| i.to_string()).collect();

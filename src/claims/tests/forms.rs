@@ -3,7 +3,7 @@
 use super::faults::{examples, faults};
 use super::*;
 
-/// `table` with a further column, filled from the row's place.
+/// Returns `table` with a further column, filled from the row's place.
 fn with(mut table: Table, name: &str, value: impl Fn(usize) -> f64) -> Table {
     table.columns.push(name.to_owned());
     for (i, row) in table.rows.iter_mut().enumerate() {
@@ -12,7 +12,7 @@ fn with(mut table: Table, name: &str, value: impl Fn(usize) -> f64) -> Table {
     table
 }
 
-/// Table 1's trials with made-up maneuvers: of every ten trials one ended in a fast maneuver.
+/// Returns Table 1's trials with made-up maneuvers: of every ten trials one ended in a fast maneuver.
 fn maneuvers() -> Table {
     let place = |i: usize| crate::stats::real((i % 10) as u64);
     let table = with(as_printed(), "fast-maneuvers", move |i| 3.0 + place(i));
@@ -21,7 +21,7 @@ fn maneuvers() -> Table {
     with(table, "slow-collisions", |i| f64::from(u8::from(i % 50 == 7)))
 }
 
-/// Made-up trials of the other study: with a floor plan everything is a third shorter.
+/// Makes up trials of the other study: with a floor plan everything is a third shorter.
 fn explorations() -> Table {
     let measures = [
         "distance-m-at-70",
@@ -164,7 +164,7 @@ fn rates_compare_two_quantities_of_the_same_trials() {
     );
 }
 
-/// A table of distances with a row per coverage, as the prior-map study keeps them.
+/// Returns a table of distances with a row per coverage, as the prior-map study keeps them.
 fn distances() -> BTreeMap<String, Table> {
     let mut table =
         Table::new(["environment", "furnished", "prior", "coverage-percent", "value", "sd", "n"]);

@@ -5,7 +5,7 @@ use super::*;
 const X: [f64; 12] = [3.1, 4.1, 5.9, 2.6, 5.3, 5.8, 9.7, 9.3, 2.3, 8.4, 6.2, 6.4];
 const Y: [f64; 10] = [7.1, 8.8, 6.5, 9.4, 7.7, 10.2, 8.1, 9.9, 6.9, 8.3];
 
-/// The samples as measures `d` of two groups.
+/// Returns the samples as measures `d` of two groups.
 fn measures() -> Table {
     let mut table = Table::new(["key", "group", "trial", "outcome", "d"]);
     for (group, values) in [("first", &X[..]), ("second", &Y[..])] {
@@ -23,7 +23,7 @@ fn measures() -> Table {
     table
 }
 
-/// Successes of trials in two groups.
+/// Returns trials of two groups with so many successes.
 fn shares(groups: [(&str, i64, i64); 2]) -> Table {
     let mut table = Table::new(["key", "group", "trial", "outcome"]);
     for (group, successes, trials) in groups {

@@ -25,7 +25,7 @@ fn what_the_paper_says_shows_and_we_find_are_three_facts() {
     );
 }
 
-/// A check of our own needs no word on the paper's table, stands under its own key and counts apart.
+/// Checks that a check of our own needs no word on the paper's table, stands under its own key and counts apart.
 #[test]
 fn our_own_checks_are_told_and_counted_apart_from_the_papers_claims() {
     let published = published();

@@ -198,7 +198,7 @@ fn published_tables_are_read_by_contract() {
         check("start,metric,value,sd,n,note\nA,m,1,0.5,10,x\nA,k,,,,y\n"),
         Vec::<String>::new()
     );
-    // A printed number without runs of ours is told, not dropped.
+    // A printed number without runs of ours is noted, not dropped.
     let mut tables = published();
     let table = tables.get_mut("success-percent").unwrap();
     table.push(vec!["A".into(), 99.into(), "random".into(), 50.0.into(), 50.into()]);
@@ -236,7 +236,7 @@ fn log_ratios_compare_gains_instead_of_levels() {
     assert_close(slope, 1.0, 1e-9);
 }
 
-/// A claim that nobody checked is judged without a panic, and never supported for claiming nothing.
+/// Checks that a claim that nobody checked is judged without a panic, and never supported for claiming nothing.
 #[test]
 fn empty_claims_are_not_supported() {
     for expect in [

@@ -26,7 +26,7 @@ pub(in crate::cli) fn run(
 ) -> Result<Exit, Failure> {
     interrupt::watch(terminal);
     jobs(args.jobs, terminal)?;
-    // A missing lock is told before anything is simulated.
+    // A missing lock is reported before anything is simulated.
     let locks = locked::locks(args, terminal)?;
     let mut exit = Exit::Yes;
     for (manifest, lock) in args.manifests.iter().zip(locks) {

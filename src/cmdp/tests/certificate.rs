@@ -82,7 +82,7 @@ fn the_multipliers_certify_the_value() {
     assert!(solved > 100, "{solved}");
 }
 
-/// Costs from 1e-3 to 1e3 or 1e-6 to 1e6, moves that take a million attempts, or both.
+/// Checks costs from 1e-3 to 1e3 or 1e-6 to 1e6, moves that take a million attempts, or both.
 #[test]
 fn bad_scaling_is_certified_too() {
     for (decades, patient) in [(6.0, false), (12.0, false), (0.0, true), (6.0, true)] {

@@ -183,7 +183,7 @@ fn anything() -> impl Strategy<Value = Value> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Whatever value takes one place of a document: an answer or an error, never a panic.
+    /// Checks that whatever value takes one place of a document, there is an answer or an error, never a panic.
     #[test]
     fn no_document_panics(place in 0_usize..14, value in anything()) {
         let places = [
@@ -199,7 +199,7 @@ proptest! {
         prop_assert!(solve_document(&text).is_err());
     }
 
-    /// Extreme but legal numbers: an answer within its bound, or a typed error.
+    /// Checks that extreme but legal numbers give an answer within its bound, or a typed error.
     #[test]
     fn extreme_numbers_are_answered_or_refused(
         exponents in prop::collection::vec(-320_i32..308, 4), slip in 1_i32..300,
@@ -225,7 +225,7 @@ proptest! {
     }
 }
 
-/// A written model is read as the same, numbers to the bit.
+/// Checks that a written model is read as the same, numbers to the bit.
 #[test]
 fn a_written_model_is_read_as_the_same() {
     for family in Family::ALL {

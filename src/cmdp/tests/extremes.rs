@@ -42,7 +42,7 @@ fn traps_dead_ends_and_no_goal_are_infeasible() {
     assert_eq!(solve(&nowhere.cmdp()).unwrap(), none);
 }
 
-/// Circling is free and arriving is not: the policy arrives nevertheless.
+/// Checks that the policy arrives although circling is free and arriving is not.
 #[test]
 fn free_circles_are_not_arrivals() {
     let mut instance = line(4);
@@ -60,7 +60,7 @@ fn free_circles_are_not_arrivals() {
     assert_eq!(optimal(&instance.cmdp()).primary, 0.0);
 }
 
-/// A bound of zero forbids every pair that costs, exactly.
+/// Checks that a bound of zero forbids every pair that costs, exactly.
 #[test]
 fn a_bound_of_zero_is_kept_exactly() {
     let mut instance = line(4);
@@ -79,7 +79,7 @@ fn a_bound_of_zero_is_kept_exactly() {
     assert_eq!(solve(&instance.cmdp()).unwrap(), Outcome::Infeasible(Infeasible::ZeroBounds));
 }
 
-/// All actions equal: still a vertex, still few randomised states.
+/// Checks that the answer is still a vertex, still with few randomised states, where all actions are equal.
 #[test]
 fn ties_everywhere_leave_a_vertex() {
     let width = 6;
@@ -101,7 +101,7 @@ fn ties_everywhere_leave_a_vertex() {
     assert!(solution.policy.randomised() <= 2);
 }
 
-/// Units from micro to mega in one model, and the same model in other units.
+/// Checks units from micro to mega in one model, and the same model in other units.
 #[test]
 fn units_do_not_matter() {
     for scale in [1e-9, 1e-3, 1.0, 1e5, 1e12] {
@@ -128,7 +128,8 @@ fn units_do_not_matter() {
     }
 }
 
-/// Each step succeeds with probability 1e-7 only, and a second action costs a million times as much.
+/// Checks a model whose every step succeeds with probability 1e-7 only, and where a second action costs a million times
+/// as much.
 #[test]
 fn hardly_moving_has_its_closed_form() {
     let p = 1e-7;
@@ -144,7 +145,7 @@ fn hardly_moving_has_its_closed_form() {
     assert!(solution.secondary[0] <= 5e4 * (1.0 + BOUND_TOLERANCE));
 }
 
-/// A walk that drifts away from the goal: expected steps grow exponentially with its length.
+/// Checks a walk that drifts away from the goal: expected steps grow exponentially with its length.
 #[test]
 fn drifting_away_has_its_closed_form() {
     let n = 25;
@@ -210,7 +211,7 @@ fn a_model_too_large_says_so() {
     );
 }
 
-/// Wherever a bound cannot be met, the least total said to be achievable is, and nothing below it.
+/// Checks that wherever a bound cannot be met, the least total said to be achievable is, and nothing below it.
 #[test]
 fn the_least_achievable_total_is_the_knife_edge() {
     let mut edges = 0;

@@ -76,7 +76,7 @@ proptest! {
     }
 }
 
-/// The JSON form is the same model.
+/// Checks that the JSON form is the same model.
 #[test]
 fn the_document_is_the_model() {
     for family in Family::ALL {

@@ -18,7 +18,7 @@ struct File {
 }
 
 impl File {
-    /// Whoever knows more says what it is.
+    /// Sets the file's kind where it is known only as a calibration's.
     fn say(&mut self, kind: InputKind) {
         if self.kind == InputKind::Calibration {
             self.kind = kind;
@@ -62,7 +62,7 @@ impl<'a> InputFiles<'a> {
         }
     }
 
-    /// What the experiment `calibration` yields; passages are kept as the input `sealed_as`.
+    /// Returns what the experiment `calibration` yields; passages are kept as the input `sealed_as`.
     pub(in crate::manifest) fn calibrate(
         &mut self,
         calibration: &Experiment,
@@ -81,12 +81,12 @@ impl<'a> InputFiles<'a> {
         self.files.insert(key, File { bytes: Ok(bytes.into()), kind });
     }
 
-    /// The manifest on whose behalf these files are read, where that is a calibration.
+    /// Returns the manifest on whose behalf these files are read, where that is a calibration.
     pub(in crate::manifest) fn calibrates(&self) -> Option<&str> {
         self.source.calibrates()
     }
 
-    /// What the robot of `spec` mapped, kept as the inputs `sealed_as`.
+    /// Returns what the robot of `spec` mapped, kept as the inputs `sealed_as`.
     pub(in crate::manifest) fn explore(
         &mut self,
         spec: &TrialSpec,
@@ -105,12 +105,12 @@ impl<'a> InputFiles<'a> {
         Ok([descriptor?, image?])
     }
 
-    /// The paths of all files that were asked for.
+    /// Returns the paths of all files that were asked for.
     pub(in crate::manifest) fn paths(&self) -> Vec<String> {
         self.files.keys().map(|(path, _)| path.clone()).collect()
     }
 
-    /// Everything that could be read, in the order of paths.
+    /// Returns everything that could be read, in the order of paths.
     pub(in crate::manifest) fn finish(self, licenses: &BTreeMap<String, String>) -> Vec<Input> {
         let mut names = BTreeSet::new();
         self.files
@@ -129,7 +129,7 @@ impl<'a> InputFiles<'a> {
     }
 }
 
-/// A flat name for `path` that `taken` (lower case) does not hold yet.
+/// Returns a flat name for `path` that `taken` (lower case) does not hold yet.
 fn unique_name(path: &str, taken: &mut BTreeSet<String>) -> String {
     let file = path.rsplit('/').next().unwrap_or_default();
     let safe = |c: char| if c.is_ascii_alphanumeric() || "._-".contains(c) { c } else { '-' };

@@ -51,13 +51,13 @@ pub trait Inputs {
         Err(InputError::NoCalibration(calibration.name.clone()))
     }
 
-    /// The manifest on whose behalf these files are read, where that is a calibration: it has none of its own.
+    /// Returns the manifest on whose behalf these files are read, where that is a calibration: it has none of its own.
     fn calibrates(&self) -> Option<&str> {
         None
     }
 
-    /// The map that the robot of `spec` ends with, as a `map_server` descriptor and the image that it names; in bundles
-    /// they are sealed as `sealed_as`. [`crate::manifest::explored`] makes them.
+    /// Returns the map that the robot of `spec` ends with, as a `map_server` descriptor and the image that it names; in
+    /// bundles they are sealed as `sealed_as`. [`crate::manifest::explored`] makes them.
     ///
     /// # Errors
     /// Why there is none.

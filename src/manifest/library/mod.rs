@@ -66,7 +66,7 @@ pub(super) enum Unread {
 }
 
 impl<'a> Library<'a> {
-    /// A library of nothing yet, whose files `inputs` hands over.
+    /// Creates a library of nothing yet, whose files `inputs` hands over.
     pub(super) fn new(inputs: &'a dyn Inputs) -> Self {
         Self {
             files: InputFiles::new(inputs),

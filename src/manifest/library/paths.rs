@@ -2,7 +2,7 @@
 
 use crate::manifest::input::WrittenIn;
 
-/// `path` without `.` steps, doubled slashes and steps that `..` undoes.
+/// Returns `path` without `.` steps, doubled slashes and steps that `..` undoes.
 pub(in crate::manifest) fn normalised(path: &str) -> String {
     let mut steps: Vec<&str> = Vec::new();
     for step in path.split('/') {
@@ -19,7 +19,7 @@ pub(in crate::manifest) fn normalised(path: &str) -> String {
     format!("{root}{}", steps.join("/"))
 }
 
-/// `path`, written in the file `beside`, from where `beside` is written.
+/// Returns `path`, written in the file `beside`, from where `beside` is written.
 pub(in crate::manifest) fn joined(beside: &str, path: &str) -> String {
     match beside.rsplit_once('/') {
         Some((folder, _)) if !path.starts_with('/') => normalised(&format!("{folder}/{path}")),
@@ -27,7 +27,7 @@ pub(in crate::manifest) fn joined(beside: &str, path: &str) -> String {
     }
 }
 
-/// What paths are relative to, in words.
+/// Says what paths are relative to, in words.
 pub(in crate::manifest) fn relative_to(written_in: WrittenIn) -> &'static str {
     match written_in {
         WrittenIn::Manifest => "paths are relative to the file they are written in",

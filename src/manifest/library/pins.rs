@@ -18,7 +18,7 @@ pub(super) struct Pin {
 }
 
 impl Pin {
-    /// Where the file is to be had, in words.
+    /// Says where the file is to be had, in words.
     pub(super) fn published(&self) -> String {
         let Self { publisher, commit, path, .. } = self;
         format!("`{path}` of {publisher} at commit {commit}")
@@ -30,7 +30,7 @@ impl Pin {
 pub(super) struct Pins(BTreeMap<String, Pin>);
 
 impl Pins {
-    /// The pins of `docs`, the value of `/pinned`; faults where they cannot be read.
+    /// Reads the pins of `docs`, the value of `/pinned`; collects faults where they cannot be read.
     pub(super) fn read(docs: &[PinnedDoc], faults: &mut Faults<'_>) -> Self {
         let mut pins: BTreeMap<String, Pin> = BTreeMap::new();
         for (i, doc) in docs.iter().enumerate() {
@@ -63,12 +63,12 @@ impl Pins {
         Self(pins)
     }
 
-    /// The pin of the input at `path`, which is [`normalised`].
+    /// Returns the pin of the input at `path`, which is [`normalised`].
     pub(super) fn of(&self, path: &str) -> Option<&Pin> {
         self.0.get(path)
     }
 
-    /// The paths that are not in `read`, each with where it is pinned.
+    /// Returns the paths that are not in `read`, each with where it is pinned.
     pub(super) fn unused(&self, read: &[String]) -> Vec<(String, String)> {
         self.0
             .iter()

@@ -88,7 +88,8 @@ fn the_pioneer_is_what_its_data_sheet_says() {
     );
 }
 
-/// The digest is part of every trial's key: a robot without camera and compass keeps its earlier one.
+/// Checks that the digest, which is part of every trial's key, is the pinned one: a robot without camera and compass
+/// keeps its earlier one.
 #[test]
 fn the_kobuki_s_meaning_is_pinned() {
     let (robot, _) = read(&Source::new("robots/kobuki.urdf", KOBUKI)).unwrap();

@@ -16,8 +16,8 @@ fn printed(value: f64, sd: Option<f64>, n: Option<u64>) -> Option<Printed> {
     Some(Printed { value, sd, n })
 }
 
-/// Newcombe 1998, table II, method 10: 56 of 70 against 48 of 80 is 0.0524 to 0.3339. The others by hand with z =
-/// 1.959963984540054.
+/// Checks Newcombe 1998, table II, method 10: 56 of 70 against 48 of 80 is 0.0524 to 0.3339. The others by hand with
+/// z = 1.959963984540054.
 #[test]
 fn shares_are_compared_by_newcombes_interval_at_both_numbers_of_trials() {
     for (ours, percent, n, low, high) in [
@@ -35,7 +35,8 @@ fn shares_are_compared_by_newcombes_interval_at_both_numbers_of_trials() {
     }
 }
 
-/// t(0.975; 9) = 2.262157162798205, times 3 √(1/10 + 1/30): 2.478069. The spread is the paper's, whatever ours is.
+/// Checks the interval by hand: t(0.975; 9) = 2.262157162798205, times 3 √(1/10 + 1/30): 2.478069. The spread is the
+/// paper's, whatever ours is.
 #[test]
 fn means_are_compared_by_the_papers_prediction_interval() {
     let paper = printed(20.0, Some(3.0), Some(10));
@@ -48,7 +49,7 @@ fn means_are_compared_by_the_papers_prediction_interval() {
     assert!(matches!(Agreement::between(mean(17.4, 30), paper), Agreement::Apart(_)));
 }
 
-/// The same quantile and interval by another library.
+/// Checks the same quantile and interval by another library.
 #[test]
 fn the_half_width_is_that_of_statrs() {
     use statrs::distribution::{ContinuousCDF, StudentsT};
@@ -60,7 +61,8 @@ fn the_half_width_is_that_of_statrs() {
     }
 }
 
-/// No sd, an sd of an unknown number of runs, of one run, or of none at all: nearness, and no compatibility.
+/// Checks that no sd, and an sd of an unknown number of runs, of one run, or of none at all, give nearness and no
+/// compatibility.
 #[test]
 fn numbers_without_spread_are_only_near_or_far() {
     for (sd, n) in [(None, Some(48)), (Some(2.0), None), (Some(2.0), Some(1)), (Some(0.0), Some(9))]
@@ -92,7 +94,7 @@ fn what_is_missing_says_why() {
     assert_eq!(Agreement::between(share(1, 2), None), Agreement::default());
 }
 
-/// Marks differ in shape, as names and words do.
+/// Checks that marks differ in shape, as names and words do.
 #[test]
 fn every_answer_has_a_mark_a_name_and_words_of_its_own() {
     let difference = Interval { low: 0.0, high: 1.0, confidence: CONFIDENCE };

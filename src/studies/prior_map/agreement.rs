@@ -100,7 +100,7 @@ impl Findings<'_> {
                     found.push(agreement(id, (&scope, &scope), &part));
                 }
             }
-            // One factor's levels have been told.
+            // The levels of a single factor have been compared above.
             for reading in self.ran(&readings).iter().filter(|reading| reading.len() > 1) {
                 let has = |cell: &&CoverageCell| reading.iter().all(|v| cell.rows.contains(v));
                 let part: Vec<CoverageCell> = cells.iter().filter(has).cloned().collect();

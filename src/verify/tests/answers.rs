@@ -36,7 +36,8 @@ fn nothing_is_read_of_a_bundle_for_which_nobody_vouches() {
     );
     assert_eq!((report.name, report.bundle_id), (None, None));
 
-    // The list of digests that was signed, in a bag that is another: the signature is good and level 1 tells the rest.
+    // The list of digests that was signed, in a bag that is another: the signature is good and level 1 reports the
+    // rest.
     let signed = include_bytes!("../../../tests/signatures/tagmanifest-sha256.txt");
     tree.insert("tagmanifest-sha256.txt".into(), signed.to_vec());
     let report = climb_for(&reviewer, Ok(Archive { form: Form::Bag, tree }), &options, &ENGINE);

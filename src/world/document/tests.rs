@@ -165,7 +165,7 @@ fn the_basic_apartment_is_as_described() {
     assert!(furnished.slice(0.1602).iter().all(|outline| outline.distance(start) > 0.5));
 }
 
-/// Our walls compared with those measured in the authors' world, as cells of 0.2 m: F1 of precision and recall.
+/// Compares our walls with those measured in the authors' world, as cells of 0.2 m: F1 of precision and recall.
 #[test]
 fn the_basic_apartment_has_the_walls_of_the_original() {
     let Some(folder) = originals::folder("the_basic_apartment_has_the_walls_of_the_original")

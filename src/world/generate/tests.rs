@@ -149,7 +149,8 @@ fn every_seed_to_a_thousand_is_a_building_and_a_sample_keeps_every_rule() {
     }
 }
 
-/// The generator's version is the engine's: raise that together with these.
+/// Checks that the buildings are the pinned ones. The generator's version is the engine's: raise that together with
+/// these.
 #[test]
 fn buildings_are_pinned() {
     let meanings: Vec<String> =

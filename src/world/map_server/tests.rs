@@ -106,7 +106,7 @@ error: resolution out of range
     );
 }
 
-/// Cells counted by the authors' maps: occupied, free.
+/// Checks the cells counted by the authors' maps: occupied, free.
 #[test]
 fn the_original_maps_hold_the_published_counts() {
     let Some(folder) = originals::folder("the_original_maps_hold_the_published_counts") else {

@@ -20,7 +20,7 @@ type Affine = [[f64; 4]; 3];
 
 const IDENTITY: Affine = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
 
-/// The parts of the file `name`, z up, in metres.
+/// Reads the parts of the file `name`, z up, in metres.
 pub(super) fn read(name: &str, bytes: &[u8]) -> Result<Vec<Part>, Vec<Diagnostic>> {
     let text = std::str::from_utf8(bytes).map_err(|_| {
         vec![Diagnostic::placeless(format!("cannot read the mesh `{name}`: expected UTF-8 text"))]
@@ -50,7 +50,7 @@ pub(super) fn read(name: &str, bytes: &[u8]) -> Result<Vec<Part>, Vec<Diagnostic
     if faults.any_error() { Err(faults.finish()) } else { Ok(parts) }
 }
 
-/// From the file's unit and axes to metres with z up.
+/// Returns the map from the file's unit and axes to metres with z up.
 fn upright(root: Node<'_, '_>, faults: &mut Faults<'_>) -> Affine {
     let asset = xml::child(root, "asset");
     let unit = asset.and_then(|asset| xml::child(asset, "unit"));
@@ -85,7 +85,7 @@ struct Reader<'a, 'i, 's> {
 }
 
 impl<'a, 'i> Reader<'a, 'i, '_> {
-    /// The scene; without one, every geometry where it is.
+    /// Places the scene; without one, every geometry where it is.
     fn scene(&mut self, root: Node<'a, 'i>, base: &Affine) {
         let instance = xml::descend(root, "scene/instance_visual_scene");
         if let Some(scene) = instance.and_then(|instance| self.target(instance, "url")) {
@@ -101,7 +101,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         }
     }
 
-    /// What the attribute `name` of `node` points to.
+    /// Returns what the attribute `name` of `node` points to.
     fn target(&mut self, node: Node<'a, 'i>, name: &str) -> Option<Node<'a, 'i>> {
         let url = node.attribute(name).unwrap_or_default();
         let found = url.strip_prefix('#').and_then(|id| self.ids.get(id)).copied();
@@ -246,7 +246,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         Some(triangles)
     }
 
-    /// The corners that the indices in `list` name.
+    /// Returns the corners that the indices in `list` name.
     fn corners(
         &mut self,
         list: Node<'a, 'i>,
@@ -267,7 +267,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         Some(corners)
     }
 
-    /// The positions behind an input VERTEX.
+    /// Returns the positions behind an input VERTEX.
     fn positions(&mut self, input: Node<'a, 'i>) -> Option<Vec<[f64; 3]>> {
         let vertices = self.target(input, "source")?;
         let position =
@@ -336,7 +336,7 @@ fn transform(element: Node<'_, '_>, faults: &mut Faults<'_>) -> Option<Affine> {
     })
 }
 
-/// `inner`, then `outer`.
+/// Returns the map that applies `inner`, then `outer`.
 fn after(outer: &Affine, inner: &Affine) -> Affine {
     let column = |j: usize| [0, 1, 2].map(|row: usize| inner[row][j]);
     let mut product = *outer;

@@ -2,7 +2,7 @@
 
 use super::{MeshError, Part};
 
-/// The triangles of an STL file, in text or binary.
+/// Reads the triangles of an STL file, in text or binary.
 ///
 /// # Errors
 /// What is wrong with it.
@@ -22,7 +22,7 @@ pub(super) fn stl(bytes: &[u8]) -> Result<Vec<Part>, MeshError> {
     Ok(parts)
 }
 
-/// The triangles of an OBJ file. Its materials are of no concern here, and no other file is read.
+/// Reads the triangles of an OBJ file. Its materials are of no concern here, and no other file is read.
 ///
 /// # Errors
 /// What is wrong with it.

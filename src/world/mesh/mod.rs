@@ -40,7 +40,7 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// A mesh of `triangles`, whose corners are finite.
+    /// Creates a mesh of `triangles`, whose corners are finite.
     pub fn new(triangles: Vec<Triangle>) -> Self {
         let mut hasher = Hasher::new();
         hasher.update(b"reenact-mesh-1\0");
@@ -51,14 +51,14 @@ impl Mesh {
         Self { meaning: MeaningDigest(hasher.digest()), triangles: triangles.into() }
     }
 
-    /// Its triangles (m).
+    /// Returns its triangles (m).
     pub fn triangles(&self) -> &[Triangle] {
         &self.triangles
     }
 }
 
 impl Serialize for Mesh {
-    /// As the digest of what it holds: meshes are large.
+    /// Writes the digest of what it holds: meshes are large.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         self.meaning.serialize(serializer)
     }
@@ -83,7 +83,7 @@ enum MeshError {
     TooMany(usize),
 }
 
-/// Reads the file `name`, whose ending tells its format: `.stl`, `.obj` or `.dae`.
+/// Reads the file `name`, whose ending says its format: `.stl`, `.obj` or `.dae`.
 ///
 /// # Errors
 /// Every fault found, with its line where the format has lines.
@@ -108,7 +108,7 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<Vec<Part>, Vec<Diagnostic>> {
     }
 }
 
-/// Nothing, where `parts` are a mesh of ours; else what is wrong with them.
+/// Checks that `parts` are a mesh of ours, or returns what is wrong with them.
 fn checked<'p>(parts: impl Iterator<Item = &'p Part>) -> Result<(), MeshError> {
     let mut count = 0;
     for part in parts {

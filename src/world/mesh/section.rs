@@ -30,7 +30,7 @@ impl Standing {
     }
 }
 
-/// The lines in which the plane at height `z` (m) meets `mesh`, each once.
+/// Returns the lines in which the plane at height `z` (m) meets `mesh`, each once.
 pub(in crate::world) fn cut(mesh: &Mesh, standing: &Standing, z: f64) -> Vec<Outline> {
     let mut found = Pieces::default();
     for triangle in standing.triangles(mesh) {
@@ -49,7 +49,8 @@ pub(in crate::world) fn cut(mesh: &Mesh, standing: &Standing, z: f64) -> Vec<Out
     found.outlines
 }
 
-/// What of `mesh` lies between the heights `low` and `high` (m), seen from above: a convex piece for each face, each once.
+/// Returns what of `mesh` lies between the heights `low` and `high` (m), seen from above: a convex piece for each face,
+/// each once.
 pub(in crate::world) fn shadow(
     mesh: &Mesh,
     standing: &Standing,
@@ -67,15 +68,15 @@ pub(in crate::world) fn shadow(
     found.outlines
 }
 
-/// Where the edge from `a` to `b` pierces the plane at height `z`.
+/// Returns where the edge from `a` to `b` pierces the plane at height `z`.
 fn between(a: [f64; 3], b: [f64; 3], z: f64) -> Point {
-    // From the lower end, whichever way the edge is told, so that both faces at it find the same point.
+    // From the lower end, in whichever order the ends are given, so that both faces at the edge find the same point.
     let (a, b) = if a[2] <= b[2] { (a, b) } else { (b, a) };
     let t = (z - a[2]) / (b[2] - a[2]);
     Point::new(a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]))
 }
 
-/// The part of a convex `polygon` above the plane at height `z`, or below where `side` is -1.
+/// Returns the part of a convex `polygon` above the plane at height `z`, or below where `side` is -1.
 fn clipped(polygon: &[[f64; 3]], z: f64, side: f64) -> Vec<[f64; 3]> {
     if !z.is_finite() {
         return polygon.to_vec();
@@ -112,7 +113,8 @@ impl Pieces {
         self.seen.insert(key)
     }
 
-    /// A line as a thin rectangle that goes half its thickness beyond both ends, so that lines that meet leave no gap.
+    /// Adds a line as a thin rectangle that goes half its thickness beyond both ends, so that lines that meet leave no
+    /// gap.
     fn line(&mut self, a: Point, b: Point) {
         if !self.is_new(&[a, b]) {
             return;
@@ -125,7 +127,7 @@ impl Pieces {
         self.outlines.push(Outline::Polygon(vec![a - across, b - across, b + across, a + across]));
     }
 
-    /// The hull of `points`; a line where it is thinner than one.
+    /// Adds the hull of `points`; a line where it is thinner than one.
     fn piece(&mut self, points: &[Point]) {
         let hull = convex_hull(points);
         let pairs = hull.iter().flat_map(|a| hull.iter().map(move |b| (*a, *b)));

@@ -6,7 +6,7 @@ use crate::world::Body;
 use proptest::prelude::*;
 use section::Standing;
 
-/// The twelve triangles of a box around the origin.
+/// Returns the twelve triangles of a box around the origin.
 pub(crate) fn box_triangles(size: [f64; 3]) -> Vec<Triangle> {
     let corner = |i: usize| {
         [0, 1, 2].map(|axis: usize| if i >> axis & 1 == 0 { -0.5 } else { 0.5 } * size[axis])
@@ -237,7 +237,7 @@ prop_compose! {
 }
 
 proptest! {
-    /// A mesh of a box is cut and casts its shadow as the box does, however it is turned and scaled.
+    /// Checks that a mesh of a box is cut and casts its shadow as the box does, however it is turned and scaled.
     #[test]
     fn a_box_of_triangles_is_a_box(
         placement in placements(), size in prop::array::uniform3(0.05..3.0), scale in prop::array::uniform3(0.1..4.0),
@@ -263,7 +263,7 @@ proptest! {
         }
     }
 
-    /// What lies between two heights covers every cut between them.
+    /// Checks that what lies between two heights covers every cut between them.
     #[test]
     fn a_cut_lies_in_the_shadow(placement in placements(), low in -1.0..0.0, more in 0.1..1.0, at in 0.0..1.0) {
         let mesh = Mesh::new(box_triangles([1.0, 0.7, 0.4]));

@@ -9,8 +9,8 @@ use roxmltree::Node;
 /// Largest extent (m) of one shape.
 const MAX_SIZE: f64 = 1e5;
 
-/// The bodies of a `<collision>` at `placement`, sizes multiplied by `scale` as Gazebo does; none for planes and,
-/// with a warning or fault, for what cannot be read.
+/// Returns the bodies of a `<collision>` at `placement`, sizes multiplied by `scale` as Gazebo does; none for planes
+/// and, with a warning or fault, for what cannot be read.
 pub(super) fn read(
     collision: Node<'_, '_>,
     name: &str,
@@ -88,7 +88,7 @@ fn read_sizes(shape: Node<'_, '_>, name: &str, faults: &mut Faults<'_>) -> Optio
     faults.numbers(size)
 }
 
-/// Nothing, where one of `lengths` is no length: that is a fault.
+/// Checks `lengths`; returns `None` where one of them is no length, and collects that as a fault.
 fn check(shape: Node<'_, '_>, lengths: &[f64], faults: &mut Faults<'_>) -> Option<()> {
     let possible = |length: &f64| *length > 0.0 && *length <= MAX_SIZE;
     let Some(wrong) = lengths.iter().find(|length| !possible(length)) else { return Some(()) };

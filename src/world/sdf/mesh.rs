@@ -8,7 +8,7 @@ use crate::world::mesh::{Mesh, Part, Triangle};
 use crate::world::{Body, Solid};
 use roxmltree::Node;
 
-/// The bodies of a `<mesh>` of the collision `name`, lengths multiplied by its own `<scale>` and by `scale`.
+/// Returns the bodies of a `<mesh>` of the collision `name`, lengths multiplied by its own `<scale>` and by `scale`.
 pub(super) fn read(
     shape: Node<'_, '_>,
     name: &str,
@@ -31,7 +31,7 @@ pub(super) fn read(
         Found::StandIn(solids) => stand_in(shape, &solids, &placement, faults),
         Found::Mesh(file) => match &*file {
             Err(problems) => {
-                // A file that many collisions name is told of once.
+                // The faults of a file that many collisions name are collected once.
                 for problem in problems {
                     if !faults.kept().contains(problem) {
                         faults.push(problem.clone());
@@ -100,7 +100,7 @@ fn center(triangles: &mut [Triangle]) {
 /// How far (cosine) a stand-in's frame may lean: a degree.
 const UPRIGHT: f64 = 0.9998;
 
-/// The stand-in `solids` where `placement` is.
+/// Returns the stand-in `solids` where `placement` is.
 fn stand_in(
     shape: Node<'_, '_>,
     solids: &[Solid],

@@ -93,7 +93,7 @@ pub fn read_with(source: &Source, models: &mut dyn Models) -> Result<World, Vec<
     })
 }
 
-/// The one `<world>`, or the `<sdf>` itself where it holds bare models.
+/// Returns the one `<world>`, or the `<sdf>` itself where it holds bare models.
 fn world_of<'a, 'i>(root: Node<'a, 'i>, faults: &mut Faults<'_>) -> Option<Node<'a, 'i>> {
     let found = root.tag_name().name();
     if found != "sdf" {
@@ -114,13 +114,13 @@ fn world_of<'a, 'i>(root: Node<'a, 'i>, faults: &mut Faults<'_>) -> Option<Node<
     Some(first.unwrap_or(root))
 }
 
-/// A warning as one line.
+/// Returns a warning as one line.
 fn said(warning: &Diagnostic) -> String {
     let place = warning.location().map(|place| place + ": ").unwrap_or_default();
     format!("{place}{}", warning.message)
 }
 
-/// The file's name without folders and extension.
+/// Returns the file's name without folders and extension.
 fn stem(name: &str) -> &str {
     let file = name.rsplit(['/', '\\']).next().unwrap_or(name);
     file.rsplit_once('.').map_or(file, |(stem, _)| stem)

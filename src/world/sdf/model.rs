@@ -20,7 +20,7 @@ pub(super) struct State<'a, 'i> {
 }
 
 impl<'a, 'i> State<'a, 'i> {
-    /// From the state's `<model>`, if there is one.
+    /// Reads the state's `<model>`, if there is one.
     pub(super) fn read(node: Option<Node<'a, 'i>>, faults: &mut Faults<'_>) -> Self {
         let placement = node.filter(|n| xml::child(*n, "pose").is_some());
         let placement = placement.map(|n| pose(n, faults));
@@ -106,7 +106,7 @@ fn read_link(
     }
 }
 
-/// A warning that an `<include>` is not followed.
+/// Warns that an `<include>` is not followed.
 pub(super) fn warn_of_include(include: Node<'_, '_>, faults: &mut Faults<'_>) {
     let uri = xml::child(include, "uri").map_or("", xml::text);
     // Gazebo's own light and floor: nothing solid to miss.
@@ -123,7 +123,7 @@ pub(super) fn warn_of_include(include: Node<'_, '_>, faults: &mut Faults<'_>) {
 /// Farthest (m) that anything may lie from the origin.
 const MAX_DISTANCE: f64 = 1e5;
 
-/// The `<pose>` of an element: identity where it has none, or a fault where it cannot be read.
+/// Reads the `<pose>` of an element: identity where it has none, or a fault where it cannot be read.
 fn pose(node: Node<'_, '_>, faults: &mut Faults<'_>) -> Placement {
     let Some(pose) = xml::child(node, "pose") else { return Placement::IDENTITY };
     for frame in ["relative_to", "frame"] {

@@ -19,7 +19,7 @@ pub enum Found {
 
 /// Who knows what a mesh's URI stands for.
 pub trait Models {
-    /// What `uri` stands for.
+    /// Returns what `uri` stands for.
     fn find(&mut self, uri: &str) -> Found;
 }
 

@@ -134,7 +134,7 @@ impl Models for Shelf<'_> {
     }
 }
 
-/// A unit cube as OBJ, its part called `cube`.
+/// Returns a unit cube as OBJ, its part called `cube`.
 fn cube() -> String {
     let corner = |i: usize, axis: usize| if i >> axis & 1 == 0 { -0.5 } else { 0.5 };
     let vertices =
@@ -242,7 +242,7 @@ fn uris_lead_into_folders_that_are_given_and_nowhere_else() {
 /// Lines of a model, world frame.
 type Lines = BTreeMap<String, Vec<[f64; 4]>>;
 
-/// What an independent reader cut of the meshes of the world `name`.
+/// Reads what an independent reader cut of the meshes of the world `name`.
 fn golden(folder: &std::path::Path, name: &str) -> Lines {
     let path = folder.join(format!("derived/{name}.mesh_slices.csv"));
     let mut lines = Lines::new();
@@ -272,7 +272,8 @@ fn standing(source: &Source) -> Vec<(String, String, Standing)> {
     stands.into_iter().zip(uris).map(|((model, standing), uri)| (model, uri, standing)).collect()
 }
 
-/// `lines` (world frame) as upright ribbons about the lidar's height, in the frame and the unit of a mesh that stands there.
+/// Returns `lines` (world frame) as upright ribbons about the lidar's height, in the frame and the unit of a mesh that
+/// stands there.
 fn ribbons(lines: &[[f64; 4]], standing: &Standing) -> Vec<mesh::Triangle> {
     let Standing { placement, scale } = standing;
     let local = |x: f64, y: f64, z: f64| {
@@ -288,7 +289,7 @@ fn ribbons(lines: &[[f64; 4]], standing: &Standing) -> Vec<mesh::Triangle> {
     lines.iter().flat_map(ribbon).collect()
 }
 
-/// The triangles as a COLLADA file in inches with y up.
+/// Writes the triangles as a COLLADA file in inches with y up.
 fn collada(triangles: &[mesh::Triangle]) -> String {
     let numbers: Vec<String> = triangles
         .iter()
@@ -306,7 +307,7 @@ fn collada(triangles: &[mesh::Triangle]) -> String {
     )
 }
 
-/// Whether the lines are the same to 2 cm, each end of one near some line of the other.
+/// Asserts that the lines are the same to 2 cm, each end of one near some line of the other.
 fn same_lines(name: &str, ours: &[Outline], theirs: &[[f64; 4]]) {
     let thick = |[x0, y0, x1, y1]: &[f64; 4]| {
         let (a, b) = (Point::new(*x0, *y0), Point::new(*x1, *y1));
@@ -322,8 +323,8 @@ fn same_lines(name: &str, ours: &[Outline], theirs: &[[f64; 4]]) {
     assert!(missed <= 0.02 && added <= 0.02, "{name}: {missed} m missed, {added} m added");
 }
 
-/// The slices of the study's own meshes, rebuilt as meshes, stand where an independent reader found them: poses and scales
-/// of the state, units, axes and all instances of a mesh.
+/// Checks that the slices of the study's own meshes, rebuilt as meshes, stand where an independent reader found them:
+/// poses and scales of the state, units, axes and all instances of a mesh.
 #[test]
 fn rebuilt_meshes_of_the_original_worlds_are_cut_as_measured() {
     let Some(folder) = originals::folder("rebuilt_meshes_of_the_original_worlds") else { return };
@@ -347,7 +348,7 @@ fn rebuilt_meshes_of_the_original_worlds_are_cut_as_measured() {
     assert!(compared >= 45, "{compared}");
 }
 
-/// How many meshes of `world` are cut as `lines` say.
+/// Counts the meshes of `world` for which `lines` holds a cut, and asserts that they are cut as it says.
 fn compare(world: &World, lines: &Lines) -> usize {
     let is_mesh = |s: &&Solid| matches!(s.body, Body::Mesh { .. });
     let mut count = 0;
@@ -361,7 +362,7 @@ fn compare(world: &World, lines: &Lines) -> usize {
     count
 }
 
-/// The study's own mesh files, where the folder is a full checkout with `worlds/models/`.
+/// Checks the cuts of the study's own mesh files, where the folder is a full checkout with `worlds/models/`.
 #[expect(clippy::print_stderr, reason = "a skipped test says so")]
 #[test]
 fn the_original_meshes_are_cut_as_measured() {
@@ -386,7 +387,7 @@ fn the_original_meshes_are_cut_as_measured() {
     }
 }
 
-/// Every outline that an independent reader of the same worlds found, against ours.
+/// Checks every outline that an independent reader of the same worlds found against ours.
 #[test]
 fn the_original_worlds_are_cut_as_measured() {
     let Some(folder) = originals::folder("the_original_worlds_are_cut_as_measured") else { return };
@@ -426,7 +427,7 @@ fn the_original_worlds_are_cut_as_measured() {
     assert!(compared > 500, "{compared}");
 }
 
-/// Whether the outline has these corners (or centre and radius) to a millimetre.
+/// Returns whether the outline has these corners (or centre and radius) to a millimetre.
 fn matches(outline: &Outline, kind: &str, numbers: &[f64]) -> bool {
     match (outline, kind) {
         (Outline::Circle { center, radius }, "circle") => {

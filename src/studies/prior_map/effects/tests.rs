@@ -36,7 +36,7 @@ fn records() -> Vec<TrialRecord> {
             record.trial = trial;
             record.condition = pairs.map(|(f, v)| (f.to_owned(), v.to_owned())).to_vec();
             record.measures.insert("distance-m-at-80".to_owned(), log.map(exp));
-            // At 70 % from the start: no way, and no logarithm of it.
+            // At 70 % from the start: no distance, and no logarithm of it.
             record.measures.insert("distance-m-at-70".to_owned(), Some(0.0));
             records.push(record);
         }
