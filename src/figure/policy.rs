@@ -1,4 +1,6 @@
 //! A policy on a building's graph: the actions in each place that it visits, and how often it visits them.
+//!
+//! Over 400 lines, as graph, arrows, labels and key of a panel share their measures.
 
 use super::chart::{KeyItem, key, label, rule, sheet, text_width};
 use super::palette::{INK, PAPER};

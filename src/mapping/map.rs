@@ -45,6 +45,18 @@ pub struct OccupancyMap {
     changes: Vec<Change>,
     /// A bit for each cell of the grid, set where the cell is among `changes`.
     flipped: Vec<u64>,
+    /// Memory for the ends of a scan's beams.
+    ends: Vec<(Point, bool)>,
+    lines: Vec<Line>,
+}
+
+/// The beams of a scan that end in one cell, in the same way: they cross the same cells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Line {
+    /// The grid's index of the cell they end in.
+    to: usize,
+    is_hit: bool,
+    beams: u16,
 }
 
 /// Cells added beyond what is needed when the map grows, so that it grows seldom.
@@ -62,6 +74,8 @@ impl OccupancyMap {
             offset: Cell::new(0, 0),
             changes: Vec::new(),
             flipped: Vec::new(),
+            ends: Vec::new(),
+            lines: Vec::new(),
         }
     }
 
@@ -115,27 +129,63 @@ impl OccupancyMap {
     }
 
     fn add(&mut self, pose: Pose, beams: &BeamEnds) {
-        let sensor = pose.compose(beams.mount);
-        let ends: Vec<(Point, bool)> =
-            beams.ends.iter().map(|&(end, is_hit)| (sensor.transform(end), is_hit)).collect();
-        let reach =
-            ends.iter().fold(Bounds::EMPTY.including(sensor.position()), |b, e| b.including(e.0));
+        let sensor = pose.compose(beams.mount).position();
+        let reach = self.place(pose, beams);
         self.grow_to(reach);
+        let (from, lines) = self.lines(sensor);
         let frame = *self.grid.frame();
-        let from = frame.cell_at(sensor.position());
-        for (end, is_hit) in ends {
-            self.beam(from, frame.cell_at(end), is_hit);
+        for &Line { to, is_hit, beams } in &lines {
+            walk(&frame, from, frame.cell_of(to), is_hit, |index, is_hit| {
+                if is_hit {
+                    self.visit(index, beams, beams);
+                } else {
+                    self.pass(index, beams);
+                }
+            });
         }
+        self.lines = lines;
     }
 
     fn remove(&mut self, pose: Pose, beams: &BeamEnds) {
-        let sensor = pose.compose(beams.mount);
+        let sensor = pose.compose(beams.mount).position();
+        self.place(pose, beams);
+        let (from, lines) = self.lines(sensor);
         let frame = *self.grid.frame();
-        let from = frame.cell_at(sensor.position());
-        for &(end, is_hit) in &beams.ends {
-            let to = frame.cell_at(sensor.transform(end));
-            walk(&frame, from, to, is_hit, |index, is_hit| self.unvisit(index, is_hit));
+        for &Line { to, is_hit, beams } in &lines {
+            walk(&frame, from, frame.cell_of(to), is_hit, |index, is_hit| {
+                self.unvisit(index, beams, if is_hit { beams } else { 0 });
+            });
         }
+        self.lines = lines;
+    }
+
+    /// Places the ends of `beams`, taken with the robot at `pose`, in the map's frame, and returns what holds them and
+    /// the sensor.
+    fn place(&mut self, pose: Pose, beams: &BeamEnds) -> Bounds {
+        let sensor = pose.compose(beams.mount);
+        self.ends.clear();
+        self.ends.extend(beams.ends.iter().map(|&(end, is_hit)| (sensor.transform(end), is_hit)));
+        let start = Bounds::EMPTY.including(sensor.position());
+        self.ends.iter().fold(start, |bounds, end| bounds.including(end.0))
+    }
+
+    /// Returns the cell of the `sensor`, and the lines from there to the ends last placed: each once, since neighbouring
+    /// beams often end in one cell. Counts add up, so their order does not matter.
+    fn lines(&mut self, sensor: Point) -> (Cell, Vec<Line>) {
+        let frame = *self.grid.frame();
+        let mut lines = std::mem::take(&mut self.lines);
+        lines.clear();
+        let line = |&(end, is_hit): &(Point, bool)| {
+            Some(Line { to: frame.index(frame.cell_at(end))?, is_hit, beams: 1 })
+        };
+        lines.extend(self.ends.iter().filter_map(line));
+        lines.sort_unstable();
+        lines.dedup_by(|next, kept| {
+            let is_same = next.to == kept.to && next.is_hit == kept.is_hit;
+            kept.beams = kept.beams.saturating_add(if is_same { next.beams } else { 0 });
+            is_same
+        });
+        (frame.cell_at(sensor), lines)
     }
 
     /// Returns the cells that differ from what they were when `changes` was empty, row by row.
@@ -154,32 +204,22 @@ impl OccupancyMap {
         &self.changes
     }
 
-    fn beam(&mut self, from: Cell, to: Cell, is_hit: bool) {
-        let frame = *self.grid.frame();
-        walk(&frame, from, to, is_hit, |index, is_hit| {
-            if is_hit {
-                self.visit(index, true);
-            } else {
-                self.pass(index);
-            }
-        });
-    }
-
-    /// Counts a visit of a cell without a hit.
-    fn pass(&mut self, index: usize) {
+    /// Counts `times` visits of a cell without a hit.
+    fn pass(&mut self, index: usize, times: u16) {
         let count = &mut self.counts.values_mut()[index];
         // Most cells: never hit, and known to be free since the first visit.
         if count.hits == 0 && count.visits > 0 {
-            count.visits = count.visits.saturating_add(1);
+            count.visits = count.visits.saturating_add(times);
         } else {
-            self.visit(index, false);
+            self.visit(index, times, 0);
         }
     }
 
-    fn visit(&mut self, index: usize, is_hit: bool) {
+    /// Counts `times` visits of a cell, `hits` of them with a hit.
+    fn visit(&mut self, index: usize, times: u16, hits: u16) {
         let count = &mut self.counts.values_mut()[index];
-        count.visits = count.visits.saturating_add(1);
-        count.hits = count.hits.saturating_add(u16::from(is_hit));
+        count.visits = count.visits.saturating_add(times);
+        count.hits = count.hits.saturating_add(hits);
         self.look(index);
     }
 
@@ -207,15 +247,15 @@ impl OccupancyMap {
         }
     }
 
-    /// Undoes one visit of a cell.
-    fn unvisit(&mut self, index: usize, was_hit: bool) {
+    /// Undoes `times` visits of a cell, `hits` of them with a hit.
+    fn unvisit(&mut self, index: usize, times: u16, hits: u16) {
         let count = &mut self.counts.values_mut()[index];
         if count.visits == u16::MAX {
             return;
         }
-        count.visits = count.visits.saturating_sub(1);
+        count.visits = count.visits.saturating_sub(times);
         if count.hits > 0 || count.visits == 0 {
-            count.hits = count.hits.saturating_sub(u16::from(was_hit));
+            count.hits = count.hits.saturating_sub(hits);
             self.look(index);
         }
     }
@@ -252,13 +292,15 @@ impl OccupancyMap {
         };
         let mut counts = Grid::filled(frame, Count { hits: 0, visits: 0 });
         let mut grid = OccupancyGrid::filled(frame, Occupancy::Unknown);
-        for cell in old.cells() {
-            let there =
-                Cell::new(cell.x + self.offset.x - offset.x, cell.y + self.offset.y - offset.y);
-            if let (Some(count), Some(value)) = (self.counts.get(cell), self.grid.get(cell)) {
-                counts.set(there, count);
-                grid.set(there, value);
-            }
+        let width = usize::try_from(old.width).unwrap_or(0);
+        for y in 0..old.height {
+            let there = Cell::new(self.offset.x - offset.x, y + self.offset.y - offset.y);
+            let (Some(from), Some(to)) = (old.index(Cell::new(0, y)), frame.index(there)) else {
+                continue;
+            };
+            let (from, to) = (from..from + width, to..to + width);
+            counts.values_mut()[to.clone()].copy_from_slice(&self.counts.values()[from.clone()]);
+            grid.values_mut()[to].copy_from_slice(&self.grid.values()[from]);
         }
         (self.counts, self.grid, self.offset) = (counts, grid, offset);
         // The cells that changed in this round so far have new indices.
@@ -276,22 +318,19 @@ impl OccupancyMap {
 /// and so is what lies between; the walk is that of [`crate::grid::line`], over indices.
 fn walk(frame: &GridFrame, from: Cell, to: Cell, is_hit: bool, mut visit: impl FnMut(usize, bool)) {
     let (Some(mut index), Some(_)) = (frame.index(from), frame.index(to)) else { return };
-    let (dx, dy) = ((to.x - from.x).abs(), -(to.y - from.y).abs());
-    let aside = if to.x < from.x { -1 } else { 1 };
+    let (dx, dy) = ((to.x - from.x).abs(), (to.y - from.y).abs());
     let width = isize::try_from(frame.width).unwrap_or(0);
+    let aside = if to.x < from.x { -1 } else { 1 };
     let up = if to.y < from.y { -width } else { width };
-    let mut error = dx + dy;
-    for _ in 0..dx.max(-dy) {
+    // Every step goes along the longer side, and some go across too: chosen without a branch, which could not be foreseen.
+    let (long, short, along, across) =
+        if dx >= dy { (dx, dy, aside, up) } else { (dy, dx, up, aside) };
+    let mut error = long - short;
+    for _ in 0..long {
         visit(index, false);
-        let doubled = 2 * error;
-        if doubled >= dy {
-            error += dy;
-            index = index.wrapping_add_signed(aside);
-        }
-        if doubled <= dx {
-            error += dx;
-            index = index.wrapping_add_signed(up);
-        }
+        let turns = 2 * error <= long;
+        error += if turns { long - short } else { -short };
+        index = index.wrapping_add_signed(along + if turns { across } else { 0 });
     }
     if is_hit {
         visit(index, true);
@@ -301,6 +340,7 @@ fn walk(frame: &GridFrame, from: Cell, to: Cell, is_hit: bool, mut visit: impl F
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::grid::line;
     use crate::units::Tick;
     use proptest::prelude::*;
 
@@ -358,6 +398,16 @@ mod tests {
     }
 
     proptest! {
+        #[test]
+        fn walks_are_the_lines_of_the_grid(x in 0..90_i32, y in 0..90_i32, to_x in 0..90_i32, to_y in 0..90_i32) {
+            let frame = GridFrame { resolution: 0.1, origin: Point::ZERO, width: 90, height: 90 };
+            let (from, to) = (Cell::new(x, y), Cell::new(to_x, to_y));
+            let mut walked = Vec::new();
+            walk(&frame, from, to, true, |index, is_end| walked.push((frame.cell_of(index), is_end)));
+            let expected: Vec<_> = line(from, to).map(|cell| (cell, cell == to)).collect();
+            prop_assert_eq!(walked, expected);
+        }
+
         /// Checks that growing never loses a known cell, and that the cells reported as changed are exactly those that
         /// changed.
         #[test]

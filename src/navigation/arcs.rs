@@ -42,6 +42,8 @@ pub struct OperatorRule {
 
 /// Directions are tried in steps of a hundredth.
 const STEPS: i32 = 100;
+/// How many directions there are.
+const DIRECTIONS: usize = 2 * STEPS as usize + 1;
 /// The direction changes by at most this many steps per control cycle.
 const AGILITY: i32 = 20;
 /// Arcs are sampled every 5 cm ...
@@ -66,6 +68,8 @@ pub struct Operator {
     /// For each direction, from -1 to 1, the sample points of its arc in the robot's frame.
     arcs: Vec<Vec<Point>>,
     decay: Vec<f64>,
+    /// Continuity by the number of steps that the direction changes.
+    continuity: Vec<f64>,
     current: i32,
     recovering_until: Option<Tick>,
 }
@@ -85,7 +89,9 @@ impl Operator {
         let arcs: Vec<_> = (-STEPS..=STEPS).map(arc).collect();
         let longest = arcs.iter().map(Vec::len).max().unwrap_or(0);
         let decay = std::iter::successors(Some(1.0), |d| Some(d * DECAY)).take(longest).collect();
-        Self { rule, arcs, decay, current: 0, recovering_until: None }
+        let changed = |steps: i32| math::cos(FRAC_PI_2 * (f64::from(steps) / f64::from(2 * STEPS)));
+        let continuity = (0..=2 * STEPS).map(changed).collect();
+        Self { rule, arcs, decay, continuity, current: 0, recovering_until: None }
     }
 
     /// Computes the velocity for the next control cycle, with the robot at `pose` (odometry frame), in the steps of the
@@ -98,17 +104,12 @@ impl Operator {
         // 1. Already too close, the robot may go on as long as it comes no closer.
         let needed = self.rule.robot_radius.min(here - SPACING / 2.0).max(SPACING);
         let asked = wish.distance.clamp(AT_LEAST, ENOUGH);
-        let look = |direction: i32| self.prospect(direction, pose, needed, asked, map);
+        let turn = math::sin_cos(pose.heading);
+        let look = |direction: i32| self.prospect(direction, (pose, turn), needed, asked, map);
         // 2. The best of all directions.
-        let mut best = (f64::NEG_INFINITY, self.current);
-        for direction in -STEPS..=STEPS {
-            let score = self.score(direction, wish, look(direction), asked, recovering);
-            if score > best.0 {
-                best = (score, direction);
-            }
-        }
+        let best = self.best(wish, look, asked, recovering);
         // 3. A bounded step towards it.
-        let direction = best.1.clamp(self.current - AGILITY, self.current + AGILITY);
+        let direction = best.clamp(self.current - AGILITY, self.current + AGILITY);
         let prospect = look(direction);
         self.current = direction;
         // 4. The speed that the free distance allows.
@@ -119,15 +120,62 @@ impl Operator {
         self.twist(direction, wish.speed, cap)
     }
 
+    /// Returns the direction of the highest score, the first one of equals.
+    ///
+    /// What lies ahead is looked at only where the best outlook there could be would suffice: from the direction that would
+    /// then be best to both sides, so that few are left after the first ones.
+    fn best(
+        &self,
+        wish: Steering,
+        look: impl Fn(i32) -> Prospect,
+        asked: f64,
+        recovering: bool,
+    ) -> i32 {
+        let most = |direction: i32| {
+            let prospect = self.best_prospect(direction);
+            self.score(direction, wish, prospect, asked, recovering)
+        };
+        let mut bounds = [0.0; DIRECTIONS];
+        let mut first = (f64::NEG_INFINITY, self.current);
+        for (bound, direction) in bounds.iter_mut().zip(-STEPS..) {
+            *bound = most(direction);
+            if *bound > first.0 {
+                first = (*bound, direction);
+            }
+        }
+        let mut best = (f64::NEG_INFINITY, self.current);
+        let outwards = (0..=2 * STEPS).flat_map(|off| [first.1 - off, first.1 + off]).skip(1);
+        for direction in outwards {
+            let Some(&bound) = usize::try_from(direction + STEPS).ok().and_then(|i| bounds.get(i))
+            else {
+                continue;
+            };
+            if bound < best.0 {
+                continue;
+            }
+            let score = self.score(direction, wish, look(direction), asked, recovering);
+            if score > best.0 || (score == best.0 && direction < best.1) {
+                best = (score, direction);
+            }
+        }
+        best.1
+    }
+
+    /// Returns what no outlook of `direction` exceeds: nothing in the way as far as its arc is sampled.
+    fn best_prospect(&self, direction: i32) -> Prospect {
+        #[expect(clippy::cast_precision_loss, reason = "few samples")]
+        let free = self.arc(direction).len() as f64 * SPACING;
+        Prospect { free, is_wholly_free: true, safety: 1.0 }
+    }
+
     fn prospect(
         &self,
         direction: i32,
-        pose: Pose,
+        (pose, (sin, cos)): (Pose, (f64, f64)),
         needed: f64,
         asked: f64,
         map: &LocalMap,
     ) -> Prospect {
-        let (sin, cos) = math::sin_cos(pose.heading);
         let points = self.arc(direction);
         let mut danger: f64 = 0.0;
         for (i, point) in points.iter().enumerate() {
@@ -170,8 +218,7 @@ impl Operator {
         let share = f64::from(direction) / f64::from(STEPS);
         let off = signed_square(share) - signed_square(wish.direction.clamp(-1.0, 1.0));
         let conformance = math::cos(FRAC_PI_2 * off);
-        let change = f64::from(direction - self.current) / f64::from(2 * STEPS);
-        let continuity = math::cos(FRAC_PI_2 * change);
+        let continuity = self.continuity[direction.abs_diff(self.current) as usize];
         (way + prospect.safety + conformance + continuity) / 4.0
     }
 
@@ -239,6 +286,7 @@ mod tests {
     use super::*;
     use crate::navigation::LocalRule;
     use crate::robot::Scan;
+    use proptest::prelude::*;
 
     const RULE: OperatorRule = OperatorRule {
         max_linear: 1.0,
@@ -247,7 +295,7 @@ mod tests {
         comfort_radius: 0.35,
     };
 
-    fn map(ranges: impl Fn(f64) -> f64) -> LocalMap {
+    fn map(mut ranges: impl FnMut(f64) -> f64) -> LocalMap {
         let mut map = LocalMap::new(LocalRule::default());
         let increment = 0.005;
         let scan = Scan {
@@ -283,6 +331,33 @@ mod tests {
             settle(&mut Operator::new(RULE), right, &open),
             Twist { linear: 0.0, angular: -0.5 }
         );
+    }
+
+    proptest! {
+        #[test]
+        fn the_best_direction_is_that_of_looking_everywhere(
+            ends in prop::collection::vec(0.2..4.0, 1257),
+            wish in (-1.0..1.0, 0.0..1.0, 0.1..3.0),
+            current in -STEPS..=STEPS,
+            recovering: bool,
+        ) {
+            let mut ends = ends.into_iter();
+            let map = map(|_| ends.next().unwrap());
+            let operator = Operator { current, ..Operator::new(RULE) };
+            let wish = Steering { direction: wish.0, speed: wish.1, distance: wish.2 };
+            let asked = wish.distance.clamp(AT_LEAST, ENOUGH);
+            let look = |direction| {
+                operator.prospect(direction, (Pose::default(), (0.0, 1.0)), 0.25, asked, &map)
+            };
+            let mut everywhere = (f64::NEG_INFINITY, current);
+            for direction in -STEPS..=STEPS {
+                let score = operator.score(direction, wish, look(direction), asked, recovering);
+                if score > everywhere.0 {
+                    everywhere = (score, direction);
+                }
+            }
+            prop_assert_eq!(operator.best(wish, look, asked, recovering), everywhere.1);
+        }
     }
 
     #[test]

@@ -20,7 +20,12 @@ pub struct InflatedMap {
 
 #[derive(Debug, Clone)]
 struct Known {
+    /// The map with the cells of `free` free.
     map: OccupancyGrid,
+    /// The cell of the lattice that is its cell (0, 0).
+    offset: Cell,
+    /// Cells of the lattice.
+    free: Vec<Cell>,
     costs: Arc<CostGrid>,
     /// Whether all fires were out after [`STEPS`].
     calm: bool,
@@ -28,6 +33,10 @@ struct Known {
 
 /// K: straight fires of a radius of 9 cells are out after 13.
 const STEPS: u32 = 16;
+/// Changes this near (cells) to each other are taken for one.
+const NEAR: i32 = 24;
+/// With more changed places than this everything is inflated anew.
+const PLACES: usize = 24;
 
 impl InflatedMap {
     /// Creates an empty state, to be inflated over `radius` cells.
@@ -35,43 +44,169 @@ impl InflatedMap {
         Self { radius, known: None }
     }
 
-    /// Inflates `map` and returns its costs.
-    pub fn update(&mut self, map: OccupancyGrid) -> Arc<CostGrid> {
-        let patched = self.known.take().and_then(|known| self.patched(known, &map));
-        let known = patched.unwrap_or_else(|| {
-            let (costs, steps) = inflate_in_steps(&map, self.radius);
-            (Arc::new(costs), steps <= STEPS)
-        });
-        let (costs, calm) = known;
-        self.known = Some(Known { map, costs: Arc::clone(&costs), calm });
+    /// Inflates `map`, whose cell (0, 0) is the cell `offset` of a lattice that stays, with the cells of `free` taken for free,
+    /// and returns its costs. `changed` holds all cells in which `map` differs from the one before, and may hold more. Both
+    /// are cells of the lattice.
+    pub fn update(
+        &mut self,
+        map: &OccupancyGrid,
+        offset: Cell,
+        free: &[Cell],
+        changed: impl IntoIterator<Item = Cell>,
+    ) -> Arc<CostGrid> {
+        let known = self.known.take().and_then(|known| known.grown_to(map.frame(), offset));
+        let known = if let Some(known) = known {
+            self.renewed(known, map, free, changed)
+        } else {
+            let mut map = map.clone();
+            for cell in free {
+                map.set(Cell::new(cell.x - offset.x, cell.y - offset.y), Occupancy::Free);
+            }
+            self.anew(map, offset, free)
+        };
+        let costs = Arc::clone(&known.costs);
+        self.known = Some(known);
         costs
     }
 
-    /// Computes the costs of `map` from those of the map before it; `None` where that does not pay or is impossible.
-    fn patched(&self, known: Known, map: &OccupancyGrid) -> Option<(Arc<CostGrid>, bool)> {
-        if !known.calm || known.map.frame() != map.frame() {
-            return None;
-        }
-        let Some(changed) = difference(&known.map, map) else { return Some((known.costs, true)) };
-        let reach = i32::try_from(STEPS).ok()?;
-        let radius = i32::try_from(self.radius).ok()?;
-        let redone = changed.grown(reach, map.frame());
-        let seen = redone.grown(reach + 2 * radius + 1, map.frame());
-        if 2 * seen.cells() > map.frame().len() {
-            return None;
-        }
-        let (patch, steps) = inflate_in_steps(&seen.cut_out(map), self.radius);
-        if steps > STEPS {
-            return None;
-        }
-        let mut costs = known.costs;
-        let whole = Arc::make_mut(&mut costs);
-        for y in redone.low.y..=redone.high.y {
-            let from = Cell::new(redone.low.x - seen.low.x, y - seen.low.y);
-            whole.copy_row(Cell::new(redone.low.x, y), &patch, from, redone.width());
-        }
-        Some((costs, true))
+    fn anew(&self, map: OccupancyGrid, offset: Cell, free: &[Cell]) -> Known {
+        let (costs, steps) = inflate_in_steps(&map, self.radius);
+        let (free, calm) = (free.to_vec(), steps <= STEPS);
+        Known { map, offset, free, costs: Arc::new(costs), calm }
     }
+
+    /// Brings `known` up to date.
+    fn renewed(
+        &self,
+        mut known: Known,
+        map: &OccupancyGrid,
+        free: &[Cell],
+        changed: impl IntoIterator<Item = Cell>,
+    ) -> Known {
+        let offset = known.offset;
+        let mut places = Vec::new();
+        let freed = std::mem::replace(&mut known.free, free.to_vec());
+        for lattice in changed.into_iter().chain(freed).chain(free.iter().copied()) {
+            let cell = Cell::new(lattice.x - offset.x, lattice.y - offset.y);
+            let now = if free.contains(&lattice) { Occupancy::Free } else { map.at(cell) };
+            if map.frame().contains(cell) && known.map.at(cell) != now {
+                known.map.set(cell, now);
+                note(&mut places, cell);
+            }
+        }
+        debug_assert!(
+            map.frame().cells().all(|cell| {
+                let lattice = Cell::new(cell.x + offset.x, cell.y + offset.y);
+                free.contains(&lattice) || known.map.at(cell) == map.at(cell)
+            }),
+            "a change was not reported"
+        );
+        if places.is_empty() {
+            return known;
+        }
+        match self.patches(&known, places) {
+            Some(patches) => {
+                let whole = Arc::make_mut(&mut known.costs);
+                for Patch { redone, seen, costs } in patches {
+                    for y in redone.low.y..=redone.high.y {
+                        let from = Cell::new(redone.low.x - seen.low.x, y - seen.low.y);
+                        whole.copy_row(Cell::new(redone.low.x, y), &costs, from, redone.width());
+                    }
+                }
+                known
+            }
+            None => self.anew(known.map, offset, free),
+        }
+    }
+
+    /// Inflates the neighbourhoods of the changed `places`; `None` where that does not pay or is impossible.
+    fn patches(&self, known: &Known, places: Vec<Rectangle>) -> Option<Vec<Patch>> {
+        if !known.calm || places.len() > PLACES {
+            return None;
+        }
+        let frame = known.map.frame();
+        let reach = i32::try_from(STEPS).ok()?;
+        let margin = reach + 2 * i32::try_from(self.radius).ok()? + 1;
+        let around = |place: Rectangle| place.grown(reach, frame).grown(margin, frame);
+        let places = merged(places, |place| around(place).cells());
+        let cost: usize = places.iter().map(|&place| around(place).cells()).sum();
+        if 10 * cost > 9 * frame.len() {
+            return None;
+        }
+        let patch = |place: Rectangle| {
+            let (redone, seen) = (place.grown(reach, frame), around(place));
+            let (costs, steps) = inflate_in_steps(&seen.cut_out(&known.map), self.radius);
+            (steps <= STEPS).then_some(Patch { redone, seen, costs })
+        };
+        places.into_iter().map(patch).collect()
+    }
+}
+
+impl Known {
+    /// Returns the same in `frame`, a map around this one with nothing known in what it adds, whose cell (0, 0) is the cell
+    /// `offset` of the lattice; `None` where it is not around this one.
+    fn grown_to(self, frame: &GridFrame, offset: Cell) -> Option<Self> {
+        let old = *self.map.frame();
+        if old == *frame {
+            return Some(self);
+        }
+        let corner = Cell::new(self.offset.x - offset.x, self.offset.y - offset.y);
+        let far = Cell::new(corner.x + old.width - 1, corner.y + old.height - 1);
+        let is_around =
+            old.resolution == frame.resolution && frame.contains(corner) && frame.contains(far);
+        if old.is_empty() || !is_around {
+            return None;
+        }
+        let mut map = OccupancyGrid::filled(*frame, Occupancy::Unknown);
+        let mut costs = CostGrid::unknown(*frame);
+        let width = usize::try_from(old.width).ok()?;
+        for y in 0..old.height {
+            let (from, to) = (Cell::new(0, y), Cell::new(corner.x, corner.y + y));
+            costs.copy_row(to, &self.costs, from, width);
+            let (from, to) = (old.index(from)?, frame.index(to)?);
+            map.values_mut()[to..to + width]
+                .copy_from_slice(&self.map.values()[from..from + width]);
+        }
+        Some(Self { map, offset, costs: Arc::new(costs), ..self })
+    }
+}
+
+/// A part of the map inflated by itself.
+struct Patch {
+    /// The part in which costs are right.
+    redone: Rectangle,
+    /// The part that was inflated.
+    seen: Rectangle,
+    costs: CostGrid,
+}
+
+/// Adds `cell` to the first of `places` that is near, or as a place of its own.
+fn note(places: &mut Vec<Rectangle>, cell: Cell) {
+    let alone = Rectangle { low: cell, high: cell };
+    match places.iter().position(|place| place.is_near(cell)) {
+        Some(i) => places[i] = places[i].including(alone),
+        None if places.len() <= PLACES => places.push(alone),
+        None => {}
+    }
+}
+
+/// Joins places where one costs no more than two.
+fn merged(mut places: Vec<Rectangle>, cost: impl Fn(Rectangle) -> usize) -> Vec<Rectangle> {
+    let mut i = 0;
+    while i < places.len() {
+        let pays = |j: &usize| {
+            let (a, b) = (places[i], places[*j]);
+            cost(a.including(b)) <= cost(a) + cost(b)
+        };
+        if let Some(j) = (i + 1..places.len()).find(pays) {
+            places[i] = places[i].including(places.remove(j));
+            // What did not pay before may now.
+            i = 0;
+        } else {
+            i += 1;
+        }
+    }
+    places
 }
 
 /// Cells from one corner to the other, both included.
@@ -90,6 +225,18 @@ impl Rectangle {
                 (self.high.y + by).min(within.height - 1),
             ),
         }
+    }
+
+    fn including(self, other: Self) -> Self {
+        Self {
+            low: Cell::new(self.low.x.min(other.low.x), self.low.y.min(other.low.y)),
+            high: Cell::new(self.high.x.max(other.high.x), self.high.y.max(other.high.y)),
+        }
+    }
+
+    fn is_near(self, cell: Cell) -> bool {
+        (self.low.x - NEAR..=self.high.x + NEAR).contains(&cell.x)
+            && (self.low.y - NEAR..=self.high.y + NEAR).contains(&cell.y)
     }
 
     fn width(self) -> usize {
@@ -111,28 +258,6 @@ impl Rectangle {
     }
 }
 
-/// Returns the smallest rectangle that holds all cells in which `a` and `b`, of one frame, differ.
-fn difference(a: &OccupancyGrid, b: &OccupancyGrid) -> Option<Rectangle> {
-    let width = usize::try_from(a.frame().width).unwrap_or(0).max(1);
-    let mut found: Option<Rectangle> = None;
-    for (y, (x, z)) in (0..).zip(a.values().chunks(width).zip(b.values().chunks(width))) {
-        // Without an early end, so that the compiler compares many at once.
-        let any = x.iter().zip(z).fold(0, |any, (x, z)| any | (*x as u8 ^ *z as u8));
-        if any == 0 {
-            continue;
-        }
-        let differs = |(x, z): (&Occupancy, &Occupancy)| x != z;
-        let first = x.iter().zip(z).position(differs).unwrap_or(0);
-        let last = x.iter().zip(z).rposition(differs).unwrap_or(width - 1);
-        let [first, last] = [first, last].map(|at| i32::try_from(at).unwrap_or(i32::MAX));
-        let so_far =
-            found.get_or_insert(Rectangle { low: Cell::new(first, y), high: Cell::new(last, y) });
-        so_far.low.x = so_far.low.x.min(first);
-        so_far.high = Cell::new(so_far.high.x.max(last), y);
-    }
-    found
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -141,6 +266,12 @@ mod tests {
     use proptest::prelude::*;
 
     const SIDE: i32 = 240;
+    /// Where the maps lie on the lattice.
+    const AT: Cell = Cell { x: -7, y: 11 };
+
+    fn lattice(cell: Cell) -> Cell {
+        Cell::new(cell.x + AT.x, cell.y + AT.y)
+    }
 
     /// Returns a map of rooms of free cells, walls with doors between them, and some obstacles and unknown cells strewn
     /// in.
@@ -158,12 +289,14 @@ mod tests {
         map
     }
 
-    fn change(map: &mut OccupancyGrid, (x, y, kind): (i32, i32, u8)) {
+    fn change(map: &mut OccupancyGrid, (x, y, kind): (i32, i32, u8)) -> Vec<Cell> {
         let value =
             [Occupancy::Occupied, Occupancy::Unknown, Occupancy::Free][usize::from(kind % 3)];
-        for (dx, dy) in [(0, 0), (1, 0), (0, 1), (2, 1)] {
-            map.set(Cell::new(x + dx, y + dy), value);
+        let cells = [(0, 0), (1, 0), (0, 1), (2, 1)].map(|(dx, dy)| Cell::new(x + dx, y + dy));
+        for cell in cells {
+            map.set(cell, value);
         }
+        cells.to_vec()
     }
 
     proptest! {
@@ -171,33 +304,65 @@ mod tests {
         #[test]
         fn equals_inflating_anew(
             strewn in prop::collection::vec((0..SIDE, 0..SIDE, 0_u8..3), 0..400),
-            changes in prop::collection::vec((0..SIDE, 0..SIDE, 0_u8..3, 0..9, 0..9), 1..12),
+            changes in prop::collection::vec((0..SIDE, 0..SIDE, 0_u8..3, 0..90, 0..90), 1..12),
             radius in 1_u32..12,
         ) {
             let mut map = rooms(&strewn);
             let mut kept = InflatedMap::new(radius);
-            kept.update(map.clone());
+            kept.update(&map, AT, &[], []);
             for (x, y, kind, dx, dy) in changes {
-                change(&mut map, (x, y, kind));
-                change(&mut map, (x + dx, y + dy, kind + 1));
-                prop_assert_eq!(&*kept.update(map.clone()), &inflate(&map, radius));
+                let mut changed = change(&mut map, (x, y, kind));
+                changed.extend(change(&mut map, (x + dx, y + dy, kind + 1)));
+                let changed = changed.into_iter().map(lattice);
+                let free = [Cell::new(y, x), Cell::new(y + 1, x)];
+                let mut with_place = map.clone();
+                for cell in free {
+                    with_place.set(cell, Occupancy::Free);
+                }
+                let costs = kept.update(&map, AT, &free.map(lattice), changed);
+                prop_assert_eq!(&*costs, &inflate(&with_place, radius));
             }
         }
     }
 
     #[test]
-    fn a_small_change_is_patched_and_a_map_that_grew_is_inflated_anew() {
+    fn small_changes_are_patched_each_by_itself() {
         let mut kept = InflatedMap::new(9);
         let mut map = rooms(&[]);
-        kept.update(map.clone());
-        change(&mut map, (100, 100, 0));
+        kept.update(&map, AT, &[], []);
+        let mut places = Vec::new();
+        for at in [(20, 20, 0), (220, 220, 0)] {
+            for cell in change(&mut map, at) {
+                note(&mut places, cell);
+            }
+        }
+        assert_eq!(places.len(), 2);
         let known = kept.known.clone().unwrap();
-        assert!(known.calm && kept.patched(known, &map).is_some());
-        let frame = GridFrame { width: SIDE + 8, ..*map.frame() };
-        let grown = OccupancyGrid::filled(frame, Occupancy::Free);
-        let known = kept.known.clone().unwrap();
-        assert!(kept.patched(known, &grown).is_none());
-        assert_eq!(*kept.update(grown.clone()), inflate(&grown, 9));
+        let patches = kept.patches(&known, places.clone()).unwrap();
+        assert_eq!(patches.len(), 2, "one for each is cheaper than one for both");
+        let crowd = vec![places[0]; PLACES + 1];
+        assert!(kept.patches(&known, crowd).is_none());
+    }
+
+    #[test]
+    fn a_map_that_grew_keeps_what_was_known() {
+        let map = rooms(&[]);
+        let mut kept = InflatedMap::new(9);
+        kept.update(&map, AT, &[], []);
+        let frame = GridFrame { width: SIDE + 40, height: SIDE + 9, ..*map.frame() };
+        let mut grown = OccupancyGrid::filled(frame, Occupancy::Unknown);
+        for cell in map.frame().cells() {
+            grown.set(Cell::new(cell.x + 31, cell.y + 2), map.at(cell));
+        }
+        let known = kept.known.clone().unwrap().grown_to(&frame, Cell::new(AT.x - 31, AT.y - 2));
+        assert_eq!(*known.unwrap().costs, inflate(&grown, 9));
+        let elsewhere = kept.known.clone().unwrap().grown_to(&frame, Cell::new(AT.x + 1, AT.y));
+        assert!(elsewhere.is_none());
+        let place = Cell::new(150, 150);
+        grown.set(place, Occupancy::Occupied);
+        let offset = Cell::new(AT.x - 31, AT.y - 2);
+        let changed = [Cell::new(place.x + offset.x, place.y + offset.y)];
+        assert_eq!(*kept.update(&grown, offset, &[], changed), inflate(&grown, 9));
     }
 
     #[test]
@@ -216,9 +381,10 @@ mod tests {
         }
         map.set(Cell::new(103, 100), Occupancy::Occupied);
         let mut kept = InflatedMap::new(9);
-        assert_eq!(*kept.update(map.clone()), inflate(&map, 9));
+        assert_eq!(*kept.update(&map, AT, &[], []), inflate(&map, 9));
         assert!(!kept.known.as_ref().unwrap().calm);
-        map.set(Cell::new(102, 102), Occupancy::Occupied);
-        assert_eq!(*kept.update(map.clone()), inflate(&map, 9));
+        let obstacle = Cell::new(102, 102);
+        map.set(obstacle, Occupancy::Occupied);
+        assert_eq!(*kept.update(&map, AT, &[], [lattice(obstacle)]), inflate(&map, 9));
     }
 }

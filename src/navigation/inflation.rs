@@ -1,8 +1,11 @@
 //! Obstacles inflated over the free cells around them.
 
 use super::CostGrid;
-use super::costmap::padded_width;
+use super::costmap::{UNKNOWN, padded_width};
 use crate::grid::{Occupancy, OccupancyGrid};
+
+/// How many cells are looked at together for obstacles.
+const LOT: usize = 32;
 
 /// Inflates the map: costs fall from 100 at obstacles to 0 at `radius` cells, trunc(100 (1 - d / radius)), d the
 /// distance in cells to the obstacle that reached the cell first over free cells. Unknown cells are neither inflated
@@ -17,37 +20,43 @@ pub(super) fn inflate_in_steps(map: &OccupancyGrid, radius: u32) -> (CostGrid, u
     let mut grid = CostGrid::unknown(frame);
     let width = padded_width(&frame);
     let costs = grid.padded_mut();
-    // A brushfire: every cell of its front remembers how far it is from the obstacle its fire came from.
+    // A brushfire: every cell of its front remembers its offset from the obstacle its fire came from.
+    let fires = Fires::new(radius);
+    let beginning = fires.beginning();
     let mut front: Vec<Fire> = Vec::new();
     for (y, row) in map.values().chunks((width - 2).max(1)).enumerate() {
         let first = (y + 1) * width + 1;
-        for (x, &value) in row.iter().enumerate() {
-            match value {
-                Occupancy::Occupied => {
-                    costs[first + x] = 100;
-                    front.push(Fire { index: first + x, dx: 0, dy: 0 });
-                }
-                Occupancy::Free => costs[first + x] = 0,
-                Occupancy::Unknown => {}
+        // Two loops that have no branch in most cells: what a cell holds cannot be foreseen.
+        for (cost, value) in costs[first..].iter_mut().zip(row) {
+            *cost = match value {
+                Occupancy::Occupied => 100,
+                Occupancy::Free => 0,
+                Occupancy::Unknown => UNKNOWN,
+            };
+        }
+        for (i, cells) in row.chunks(LOT).enumerate() {
+            let is_occupied = |value: &Occupancy| *value == Occupancy::Occupied;
+            if !cells.iter().fold(false, |any, value| any | is_occupied(value)) {
+                continue;
+            }
+            for (x, _) in cells.iter().enumerate().filter(|(_, value)| is_occupied(value)) {
+                front.push(Fire { index: first + i * LOT + x, offset: beginning });
             }
         }
     }
-    let reach = i64::from(radius) * i64::from(radius);
-    let table: Vec<u8> = (0..reach).map(|squared| cost_at(squared, radius)).collect();
     let mut next = Vec::new();
     let mut steps = 0;
     while !front.is_empty() {
         steps += 1;
-        for &Fire { index, dx, dy } in &front {
+        for &Fire { index, offset } in &front {
             let neighbours = [
-                Fire { index: index + 1, dx: dx + 1, dy },
-                Fire { index: index + width, dx, dy: dy + 1 },
-                Fire { index: index - 1, dx: dx - 1, dy },
-                Fire { index: index - width, dx, dy: dy - 1 },
+                Fire { index: index + 1, offset: offset + 1 },
+                Fire { index: index + width, offset: offset + fires.side },
+                Fire { index: index - 1, offset: offset - 1 },
+                Fire { index: index - width, offset: offset - fires.side },
             ];
             for fire in neighbours {
-                // Beyond the table all is out of reach.
-                let Some(&cost) = table.get(fire.squared()) else { continue };
+                let cost = fires.costs[fire.offset];
                 // Unknown cells hold more than any cost.
                 if costs[fire.index] < cost {
                     costs[fire.index] = cost;
@@ -61,19 +70,33 @@ pub(super) fn inflate_in_steps(map: &OccupancyGrid, radius: u32) -> (CostGrid, u
     (grid, steps)
 }
 
-/// A cell that a fire has reached: its padded index, and its offset in cells from where the fire began.
+/// A cell that a fire has reached: its padded index, and its offset from where the fire began, as [`Fires`] numbers it.
 #[derive(Debug, Clone, Copy)]
 struct Fire {
     index: usize,
-    dx: i32,
-    dy: i32,
+    offset: usize,
 }
 
-impl Fire {
-    fn squared(self) -> usize {
-        #[expect(clippy::cast_sign_loss, reason = "a sum of squares")]
-        let squared = (self.dx * self.dx + self.dy * self.dy) as usize;
-        squared
+/// The square of offsets that a fire can have, with one more on each side.
+struct Fires {
+    side: usize,
+    /// The cost at each offset, row by row; 0 where it is out of reach, which no cell is below.
+    costs: Vec<u8>,
+}
+
+impl Fires {
+    fn new(radius: u32) -> Self {
+        let edge = i64::from(radius) + 1;
+        let within = i64::from(radius) * i64::from(radius);
+        let costs = (-edge..=edge)
+            .flat_map(|dy| (-edge..=edge).map(move |dx| dx * dx + dy * dy))
+            .map(|squared| if squared < within { cost_at(squared, radius) } else { 0 });
+        Self { side: 2 * radius as usize + 3, costs: costs.collect() }
+    }
+
+    /// Returns the offset of where a fire begins.
+    fn beginning(&self) -> usize {
+        self.costs.len() / 2
     }
 }
 

@@ -53,10 +53,14 @@ pub struct LocalMap {
     corner: Cell,
     seen: Vec<Seen>,
     shifted: Vec<Seen>,
-    /// Squared distance in cells to the nearest obstacle, capped.
+    /// Squared distance in cells to the nearest obstacle; more than the square of `reach` where none is so near.
     clearance: Vec<u16>,
-    /// Rows of the disc in which an obstacle is felt: how far up, and the squared distances from left to right.
-    disc: Vec<(i32, Vec<u16>)>,
+    /// The same, of obstacles in the cell's own row alone, and which rows have any.
+    nearness: Vec<u16>,
+    has_obstacle: Vec<bool>,
+    /// How far obstacles are felt (cells), and the squares from there over 0 to there.
+    reach: u16,
+    squares: Vec<u16>,
     /// Distance (m) of a squared distance in cells, as far as the disc reaches.
     metres: Vec<f64>,
     ends: Vec<Cell>,
@@ -72,15 +76,10 @@ impl LocalMap {
             cells
         };
         let side = count(rule.size);
-        let reach = count(rule.inflation_radius);
-        let squared = |x: i32, y: i32| u16::try_from(x * x + y * y).unwrap_or(u16::MAX);
-        let disc = (-reach..=reach)
-            .map(|y| {
-                let half = (reach * reach - y * y).isqrt();
-                (y, (-half..=half).map(|x| squared(x, y)).collect())
-            })
-            .collect();
-        let metres = (0..=squared(reach, 0)).map(|s| f64::from(s).sqrt() * rule.resolution);
+        let reach = u16::from(u8::try_from(count(rule.inflation_radius)).unwrap_or(254).min(254));
+        let square = |x: u16| x * x;
+        let squares = (0..=2 * reach).map(|x| square(x.abs_diff(reach))).collect();
+        let metres = (0..=square(reach)).map(|s| f64::from(s).sqrt() * rule.resolution);
         let cells =
             GridFrame { resolution: 1.0, origin: Point::ZERO, width: side, height: side }.len();
         Self {
@@ -90,7 +89,10 @@ impl LocalMap {
             seen: vec![Seen::Unknown; cells],
             shifted: Vec::new(),
             clearance: vec![u16::MAX; cells],
-            disc,
+            nearness: vec![u16::MAX; cells],
+            has_obstacle: vec![false; usize::try_from(side).unwrap_or(0)],
+            reach,
+            squares,
             metres: metres.collect(),
             ends: Vec::new(),
             ranges: Vec::new(),
@@ -104,13 +106,18 @@ impl LocalMap {
         let from = self.lattice(sensor.position());
         self.ends.clear();
         self.smooth(&scan.ranges);
+        let mut cleared = None;
         for i in 0..self.ranges.len() {
             let range = self.ranges[i];
             let reach = range.min(scan.max_range).min(self.rule.size);
             let angle = sensor.heading + scan.angle(i);
             let (sin, cos) = math::sin_cos(angle);
             let to = self.lattice(sensor.position() + Point::new(cos, sin) * reach);
-            self.clear_way(from, to);
+            // Neighbouring beams often end in one cell.
+            if cleared != Some(to) {
+                self.clear_line(from, to);
+                cleared = Some(to);
+            }
             if range < self.rule.obstacle_range.min(self.rule.size) {
                 self.ends.push(to);
             }
@@ -166,27 +173,32 @@ impl LocalMap {
 
     /// Marks the cells between `from` and `to` as free, as far as they are within the window: the walk of
     /// [`crate::grid::line`], over indices.
-    fn clear_way(&mut self, from: Cell, to: Cell) {
-        let (dx, dy) = ((to.x - from.x).abs(), -(to.y - from.y).abs());
-        let (step_x, step_y) = ((to.x - from.x).signum(), (to.y - from.y).signum());
-        let (mut x, mut y) = (from.x - self.corner.x, from.y - self.corner.y);
-        let mut error = dx + dy;
-        for _ in 0..dx.max(-dy) {
-            if !((0..self.side).contains(&x) && (0..self.side).contains(&y)) {
+    fn clear_line(&mut self, from: Cell, to: Cell) {
+        let (dx, dy) = ((to.x - from.x).abs(), (to.y - from.y).abs());
+        let (x, y) = (from.x - self.corner.x, from.y - self.corner.y);
+        let Some(mut index) = self.index(from) else { return };
+        // How many cells of the window lie ahead, with the first one.
+        let room = |at: i32, forward: bool| if forward { self.side - at } else { at + 1 };
+        let aside = if to.x < from.x { -1 } else { 1 };
+        let row = isize::try_from(self.side).unwrap_or(0);
+        let up = if to.y < from.y { -row } else { row };
+        let (room_x, room_y) = (room(x, to.x >= from.x), room(y, to.y >= from.y));
+        // Every step goes along the longer side, and some go across too, as in the walk of the map.
+        let (long, short, along, across, room_along, mut room_across) = if dx >= dy {
+            (dx, dy, aside, up, room_x, room_y)
+        } else {
+            (dy, dx, up, aside, room_y, room_x)
+        };
+        let mut error = long - short;
+        for _ in 0..long.min(room_along) {
+            if room_across == 0 {
                 return;
             }
-            #[expect(clippy::cast_sign_loss, reason = "checked to be inside")]
-            let index = (y * self.side + x) as usize;
             self.seen[index] = Seen::Free;
-            let doubled = 2 * error;
-            if doubled >= dy {
-                error += dy;
-                x += step_x;
-            }
-            if doubled <= dx {
-                error += dx;
-                y += step_y;
-            }
+            let turns = 2 * error <= long;
+            error += if turns { long - short } else { -short };
+            room_across -= i32::from(turns);
+            index = index.wrapping_add_signed(along + if turns { across } else { 0 });
         }
     }
 
@@ -214,11 +226,17 @@ impl LocalMap {
             return;
         }
         self.shifted.clear();
-        for y in 0..self.side {
-            for x in 0..self.side {
-                let old = self.index(Cell::new(x + corner.x, y + corner.y));
-                self.shifted.push(old.map_or(Seen::Unknown, |i| self.seen[i]));
-            }
+        self.shifted.resize(self.seen.len(), Seen::Unknown);
+        let (right, up) = (corner.x - self.corner.x, corner.y - self.corner.y);
+        // The columns and rows of the new window that the old one has too.
+        let shared = |by: i32| (-by).clamp(0, self.side)..(self.side - by).clamp(0, self.side);
+        let columns = shared(right);
+        #[expect(clippy::cast_sign_loss, reason = "inside of both windows")]
+        for y in shared(up) {
+            let to = (y * self.side + columns.start) as usize;
+            let from = ((y + up) * self.side + columns.start + right) as usize;
+            let row = self.seen[from..].iter().take(columns.len());
+            self.shifted[to..].iter_mut().zip(row).for_each(|(new, old)| *new = *old);
         }
         std::mem::swap(&mut self.seen, &mut self.shifted);
         self.corner = corner;
@@ -240,36 +258,34 @@ impl LocalMap {
         }
     }
 
+    /// Measures how near obstacles are: within each row first, then across rows, since squared distances add up.
     fn measure_clearance(&mut self) {
-        self.clearance.fill(u16::MAX);
-        for y in 0..self.side {
-            for x in 0..self.side {
-                #[expect(clippy::cast_sign_loss, reason = "inside")]
-                let index = (y * self.side + x) as usize;
-                if self.seen[index] != Seen::Obstacle {
-                    continue;
+        let side = self.nearness.len() / self.has_obstacle.len().max(1);
+        let far = self.reach * self.reach + 1;
+        // 1. The squared distance to the nearest obstacle of the row.
+        self.nearness.fill(far);
+        let rows = self.seen.chunks(side).zip(self.nearness.chunks_mut(side));
+        for ((seen, near), has_obstacle) in rows.zip(&mut self.has_obstacle) {
+            *has_obstacle = false;
+            for (x, _) in seen.iter().enumerate().filter(|(_, seen)| **seen == Seen::Obstacle) {
+                *has_obstacle = true;
+                let skipped = self.squares.len() / 2;
+                let (first, skipped) = (x.saturating_sub(skipped), skipped.saturating_sub(x));
+                for (here, there) in near[first..].iter_mut().zip(&self.squares[skipped..]) {
+                    *here = (*here).min(*there);
                 }
-                for (dy, squared) in &self.disc {
-                    let row = y + dy;
-                    if !(0..self.side).contains(&row) {
-                        continue;
-                    }
-                    #[expect(
-                        clippy::cast_possible_truncation,
-                        clippy::cast_possible_wrap,
-                        reason = "few cells"
-                    )]
-                    let half = (squared.len() / 2) as i32;
-                    let (from, to) = ((x - half).max(0), (x + half).min(self.side - 1));
-                    #[expect(clippy::cast_sign_loss, reason = "inside")]
-                    let (first, skipped, count) = (
-                        (row * self.side + from) as usize,
-                        (from - (x - half)) as usize,
-                        (to - from + 1) as usize,
-                    );
-                    let felt = &mut self.clearance[first..first + count];
-                    for (here, there) in felt.iter_mut().zip(&squared[skipped..]) {
-                        *here = (*here).min(*there);
+            }
+        }
+        // 2. The nearest of all rows within reach.
+        let reach = usize::from(self.reach);
+        for (y, clearance) in self.clearance.chunks_mut(side).enumerate() {
+            clearance.fill(far);
+            for row in y.saturating_sub(reach)..(y + reach + 1).min(side) {
+                if self.has_obstacle[row] {
+                    let across = self.squares[row + reach - y];
+                    let near = &self.nearness[row * side..(row + 1) * side];
+                    for (here, there) in clearance.iter_mut().zip(near) {
+                        *here = (*here).min(there.saturating_add(across));
                     }
                 }
             }
@@ -303,10 +319,10 @@ mod tests {
         }
 
         #[test]
-        fn ways_are_cleared_up_to_their_end_or_the_windows(x in -90..90_i32, y in -90..90_i32) {
+        fn lines_are_cleared_up_to_their_end_or_the_windows(x in -90..90_i32, y in -90..90_i32) {
             let mut map = LocalMap::new(LocalRule::default());
             let to = Cell::new(x, y);
-            map.clear_way(Cell::new(0, 0), to);
+            map.clear_line(Cell::new(0, 0), to);
             let mut expected = LocalMap::new(LocalRule::default());
             for cell in line(Cell::new(0, 0), to) {
                 let Some(index) = expected.index(cell) else { break };
@@ -315,6 +331,27 @@ mod tests {
                 }
             }
             prop_assert_eq!(map.seen, expected.seen);
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn clearances_are_the_distances_to_the_nearest_obstacle(
+            obstacles in prop::collection::vec((0..120_i32, 0..120_i32), 0..40),
+        ) {
+            let mut map = LocalMap::new(LocalRule::default());
+            map.seen.fill(Seen::Free);
+            let at = |(x, y): (i32, i32)| usize::try_from(y * 120 + x).unwrap();
+            for &obstacle in &obstacles {
+                map.seen[at(obstacle)] = Seen::Obstacle;
+            }
+            map.measure_clearance();
+            for cell in (0..120).flat_map(|y| (0..120).map(move |x| (x, y))) {
+                let squared = |&(x, y): &(i32, i32)| (x - cell.0).pow(2) + (y - cell.1).pow(2);
+                let nearest = obstacles.iter().map(squared).min().filter(|squared| *squared <= 49);
+                let found = i32::from(map.clearance[at(cell)]);
+                prop_assert_eq!(Some(found).filter(|squared| *squared <= 49), nearest);
+            }
         }
     }
 

@@ -3,6 +3,8 @@
 use super::CostGrid;
 use super::costmap::{padded_index, padded_len, padded_width};
 use crate::grid::Cell;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 use std::sync::Arc;
 
 /// Value of cells the wave did not reach.
@@ -12,6 +14,9 @@ pub const UNREACHED: u32 = u32::MAX;
 const STRAIGHT: u32 = 10;
 const DIAGONAL: u32 = 14;
 
+/// Half the side of the box around a goal that cannot be crossed (cells).
+const BOX: i32 = 5;
+
 /// Weighted distances from cells to one goal (Dijkstra 1959, with the buckets of Dial 1969), 8-connected over known cells
 /// below a lethal cost: a step costs its length x (1 + weight x cost / 100).
 ///
@@ -20,13 +25,16 @@ const DIAGONAL: u32 = 14;
 #[derive(Debug, Clone)]
 pub struct Wavefront {
     costs: Arc<CostGrid>,
+    goal: Cell,
     lethal: u8,
+    weight: f64,
     /// Padded as the costs are; final where below `level`.
     distances: Vec<u32>,
     /// Cost of a step into a cell of each cost, straight and diagonally.
     straight: Vec<u32>,
     diagonal: Vec<u32>,
-    /// Cells (padded indices) by their distance at the time, modulo the number of buckets.
+    /// Cells (padded indices) by their distance at the time, modulo the number of buckets: a power of two, above the
+    /// longest step.
     buckets: Vec<Vec<u32>>,
     /// Cells that have a distance, to be forgotten when the memory is used again.
     reached: Vec<u32>,
@@ -44,7 +52,8 @@ impl Wavefront {
         Self::instead_of(None, costs, goal, lethal, weight)
     }
 
-    /// Does the same in the memory of an earlier wave where that has the right size.
+    /// Does the same from an earlier wave: where that came from the same goal, only what changed since is spread anew, else
+    /// its memory is used where it has the right size.
     pub fn instead_of(
         earlier: Option<Self>,
         costs: Arc<CostGrid>,
@@ -53,6 +62,15 @@ impl Wavefront {
         weight: f64,
     ) -> Self {
         let frame = *costs.frame();
+        let mut earlier = earlier;
+        if let Some(wave) = &mut earlier
+            && *wave.costs.frame() == frame
+            && (wave.goal, wave.lethal) == (goal, lethal)
+            && wave.weight == weight
+            && wave.follow(&costs)
+        {
+            return earlier.unwrap_or_else(|| Self::from_goal(costs, goal, lethal, weight));
+        }
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
@@ -75,19 +93,21 @@ impl Wavefront {
             distances,
             reached: Vec::new(),
             straight: (0..=100).map(|cost| step(STRAIGHT, cost)).collect(),
-            buckets: vec![Vec::new(); diagonal[100] as usize + 1],
+            buckets: vec![Vec::new(); (diagonal[100] as usize + 1).next_power_of_two()],
             diagonal,
             waiting: 0,
             level: 0,
             units_per_metre: f64::from(STRAIGHT) * FINE / frame.resolution,
+            goal,
             lethal,
+            weight,
             costs,
         };
         if wave.costs.is_below(goal, lethal) {
             wave.seed(goal);
         } else {
-            for y in goal.y - 5..=goal.y + 5 {
-                for x in goal.x - 5..=goal.x + 5 {
+            for y in goal.y - BOX..=goal.y + BOX {
+                for x in goal.x - BOX..=goal.x + BOX {
                     wave.seed(Cell::new(x, y));
                 }
             }
@@ -112,23 +132,39 @@ impl Wavefront {
         if std::mem::replace(&mut self.distances[index], distance) == UNREACHED {
             self.reached.push(number);
         }
-        let slot = distance as usize % self.buckets.len();
+        let slot = self.slot(distance);
         self.buckets[slot].push(number);
         self.waiting += 1;
     }
 
+    /// Returns the bucket of `distance`.
+    fn slot(&self, distance: u32) -> usize {
+        distance as usize & (self.buckets.len() - 1)
+    }
+
     /// Spreads the wave by one unit of distance.
     fn spread(&mut self) {
+        let slot = self.slot(self.level);
+        if self.buckets[slot].is_empty() {
+            self.level += 1;
+            return;
+        }
         let width = padded_width(self.costs.frame());
         let costs = Arc::clone(&self.costs);
         let costs = costs.padded();
-        let slot = self.level as usize % self.buckets.len();
         let mut current = std::mem::take(&mut self.buckets[slot]);
         self.waiting -= current.len();
-        for index in current.drain(..) {
-            let index = index as usize;
-            if self.distances[index] != self.level {
-                continue; // reached more cheaply since
+        let mut kept = 0;
+        for i in 0..current.len() {
+            let index = current[i] as usize;
+            let distance = self.distances[index];
+            if distance != self.level {
+                // Reached more cheaply since, or, where the wave follows changes, not due before the next round.
+                if distance > self.level && distance != UNREACHED && self.slot(distance) == slot {
+                    current[kept] = current[i];
+                    kept += 1;
+                }
+                continue;
             }
             let straight = [index + 1, index + width, index - 1, index - width];
             for next in straight {
@@ -141,6 +177,8 @@ impl Wavefront {
             }
         }
         // Every step has a positive length, so nothing was added to the bucket; its memory is used again.
+        current.truncate(kept);
+        self.waiting += kept;
         self.buckets[slot] = current;
         self.level += 1;
     }
@@ -148,12 +186,95 @@ impl Wavefront {
     fn step(&mut self, next: usize, cost: u8, is_diagonal: bool) {
         // Unknown cells, and those around the grid, cost more than anything lethal.
         if cost < self.lethal {
-            let steps = if is_diagonal { &self.diagonal } else { &self.straight };
-            let through = self.level + steps[usize::from(cost)];
+            let through = self.level + self.steps(is_diagonal)[usize::from(cost)];
             if through < self.distances[next] {
                 self.reach(next, through);
             }
         }
+    }
+
+    /// Makes this the wave over `costs`, of the same frame, by looking at what they change (Ramalingam and Reps 1996), and
+    /// returns whether it could: not where the seeds may be others, or so much changes that starting again is cheaper.
+    ///
+    /// 1. Whatever was reached by a step that now costs more, and by no other step as cheaply, is forgotten: nearest to the
+    ///    goal first, so that all it may hang on is decided before it. It may hang on a cell that has come nearer since and
+    ///    has not yet passed that on, so that its distance may be more than that cell's and the step.
+    /// 2. What was forgotten or has another cost is reached anew from what is left.
+    /// 3. The wave goes on at the nearest of these.
+    fn follow(&mut self, costs: &Arc<CostGrid>) -> bool {
+        let width = padded_width(costs.frame());
+        let mut changed: Vec<usize> = Vec::new();
+        let rows = self.costs.padded().chunks(width).zip(costs.padded().chunks(width));
+        for (y, (old, new)) in rows.enumerate() {
+            if old != new {
+                let differ = |x: &usize| old[*x] != new[*x];
+                changed.extend((0..width).filter(differ).map(|x| y * width + x));
+            }
+        }
+        let is_near_goal = |index: &usize| {
+            let (x, y) = (index % width, index / width);
+            let off = |at: usize, goal: i32| i32::try_from(at).unwrap_or(i32::MAX) - 1 - goal;
+            off(x, self.goal.x).abs() <= BOX && off(y, self.goal.y).abs() <= BOX
+        };
+        let most = self.reached.len() / 4;
+        if changed.len() > most || changed.iter().any(is_near_goal) {
+            return false;
+        }
+        self.costs = Arc::clone(costs);
+        let costs = costs.padded();
+        // 1. What no longer holds.
+        let mut doubtful: BinaryHeap<Reverse<(u32, usize)>> = BinaryHeap::new();
+        let reached = changed.iter().filter(|index| self.distances[**index] != UNREACHED);
+        doubtful.extend(reached.map(|&index| Reverse((self.distances[index], index))));
+        let mut renewed = changed;
+        while let Some(Reverse((distance, index))) = doubtful.pop() {
+            if self.distances[index] != distance || self.offer(index, costs, width) <= distance {
+                continue;
+            }
+            self.distances[index] = UNREACHED;
+            renewed.push(index);
+            if renewed.len() > most {
+                return false;
+            }
+            for (next, is_diagonal) in neighbours(index, width) {
+                let beyond = self.distances[next];
+                if beyond != UNREACHED
+                    && costs[next] < self.lethal
+                    && beyond >= distance + self.steps(is_diagonal)[usize::from(costs[next])]
+                {
+                    doubtful.push(Reverse((beyond, next)));
+                }
+            }
+        }
+        // 2. From what is left.
+        let mut first = self.level;
+        for index in renewed {
+            let distance = self.offer(index, costs, width);
+            if distance < self.distances[index] {
+                self.reach(index, distance);
+                first = first.min(distance);
+            }
+        }
+        // 3. On from there.
+        self.level = first;
+        true
+    }
+
+    /// Returns the least distance that a neighbour of the cell gives it, [`UNREACHED`] where none does.
+    fn offer(&self, index: usize, costs: &[u8], width: usize) -> u32 {
+        let cost = costs[index];
+        if cost >= self.lethal {
+            return UNREACHED;
+        }
+        let through = |(next, is_diagonal): (usize, bool)| {
+            self.distances[next].saturating_add(self.steps(is_diagonal)[usize::from(cost)])
+        };
+        neighbours(index, width).map(through).min().unwrap_or(UNREACHED)
+    }
+
+    /// Returns the cost of a step into a cell of each cost.
+    fn steps(&self, is_diagonal: bool) -> &[u32] {
+        if is_diagonal { &self.diagonal } else { &self.straight }
     }
 
     /// Returns the distance of `cell` in wave units; [`UNREACHED`] where the wave does not come.
@@ -201,6 +322,13 @@ impl Wavefront {
         }
         std::iter::successors(Some(start), |&cell| self.downhill(cell)).collect()
     }
+}
+
+/// Returns the padded indices of the neighbours of a cell that is none of the padding, and which are diagonal.
+fn neighbours(index: usize, width: usize) -> impl Iterator<Item = (usize, bool)> {
+    let straight = [index + 1, index + width, index - 1, index - width];
+    let diagonal = [index + width + 1, index + width - 1, index - width - 1, index - width + 1];
+    straight.map(|next| (next, false)).into_iter().chain(diagonal.map(|next| (next, true)))
 }
 
 /// Sub-units per tenth of a step: keeps rounding of weighted steps below half a percent.
@@ -254,6 +382,50 @@ mod tests {
         }
         let mut wave = Wavefront::from_goal(Arc::new(costs), Cell::new(15, 20), 75, 10.0);
         assert_eq!(wave.metres(Cell::new(15, 2)), None);
+    }
+
+    #[test]
+    fn a_change_far_from_the_goal_is_followed_and_one_beside_it_is_not() {
+        let mut costs = open(40, 40);
+        let goal = Cell::new(3, 3);
+        let mut wave = Wavefront::from_goal(Arc::new(costs.clone()), goal, 75, 10.0);
+        wave.distance(Cell::new(39, 39));
+        for y in 0..12 {
+            costs.set(Cell::new(20, y), 100);
+        }
+        assert!(wave.follow(&Arc::new(costs.clone())));
+        let mut anew = Wavefront::from_goal(Arc::new(costs.clone()), goal, 75, 10.0);
+        for cell in costs.frame().cells() {
+            assert_eq!(wave.distance(cell), anew.distance(cell), "{cell:?}");
+        }
+        costs.set(Cell::new(5, 5), 100);
+        assert!(!wave.follow(&Arc::new(costs)));
+    }
+
+    #[test]
+    fn what_hung_on_a_cell_before_it_came_nearer_is_forgotten_with_it() {
+        let mut costs = open(30, 20);
+        for cell in costs.frame().cells() {
+            let is_long = cell.y == 3 && (10..=25).contains(&cell.x)
+                || (3..12).contains(&cell.y) && [10, 25].contains(&cell.x);
+            if !is_long && cell.y != 12 && cell.x > 8 {
+                costs.set(cell, 100);
+            }
+        }
+        let goal = Cell::new(2, 12);
+        // The end of the corridor is first reached by the long detour, ...
+        costs.set(Cell::new(20, 12), 100);
+        let mut wave = Wavefront::from_goal(Arc::new(costs.clone()), goal, 75, 10.0);
+        assert_ne!(wave.distance(Cell::new(29, 12)), UNREACHED);
+        // ... then straight ahead, which its last cells have not heard of, ...
+        costs.set(Cell::new(20, 12), 0);
+        assert!(wave.follow(&Arc::new(costs.clone())));
+        wave.distance(Cell::new(25, 12));
+        // ... and then not at all.
+        costs.set(Cell::new(20, 12), 100);
+        costs.set(Cell::new(25, 8), 100);
+        assert!(wave.follow(&Arc::new(costs)));
+        assert_eq!(wave.distance(Cell::new(29, 12)), UNREACHED);
     }
 
     /// Computes distances by relaxing every step until nothing changes (Bellman 1958).
@@ -322,6 +494,36 @@ mod tests {
             let mut again = Wavefront::instead_of(Some(wave), Arc::clone(&costs), goal, 101, 10.0);
             for (index, distance) in by_relaxation(&costs, goal, 101).into_iter().enumerate() {
                 prop_assert_eq!(again.distance(costs.frame().cell_of(index)), distance);
+            }
+        }
+
+        /// Checks that a wave that follows changes, wherever they are and however far it has come, is that from scratch.
+        #[test]
+        fn a_wave_that_follows_changes_is_that_from_scratch(
+            walls in prop::collection::vec((0..30, 0..20, 0_u8..100), 0..150),
+            rounds in prop::collection::vec(
+                (prop::collection::vec((0..30, 0..20, 0_u8..100), 1..8), 0..30, 0..20),
+                1..6,
+            ),
+        ) {
+            let mut costs = open(30, 20);
+            for (x, y, cost) in walls {
+                costs.set(Cell::new(x, y), cost);
+            }
+            let goal = Cell::new(2, 2);
+            costs.set(goal, 0);
+            let mut wave = Wavefront::from_goal(Arc::new(costs.clone()), goal, 75, 10.0);
+            for (changes, x, y) in rounds {
+                wave.distance(Cell::new(x, y));
+                for (x, y, cost) in changes {
+                    costs.set(Cell::new(x, y), cost);
+                }
+                costs.set(goal, 0);
+                wave = Wavefront::instead_of(Some(wave), Arc::new(costs.clone()), goal, 75, 10.0);
+                let mut whole = wave.clone();
+                for (index, distance) in by_relaxation(&costs, goal, 75).into_iter().enumerate() {
+                    prop_assert_eq!(whole.distance(costs.frame().cell_of(index)), distance);
+                }
             }
         }
     }

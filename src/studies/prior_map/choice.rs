@@ -1,11 +1,11 @@
 //! Steps (b) and (c): frontiers, and their appraisal (section 3.1).
 
-use super::explorer::cost;
 use super::field_of_view::{FieldOfView, Headings};
 use super::frontier::{Frontier, find_frontiers};
 use super::information_gain::{AlignedPrior, InformationGain};
 use super::parameters::{Exploration, Gain, Parameters, Strategy, View};
 use super::released_gain::{Rays, ReleasedGain};
+use super::terrain::cost;
 use super::tour::Tour;
 use super::utility::{Appraisal, utilities};
 use crate::geometry::Pose;

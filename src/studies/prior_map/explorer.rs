@@ -3,21 +3,24 @@
 //! It sees odometry and scans and answers with velocities; it never sees the world. Locations, paths and waves are in
 //! the map's frame, in which the mapper localises it ([`Mapper::pose`]): with trusted odometry that is the odometry
 //! frame. The operator and its local map stay in the odometry frame, which does not jump, as in ROS.
+//!
+//! Over 400 lines, as every step reads and moves the one state of the mind.
 
 use super::choice::{Choice, Chooser, Sight};
 use super::frontier::Frontier;
 use super::information_gain::AlignedPrior;
 use super::parameters::{Parameters, Reselect};
 use super::phase::{Decided, Journey, Phase};
+use super::terrain::Terrain;
 use super::tour::Tour;
 use super::utility::ranked;
 use crate::geometry::{Point, Pose};
-use crate::grid::{Cell, GridFrame, Occupancy, OccupancyGrid};
+use crate::grid::{Cell, GridFrame};
 use crate::mapping::{Change, Mapper, OccupancyMap};
 use crate::math;
 use crate::navigation::{
-    CostGrid, InflatedMap, LocalMap, LocalRule, Operator, OperatorRule, Steering, Wavefront,
-    inflate, look_ahead, nearest_reached,
+    CostGrid, LocalMap, LocalRule, Operator, OperatorRule, Steering, Wavefront, look_ahead,
+    nearest_reached,
 };
 use crate::rng::Stream;
 use crate::robot::{Lidar, Odometry, Scan, Twist};
@@ -49,7 +52,7 @@ pub struct Explorer {
     local: LocalMap,
     operator: Operator,
     phase: Phase,
-    inflated: InflatedMap,
+    terrain: Terrain,
     wave: Option<Wavefront>,
     steering: Option<Steering>,
     keyframe_wanted: bool,
@@ -94,7 +97,7 @@ impl Explorer {
             }),
             parameters: parameters.clone(),
             phase: Phase::Choosing,
-            inflated: InflatedMap::new(navigation.inflation_radius_cells),
+            terrain: Terrain::new(navigation),
             wave: None,
             steering: None,
             keyframe_wanted: false,
@@ -135,7 +138,8 @@ impl Explorer {
         self.keyframe_wanted = false;
         self.map_changed = true;
         let before = self.mapper.pose(odometry.pose);
-        self.mapper.integrate(odometry.pose, scan);
+        let changes = self.mapper.integrate(odometry.pose, scan);
+        self.terrain.note(changes);
         let after = self.mapper.pose(odometry.pose);
         if let Phase::Driving(journey) = &mut self.phase
             && before.position().distance(after.position()) > PROGRESS
@@ -201,8 +205,7 @@ impl Explorer {
     /// Returns how many frontiers there are, given up or not, when odometry reads `odometry`.
     pub fn open_frontiers(&self, odometry: Pose) -> usize {
         let pose = self.mapper.pose(odometry);
-        let radius = self.parameters.navigation.inflation_radius_cells;
-        let costs = inflate(&self.map_with_place(pose), radius);
+        let costs = self.terrain.costs_anew(self.map(), pose);
         self.chooser.frontiers(Sight { map: self.map(), costs: &costs, pose }).len()
     }
 
@@ -281,7 +284,7 @@ impl Explorer {
         if std::mem::take(&mut self.map_changed) || self.wave.is_none() {
             let costs = self.costs(odometry.pose);
             let earlier = self.wave.take();
-            self.wave = Some(self.wave_to(earlier, &costs, journey.target));
+            self.wave = Some(self.terrain.wave_to(earlier, &costs, journey.target));
             self.path_changed = true;
         }
         let robot = self.cell_at(odometry.pose);
@@ -326,7 +329,7 @@ impl Explorer {
             let target = choice.frame.center(choice.frontiers[i].candidate);
             if odometry.pose.position().distance(target) <= tolerance {
                 // Already there, and the frontier is still one: look at its unknown side, once.
-                let towards = self.unknown_side(&choice.frontiers[i], &choice.frame);
+                let towards = choice.frontiers[i].unknown_side(self.map().grid());
                 if self.faced.is_none_or(|faced| faced.distance(towards) > tolerance) {
                     choice.chosen = Some(i);
                     next = Some(Phase::Facing { towards });
@@ -335,7 +338,7 @@ impl Explorer {
                 self.given_up.push(target);
                 continue;
             }
-            let mut wave = self.wave_to(None, &costs, target);
+            let mut wave = self.terrain.wave_to(None, &costs, target);
             if let Some(here) = nearest_reached(&mut wave, robot) {
                 choice.chosen = Some(i);
                 let distance = wave.metres(here).unwrap_or(f64::INFINITY);
@@ -406,50 +409,9 @@ impl Explorer {
         self.given_up.iter().any(|given_up| given_up.distance(candidate) < GIVEN_UP_RADIUS)
     }
 
-    /// Returns the middle of the unknown cells next to the frontier.
-    fn unknown_side(&self, frontier: &Frontier, frame: &GridFrame) -> Point {
-        let map = self.map().grid();
-        let unknown: Vec<Point> = frontier
-            .cells
-            .iter()
-            .flat_map(|cell| cell.neighbours8())
-            .filter(|&cell| map.at(cell) == Occupancy::Unknown)
-            .map(|cell| frame.center(cell))
-            .collect();
-        #[expect(clippy::cast_precision_loss, reason = "few cells")]
-        let share = 1.0 / unknown.len().max(1) as f64;
-        unknown.iter().fold(Point::ZERO, |sum, &point| sum + point * share)
-    }
-
     /// Returns the map inflated, with the place where the robot stands free.
     fn costs(&mut self, pose: Pose) -> Arc<CostGrid> {
-        let map = self.map_with_place(pose);
-        self.inflated.update(map)
-    }
-
-    /// Returns the map with the place where the robot stands free (prior-map facts, section 4).
-    fn map_with_place(&self, pose: Pose) -> OccupancyGrid {
-        let mut map = self.map().grid().clone();
-        let robot = map.frame().cell_at(pose.position());
-        for y in -2..=1 {
-            for x in -2..=1 {
-                map.set(Cell::new(robot.x + x, robot.y + y), Occupancy::Free);
-            }
-        }
-        map
-    }
-
-    fn wave_to(
-        &self,
-        earlier: Option<Wavefront>,
-        costs: &Arc<CostGrid>,
-        target: Point,
-    ) -> Wavefront {
-        let navigation = &self.parameters.navigation;
-        let goal = costs.frame().cell_at(target);
-        let lethal = cost(navigation.planner_lethal_cost);
-        let weight = navigation.cost_weight;
-        Wavefront::instead_of(earlier, Arc::clone(costs), goal, lethal, weight)
+        self.terrain.costs(self.mapper.map(), pose)
     }
 
     fn cell_at(&self, pose: Pose) -> Cell {
@@ -461,9 +423,4 @@ impl Explorer {
 fn bearing(pose: Pose, point: Point) -> f64 {
     let to = pose.inverse_transform(point);
     math::atan2(to.y, to.x)
-}
-
-/// Returns an inflated cost that a parameter names.
-pub(super) fn cost(parameter: u32) -> u8 {
-    u8::try_from(parameter.min(101)).unwrap_or(101)
 }

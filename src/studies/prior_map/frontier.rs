@@ -3,6 +3,7 @@
 //! 2. Frontier cells that share a side or a corner form one chain.
 //! 3. Each chain that is long enough is a frontier, with its candidate location.
 
+use crate::geometry::Point;
 use crate::grid::{Cell, Occupancy, OccupancyGrid};
 use crate::navigation::CostGrid;
 use crate::studies::prior_map::Candidate;
@@ -15,6 +16,22 @@ pub struct Frontier {
     pub cells: Vec<Cell>,
     /// The candidate location p: by default "the cell that divides a frontier into two equal segments".
     pub candidate: Cell,
+}
+
+impl Frontier {
+    /// Returns the middle of the unknown cells of `map` next to it.
+    pub(super) fn unknown_side(&self, map: &OccupancyGrid) -> Point {
+        let unknown: Vec<Point> = self
+            .cells
+            .iter()
+            .flat_map(|cell| cell.neighbours8())
+            .filter(|&cell| map.at(cell) == Occupancy::Unknown)
+            .map(|cell| map.frame().center(cell))
+            .collect();
+        #[expect(clippy::cast_precision_loss, reason = "few cells")]
+        let share = 1.0 / unknown.len().max(1) as f64;
+        unknown.iter().fold(Point::ZERO, |sum, &point| sum + point * share)
+    }
 }
 
 /// Finds the frontiers that the robot at `robot` can reach: chains of free cells "adjacent to at least an unknown

@@ -20,6 +20,7 @@ mod released_gain;
 mod requests;
 pub mod results;
 mod study;
+mod terrain;
 pub mod tour;
 pub mod utility;
 

@@ -1,6 +1,8 @@
 //! Parameters of the prior-knowledge study. Those the paper states have its values as default; those it
 //! leaves out have what its authors' released configuration sets (measured facts), and a manifest that
 //! relies on one says so with a `why`.
+//!
+//! Over 400 lines, as it is one list: every parameter with its meaning, range and source, to be read from top to bottom.
 
 use crate::mapping::{FilterRule, KeyframeRule, MatchRule, MotionNoise, ScanRule};
 use crate::studies::parameters;
