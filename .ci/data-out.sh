@@ -24,20 +24,7 @@ mkdir -p "$tools"
 cat "$here"/requirements-{data,citation}.txt | cmp -s - "$tools/installed.txt" || (setup) ||
   { echo "could not install the readers" >&2; exit 2; }
 
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-failed=0
-step() { # NAME COMMAND...
-  local name=$1
-  shift
-  if "$@" >"$work/log" 2>&1; then
-    echo "pass  $name"
-  else
-    echo "FAIL  $name"
-    sed 's/^/      /' "$work/log" | tail -n 40
-    failed=1
-  fi
-}
+source "$here/steps.sh"
 # The lines of the first block in LANGUAGE.
 example() { # LANGUAGE FILE
   awk -v fence='```'"$1" '$0 == fence { on = 1; next } on && /^```/ { exit } on' "$2"

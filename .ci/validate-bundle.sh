@@ -25,20 +25,7 @@ setup() {
 # Installed again whenever the pins change.
 cmp -s "$here/requirements-validate.txt" "$tools/installed.txt" || (setup) || { echo "could not install the validators" >&2; exit 2; }
 
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-failed=0
-step() { # NAME COMMAND...
-  local name=$1
-  shift
-  if "$@" >"$work/log" 2>&1; then
-    echo "pass  $name"
-  else
-    echo "FAIL  $name"
-    sed 's/^/      /' "$work/log" | tail -n 40
-    failed=1
-  fi
-}
+source "$here/steps.sh"
 sums() { (cd "$1" && sha256sum --quiet --check manifest-sha256.txt tagmanifest-sha256.txt); }
 # roc-validator is pointed at data/ rather than at the bag, whose paths it would resolve against the wrong folder.
 # 5.1 of the Process Run Crate profile wants every workflow to have an absolute identifier; Workflow RO-Crate wants the main

@@ -11,12 +11,11 @@ use reenact::mapping::{OccupancyMap, ScanRule};
 use reenact::navigation::{CostGrid, Wavefront, inflate};
 use reenact::rng::Seeds;
 use reenact::robot::{Lidar, Robot, urdf};
-use reenact::sim::{Distribution, DriveNoise, OdometryNoise, Scene, Simulator, Stepping};
+use reenact::sim::{DriveNoise, OdometryNoise, Scene, Simulator, Stepping};
 use reenact::studies::prior_map::choice::{Choice, Chooser, Sight};
 use reenact::studies::prior_map::information_gain::AlignedPrior;
 use reenact::studies::prior_map::utility::ranked;
 use reenact::studies::prior_map::{Candidate, Gain, Parameters, View};
-use reenact::units::Seconds;
 use std::sync::Arc;
 
 fn main() {
@@ -171,12 +170,7 @@ fn simulator(
         compass: None,
         start: place,
         stepping: Stepping::Always,
-        drive_noise: DriveNoise {
-            distribution: Distribution::Gaussian,
-            linear: 0.0,
-            angular: 0.0,
-            correlation: Seconds(0.5),
-        },
+        drive_noise: DriveNoise::NONE,
         odometry_noise: OdometryNoise::NONE,
     };
     Simulator::new(scene, &Seeds::new(1, vec![("scan".to_owned(), number.to_string())]))

@@ -6,14 +6,14 @@
 mod shipped;
 
 use reenact::navigation::inflate;
-use reenact::sim::{Distribution, DriveNoise, OdometryNoise, Scene, Simulator, Stepping};
+use reenact::sim::{DriveNoise, OdometryNoise, Scene, Simulator, Stepping};
 use reenact::stats::summary::{median, quantile};
 use reenact::studies::prior_map::choice::{Chooser, Sight};
 use reenact::studies::prior_map::explorer::{CONTROL_PERIOD, Explorer};
 use reenact::studies::prior_map::information_gain::AlignedPrior;
 use reenact::studies::prior_map::utility::ranked;
 use reenact::studies::{TrialSpec, prior_map};
-use reenact::units::{Seconds, Tick};
+use reenact::units::Tick;
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -63,12 +63,7 @@ fn selections(spec: &TrialSpec) -> (Vec<f64>, Vec<f64>) {
             compass: None,
             start: setup.start,
             stepping: Stepping::Always,
-            drive_noise: DriveNoise {
-                distribution: Distribution::Gaussian,
-                linear: 0.0,
-                angular: 0.0,
-                correlation: Seconds(0.5),
-            },
+            drive_noise: DriveNoise::NONE,
             odometry_noise: OdometryNoise::NONE,
         },
         &spec.seeds,

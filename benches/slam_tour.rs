@@ -20,9 +20,9 @@ use reenact::geometry::{Outline, Point, Pose};
 use reenact::mapping::{FilterRule, KeyframeRule, Mapper, MatchRule, MotionNoise, ScanRule};
 use reenact::rng::Seeds;
 use reenact::robot::{Lidar, Robot, Twist};
-use reenact::sim::{Distribution, DriveNoise, OdometryNoise, Scene, Simulator, Stepping};
+use reenact::sim::{DriveNoise, OdometryNoise, Scene, Simulator, Stepping};
 use reenact::studies::{self, prior_map};
-use reenact::units::{Seconds, Tick};
+use reenact::units::Tick;
 
 /// Length of the tour (m).
 const TOUR: f64 = 500.0;
@@ -88,12 +88,7 @@ impl Tour {
             compass: None,
             start: self.way[0],
             stepping: Stepping::Always,
-            drive_noise: DriveNoise {
-                distribution: Distribution::Gaussian,
-                linear: 0.0,
-                angular: 0.0,
-                correlation: Seconds(1.0),
-            },
+            drive_noise: DriveNoise::NONE,
             odometry_noise: ODOMETRY,
         };
         Simulator::new(scene, seeds)

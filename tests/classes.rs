@@ -5,13 +5,13 @@
 //! trials to twenty seconds where the study lets them; tables of robustness have a test of their own (`derived_inputs.rs`).
 
 use crate::adversary::forger;
+use crate::manifests::Beside;
 use crate::sandbox::{Answer, Sandbox, repository};
 use reenact::bundle::{
     Archive, Bundle, Class, Form, Limits, Tree, archive, class_of, results_digest,
 };
 use reenact::document::Source;
-use reenact::manifest::{self, CalibrationTrials, Experiment, InputError, Inputs, WrittenIn};
-use reenact::studies::TrialSpec;
+use reenact::manifest;
 use reenact::verify::{
     Finding, Level, Options, Reenactment, Report, Rows, Severity, climb, plan_of,
 };
@@ -81,27 +81,6 @@ fn copy(from: &Path, to: &Path) {
         } else {
             fs::copy(entry.path(), target).unwrap();
         }
-    }
-}
-
-/// Files beside a manifest; what would have to run first stands in.
-struct Beside(PathBuf);
-
-impl Inputs for Beside {
-    fn read(&self, as_written: &str, _: WrittenIn) -> Result<Vec<u8>, InputError> {
-        fs::read(self.0.join(as_written)).map_err(InputError::other)
-    }
-
-    fn calibrate(&self, _: &Experiment, _: &str) -> Result<CalibrationTrials, InputError> {
-        Ok(CalibrationTrials::StandIn)
-    }
-
-    fn explore(
-        &self,
-        spec: &TrialSpec,
-        sealed_as: &[String; 2],
-    ) -> Result<[Vec<u8>; 2], InputError> {
-        Ok(manifest::unexplored(spec, sealed_as)?)
     }
 }
 

@@ -4,6 +4,9 @@ use crate::sandbox::{Answer, Sandbox, repository};
 use std::fs;
 use std::path::Path;
 
+/// Probes one condition.
+const PROBE: [&str; 6] = ["run", "demo/demo.yaml", "--locked", "--probe", "--only", "prior=none"];
+
 /// Creates a folder with the starter study, one trial of half a minute a condition.
 fn desk() -> Sandbox {
     let desk = Sandbox::pinned().with_demo();
@@ -142,17 +145,7 @@ trial 0 of every condition is as in demo/demo.lock
         (redacted(&answer.stdout), answer.stderr.as_str(), answer.code),
         (same.to_owned(), "", 0)
     );
-    let probe = [
-        "run",
-        "demo/demo.yaml",
-        "--locked",
-        "--probe",
-        "--only",
-        "prior=none",
-        "--format",
-        "json",
-    ];
-    let answer = desk.run(&probe);
+    let answer = desk.run(&[&PROBE[..], &["--format", "json"]].concat());
     let mut line: serde_json::Value = serde_json::from_str(&answer.stdout).unwrap();
     line["wall_seconds"] = 0.into();
     assert_eq!(
@@ -178,17 +171,7 @@ fn a_parameter_that_changed_is_named_by_probe_and_run_and_the_bundles_are_told_a
     let desk = desk();
     assert_eq!(desk.run(&["lock", "demo/demo.yaml"]).code, 0);
     let range = ["--set", "parameters.sensing.range-m=6"];
-    let probe = [
-        "run",
-        "demo/demo.yaml",
-        "--locked",
-        "--probe",
-        "--only",
-        "prior=none",
-        range[0],
-        range[1],
-    ];
-    let answer = desk.run(&probe);
+    let answer = desk.run(&[&PROBE[..], &range].concat());
     assert_eq!(answer.code, 1);
     for line in [
         "\nsettings\n  overrides: [] -> [\"parameters.sensing.range-m=6\"]\n  parameters.sensing.range-m: ",

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Files beside a manifest; those written on the command line do not exist.
-struct Beside(PathBuf);
+pub(crate) struct Beside(pub(crate) PathBuf);
 
 impl Inputs for Beside {
     fn read(&self, as_written: &str, written_in: WrittenIn) -> Result<Vec<u8>, InputError> {

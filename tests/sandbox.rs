@@ -11,8 +11,11 @@ use tempfile::TempDir;
 /// The program under test.
 pub(crate) const PROGRAM: &str = env!("CARGO_BIN_EXE_reenact");
 
-/// Two cells of three trials of 20 simulated seconds, for [`Sandbox::with_study`]; what is appended belongs to the parameters.
-pub(crate) const TINY: &str = "
+/// Two cells of three trials of 20 simulated seconds, for [`Sandbox::with_study`], and what is appended to them.
+macro_rules! tiny {
+    ($($more:literal)?) => {
+        concat!(
+            "
 reenact: 1
 name: tiny
 title: A tiny study
@@ -29,7 +32,15 @@ prior-maps:
   floor-plan: {floor-plan-of: world}
 parameters:
   mission: {time-limit-s: 20}
-";
+",
+            $($more)?
+        )
+    };
+}
+pub(crate) use tiny;
+
+/// The same as it is; what is appended belongs to the parameters.
+pub(crate) const TINY: &str = tiny!();
 
 /// The time (s since 1970) in a sandbox whose clock is pinned.
 pub(crate) const PINNED: &str = "1600000000";

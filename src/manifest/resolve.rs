@@ -11,9 +11,10 @@ use super::library::{Inputs, Library, normalised};
 use super::names::{is_kebab, kebab};
 use super::parameters::WrappedValue;
 use super::parts::Parts;
+use super::requests::{self, Requests};
 use super::resolver::Resolver;
 use super::schema::schema;
-use super::{claims, figures, lint, numbers, overrides, previous, requests, sensitivity, settings};
+use super::{claims, lint, numbers, overrides, previous, sensitivity, settings};
 use crate::document::{Diagnostic, Node, Parsed, Source, parse_tree_by, read};
 use crate::studies::{Condition, StudyKind};
 use crate::table::Table;
@@ -97,8 +98,9 @@ impl Resolver<'_> {
         let assumptions = self.assumptions();
         let sensitivity = sensitivity::read(self, &assumptions);
         let published = self.published();
-        requests::check_requests(doc, &factors, &published, &mut self.faults);
-        figures::check_figures(doc, &factors, &published, &mut self.faults);
+        let requests = Requests { doc, factors: &factors, published: &published };
+        requests.check_tables(&mut self.faults);
+        requests.check_figures(&mut self.faults);
 
         let conditions: Vec<ResolvedCondition> =
             conditions.into_iter().filter_map(|condition| self.condition(condition)).collect();

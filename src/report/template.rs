@@ -7,7 +7,7 @@ use minijinja::value::Serde;
 use minijinja::{AutoEscape, Environment, Value};
 use serde::Serialize;
 
-/// A page and the parts that it includes by name.
+/// A page and the parts that it includes by name, beside the head that every page begins with.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Template<'a> {
     /// The page itself.
@@ -42,7 +42,8 @@ pub(super) fn render_in<C: Serialize>(
     environment.add_global("style", Value::from_safe_string(style.concat()));
     environment.add_global("script", Value::from_safe_string(script.to_owned()));
     environment.add_global("policy", Value::from_safe_string(policy(script)));
-    for (name, part) in template.parts {
+    let head = [("head", include_str!("templates/head.html"))];
+    for (name, part) in head.iter().chain(template.parts) {
         environment.add_template(name, part).expect("our own templates parse");
     }
     let page = environment.render_str(template.page, Value::from(Serde(context)));

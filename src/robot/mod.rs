@@ -3,6 +3,8 @@
 //! A mind (mapping, navigation, strategies) sees [`Scan`], [`Odometry`], [`Detection`]s and [`CompassReading`]s and answers
 //! with [`Twist`]; nothing else crosses.
 
+#[cfg(test)]
+mod fixture;
 mod message;
 pub mod urdf;
 

@@ -1,8 +1,8 @@
 use super::*;
 use crate::digest::{Sha256Digest, TrialKey};
-use crate::geometry::{Outline, Point, Pose};
+use crate::geometry::Pose;
 use crate::rng::Seeds;
-use crate::robot::{Drive, DriveKind, Robot};
+use crate::robot::Robot;
 use crate::studies::{Condition, Outcome, Setup, TrialRecord, TrialSpec, prior_map};
 use crate::world::World;
 use std::collections::BTreeMap;
@@ -11,34 +11,9 @@ use std::sync::{Arc, Mutex};
 
 /// Returns a plan of `trials` trials of which nothing but the identity matters here.
 fn plan(trials: u32) -> Vec<TrialSpec> {
-    let robot = Robot {
-        name: "r".into(),
-        footprint: Outline::Circle { center: Point { x: 0.0, y: 0.0 }, radius: 0.2 },
-        body_z: [0.0, 0.3],
-        mass: 1.0,
-        drive: Drive {
-            kind: DriveKind::Differential,
-            wheel_separation: 0.2,
-            wheel_diameter: 0.1,
-            max_linear: None,
-            max_angular: None,
-        },
-        lidar: None,
-        camera: None,
-        compass: None,
-    };
-    let world = World {
-        name: "w".into(),
-        solids: Vec::new(),
-        regions: Vec::new(),
-        tags: Vec::new(),
-        starts: BTreeMap::new(),
-        goals: BTreeMap::new(),
-        warnings: Vec::new(),
-    };
     let setup = Setup::new(prior_map::Setup::new(
-        Arc::new(world),
-        Arc::new(robot),
+        Arc::new(World::empty()),
+        Arc::new(Robot::disc(0.2)),
         None,
         Pose::new(0.0, 0.0, 0.0),
         prior_map::Parameters::default(),

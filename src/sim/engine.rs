@@ -214,25 +214,9 @@ fn vector(point: Point) -> Vector {
 mod tests {
     use super::*;
     use crate::rng::Seeds;
-    use crate::robot::{Drive, DriveKind};
 
     fn disc() -> Robot {
-        Robot {
-            name: "disc".into(),
-            footprint: Outline::Circle { center: Point::ZERO, radius: 0.2 },
-            body_z: [0.0, 0.4],
-            mass: 5.0,
-            drive: Drive {
-                kind: DriveKind::Differential,
-                wheel_separation: 0.23,
-                wheel_diameter: 0.07,
-                max_linear: None,
-                max_angular: None,
-            },
-            lidar: None,
-            camera: None,
-            compass: None,
-        }
+        Robot::disc(0.2)
     }
 
     fn run(engine: &mut Engine, twist: Twist, steps: usize) {

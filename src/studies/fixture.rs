@@ -3,8 +3,8 @@
 use super::deadline::{self, Calibration};
 use super::{Condition, Findings, Outcome, Setup, TableRequest, TrialRecord};
 use crate::factor::Factor;
-use crate::geometry::{Outline, Point, Pose};
-use crate::robot::{Drive, DriveKind, Robot};
+use crate::geometry::Pose;
+use crate::robot::Robot;
 use crate::table::Table;
 use crate::world::World;
 use serde_json::json;
@@ -18,14 +18,19 @@ const PRIORS: [(&str, f64); 3] = [("none", 1.0), ("floor-plan", 0.7), ("graph", 
 const READINGS: [(&str, &str, f64); 3] =
     [("paper", "uneven", 1.0), ("released", "uneven", 0.9), ("released", "even", 1.2)];
 
-/// Returns three trials of every condition but those of a graph of the office. Some never reach 95 %, and of one condition none.
-fn records() -> Vec<TrialRecord> {
+/// Returns the record of a trial that explored in a second, of no condition and without measures.
+pub(crate) fn blank() -> TrialRecord {
     let line = format!(
         "{{\"key\":\"{}\",\"condition\":[],\"trial\":0,\"outcome\":\"explored\",\"measures\":{{}},\"series\":[],\
          \"sim-seconds\":1,\"chain\":[]}}",
         "0".repeat(64)
     );
-    let blank = TrialRecord::from_line(&line).unwrap();
+    TrialRecord::from_line(&line).unwrap()
+}
+
+/// Returns three trials of every condition but those of a graph of the office. Some never reach 95 %, and of one condition none.
+fn records() -> Vec<TrialRecord> {
+    let blank = blank();
     let mut records = Vec::new();
     for (environment, way) in WAYS {
         for (prior, gained) in PRIORS {
@@ -135,34 +140,9 @@ fn requests() -> Vec<TableRequest> {
 
 /// Returns a setup of which tables see the calibration alone.
 fn setup() -> Setup {
-    let robot = Robot {
-        name: "r".to_owned(),
-        footprint: Outline::Circle { center: Point { x: 0.0, y: 0.0 }, radius: 0.2 },
-        body_z: [0.0, 0.3],
-        mass: 1.0,
-        drive: Drive {
-            kind: DriveKind::Differential,
-            wheel_separation: 0.2,
-            wheel_diameter: 0.1,
-            max_linear: None,
-            max_angular: None,
-        },
-        lidar: None,
-        camera: None,
-        compass: None,
-    };
-    let world = World {
-        name: "w".to_owned(),
-        solids: Vec::new(),
-        regions: Vec::new(),
-        tags: Vec::new(),
-        starts: BTreeMap::new(),
-        goals: BTreeMap::new(),
-        warnings: Vec::new(),
-    };
     Setup::new(deadline::Setup::new(
-        Arc::new(world),
-        Arc::new(robot),
+        Arc::new(World::empty()),
+        Arc::new(Robot::disc(0.2)),
         Pose::new(0.0, 0.0, 0.0),
         Some(Arc::new(Calibration::stand_in())),
         deadline::Parameters::default(),

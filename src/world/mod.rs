@@ -3,6 +3,8 @@
 //! The mind never imports this module. Metres and radians; z up from the floor.
 
 pub mod document;
+#[cfg(test)]
+mod fixture;
 pub mod floor_plan;
 pub mod generate;
 pub mod map_server;

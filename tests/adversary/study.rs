@@ -1,30 +1,14 @@
 //! The honest bundle that every attack begins with: a tiny study, run once by the program under test.
 
-use crate::sandbox::Sandbox;
+use crate::sandbox::{Sandbox, tiny};
 use reenact::bundle::{Limits, Tree, archive};
 use std::fs;
 use std::path::Path;
 use std::sync::LazyLock;
 
 /// Two cells of three trials of 20 simulated seconds, with a table, a figure and a claim.
-pub(crate) const STUDY: &str = "
-reenact: 1
-name: tiny
-title: A tiny study
-authors: [{name: A. Researcher}]
-license: CC-BY-4.0
-study: prior-map
-seed: 7
-trials: 3
-robot: robots/kobuki.urdf
-world: {file: worlds/basic.yaml, layers: [walls]}
-start: {x-m: 3, y-m: 2, heading-deg: 0}
-factors:
-  prior: [none, floor-plan]
-prior-maps:
-  floor-plan: {floor-plan-of: world}
-parameters:
-  mission: {time-limit-s: 20}
+pub(crate) const STUDY: &str = tiny!(
+    "authors: [{name: A. Researcher}]
 tables:
   - id: table-1
     title: Distance travelled (m) at levels of coverage
@@ -38,7 +22,8 @@ claims:
     says: within 20 s the robot drives at least 5 m
     paper-table: silent
     expect: {between: {metric: distance-m, where: {prior: none}, low: 5, minimum-n: 3}}
-";
+"
+);
 
 /// A bundle that is what it says.
 pub(crate) struct Honest {

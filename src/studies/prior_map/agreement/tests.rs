@@ -3,7 +3,7 @@
 use super::*;
 use crate::factor::Factor;
 use crate::studies::prior_map::Metric;
-use crate::studies::{Layout, TrialRecord};
+use crate::studies::{Layout, TrialRecord, fixture};
 use crate::table::{Table, Value};
 use std::collections::BTreeMap;
 
@@ -21,12 +21,7 @@ const PRINTED: [(&str, &str, [f64; 2]); 8] = [
 
 /// Returns fifteen trials a cell, of `value(printed)` on average with 3 % of spread; trials of `late` never reach 95 %.
 fn records(value: impl Fn(f64) -> f64, late: std::ops::Range<u32>) -> Vec<TrialRecord> {
-    let line = format!(
-        "{{\"key\":\"{}\",\"condition\":[],\"trial\":0,\"outcome\":\"explored\",\"measures\":{{}},\"series\":[],\
-         \"sim-seconds\":1,\"chain\":[]}}",
-        "0".repeat(64)
-    );
-    let blank = TrialRecord::from_line(&line).unwrap();
+    let blank = fixture::blank();
     let mut records = Vec::new();
     for (environment, prior, [at_80, at_95]) in PRINTED {
         for trial in 0..15_u32 {

@@ -3,8 +3,8 @@
 use super::*;
 use crate::factor::Factor;
 use crate::stats::assert_close;
-use crate::studies::TrialRecord;
 use crate::studies::prior_map::Metric;
+use crate::studies::{TrialRecord, fixture};
 use crate::table::Table;
 
 /// Gain, ray stop, noise, and ln(distance at 80 %) of each run; `None` never got there.
@@ -21,12 +21,7 @@ const CELLS: [Cell; 6] = [
 ];
 
 fn records() -> Vec<TrialRecord> {
-    let line = format!(
-        "{{\"key\":\"{}\",\"condition\":[],\"trial\":0,\"outcome\":\"explored\",\"measures\":{{}},\"series\":[],\
-         \"sim-seconds\":1,\"chain\":[]}}",
-        "0".repeat(64)
-    );
-    let blank = TrialRecord::from_line(&line).unwrap();
+    let blank = fixture::blank();
     let mut records = Vec::new();
     for (gain, stop, noise, logs) in CELLS {
         let pairs =

@@ -6,7 +6,7 @@ use crate::document::Source;
 use crate::geometry::Point;
 use crate::grid::{GridFrame, Occupancy, OccupancyGrid};
 use crate::rng::Seeds;
-use crate::robot::{Drive, DriveKind, Robot};
+use crate::robot::Robot;
 use crate::studies::prior_map::columns;
 use crate::studies::prior_map::tour::{self, TopoMetricMap};
 use crate::studies::prior_map::{
@@ -52,17 +52,6 @@ fn flat() -> World {
 
 fn robot() -> Robot {
     Robot {
-        name: "disc".into(),
-        footprint: Outline::Circle { center: Point::ZERO, radius: 0.178 },
-        body_z: [0.01, 0.43],
-        mass: 5.0,
-        drive: Drive {
-            kind: DriveKind::Differential,
-            wheel_separation: 0.23,
-            wheel_diameter: 0.07,
-            max_linear: None,
-            max_angular: None,
-        },
         lidar: Some(Lidar {
             name: "laser".into(),
             mount: Pose::new(0.1, 0.0, 0.0),
@@ -75,8 +64,7 @@ fn robot() -> Robot {
             rate_hz: 20.0,
             noise_sd: 0.01,
         }),
-        camera: None,
-        compass: None,
+        ..Robot::disc(0.178)
     }
 }
 
