@@ -36,7 +36,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let distance = record.measures.get("distance-m").copied().flatten().unwrap_or(f64::NAN);
         println!(
             "{:<20} {:>9} after {:>6.1} s and {distance:>6.1} m",
-            record.condition().to_string(),
+            record.condition.to_string(),
             record.outcome.name(),
             record.sim_seconds
         );

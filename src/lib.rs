@@ -13,6 +13,7 @@
 //! only, never the simulator or the world.
 
 // Layer 0: numbers, bytes and shapes.
+pub mod condition;
 pub mod digest;
 pub mod document;
 pub mod factor;

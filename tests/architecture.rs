@@ -26,8 +26,19 @@ const LAYERS: [(&str, &[&str]); 9] = [
 
 /// Layer 0, in an order: each imports only those before it.
 const LAYER_0: &[&str] = &[
-    "units", "math", "digest", "json", "rng", "geometry", "grid", "factor", "stats", "table",
-    "figure", "document",
+    "units",
+    "math",
+    "digest",
+    "json",
+    "rng",
+    "geometry",
+    "grid",
+    "factor",
+    "condition",
+    "stats",
+    "table",
+    "figure",
+    "document",
 ];
 
 /// The shell, in an order: each imports every layer and only those of the shell before it.

@@ -10,6 +10,7 @@ use crate::sandbox::{Answer, Sandbox, repository};
 use reenact::bundle::{
     Archive, Bundle, Class, Form, Limits, Tree, archive, class_of, results_digest,
 };
+use reenact::condition::Condition;
 use reenact::document::Source;
 use reenact::manifest;
 use reenact::verify::{
@@ -49,8 +50,8 @@ impl Shipped {
         let beside = Beside(manifest.parent().unwrap().to_owned());
         let (experiment, _) = manifest::resolve(&source, &[], &beside).unwrap();
         // One that starts from what an earlier exploration mapped, where there is one.
-        let levels = experiment.design().map(|(condition, _)| &condition.0);
-        let from_a_map = |levels: &&Vec<(String, String)>| {
+        let levels = experiment.design().map(|(condition, _)| condition);
+        let from_a_map = |levels: &&Condition| {
             levels.iter().any(|(factor, value)| factor == "prior" && value.starts_with("previous"))
         };
         let chosen = levels.clone().find(from_a_map).or_else(|| levels.clone().next()).unwrap();

@@ -39,7 +39,7 @@ const HEAVIEST_RECORDS: usize = 80 << 20;
 /// let zip = std::fs::read("artifacts/quickstart-published.zip").unwrap();
 /// let bundle = Bundle::read(&zip, &Limits::default()).unwrap();
 /// let records = bundle.records().unwrap();
-/// assert_eq!(records[0].condition().value("prior"), Some("none"));
+/// assert_eq!(records[0].condition.value("prior"), Some("none"));
 /// assert!(records.iter().all(|record| record.measures["distance-m"] > Some(0.0)));
 /// ```
 #[derive(Debug, Clone, PartialEq)]

@@ -4,6 +4,7 @@ use super::{
     BundleContent, Circumstance, Form, Moment, Person, Publication, Sealed, SealedCondition, Tree,
     bag, format, seal, seal_inputs,
 };
+use crate::condition::Condition;
 use crate::digest::{Sha256Digest, TrialKey};
 use crate::plan::ResolvedStudy;
 use crate::studies::{Outcome, TrialRecord};
@@ -21,7 +22,7 @@ pub(crate) fn record(seed: u64, prior: &str, trial: u32) -> TrialRecord {
     let distance = f64::from(key.0[0]) + 0.5;
     TrialRecord {
         key: TrialKey(key),
-        condition: vec![("prior".into(), prior.into())],
+        condition: Condition::from([("prior", prior)]),
         trial,
         outcome: Outcome::EXPLORED,
         cause: String::new(),

@@ -80,9 +80,10 @@ fn table(plan: &Plan, records: &[TrialRecord], times: &WallTimes) -> Table {
     let factors = &plan.experiment.factors;
     let mut table = Table::new(columns(factors));
     for record in records {
-        let condition = record.condition();
         let mut row: Vec<Value> = vec![record.key.hex().into()];
-        row.extend(factors.iter().map(|f| condition.value(&f.name).map(str::to_owned).into()));
+        row.extend(
+            factors.iter().map(|f| record.condition.value(&f.name).map(str::to_owned).into()),
+        );
         row.push(i64::from(record.trial).into());
         row.push(record.outcome.name().into());
         let time = times.get(&record.key);

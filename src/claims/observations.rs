@@ -13,7 +13,7 @@ pub struct Observations {
     /// Factor columns.
     pub(crate) factors: Vec<String>,
     /// One per combination of factor values that has trials.
-    pub(crate) conditions: Vec<Condition>,
+    pub(crate) conditions: Vec<ConditionTrials>,
     /// Names of the measures: an unknown one is not the same as one that nobody reached.
     measures: Vec<String>,
 }
@@ -27,7 +27,7 @@ pub(crate) struct FailedTrial;
 
 /// The trials of one condition.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Condition {
+pub(crate) struct ConditionTrials {
     /// Factor values, in the order of the factors.
     pub(crate) values: Vec<String>,
     /// Trial numbers.
@@ -102,12 +102,13 @@ impl Observations {
         }
         let factors = trials.columns[first..trial].to_vec();
         let measures = trials.columns[outcome + 1..].to_vec();
-        let mut conditions: Vec<Condition> = Vec::new();
+        let mut conditions: Vec<ConditionTrials> = Vec::new();
         let mut places: BTreeMap<Vec<String>, usize> = BTreeMap::new();
         for row in &trials.rows {
             let values: Vec<String> = row[first..trial].iter().map(ToString::to_string).collect();
             let &mut at = places.entry(values.clone()).or_insert_with(|| {
-                conditions.push(Condition { values: values.clone(), ..Condition::default() });
+                conditions
+                    .push(ConditionTrials { values: values.clone(), ..ConditionTrials::default() });
                 conditions.len() - 1
             });
             let here = &mut conditions[at];
@@ -146,7 +147,7 @@ impl Observations {
             conditions.first().map(|c| c.1.keys().cloned().collect()).unwrap_or_default();
         let conditions = conditions
             .into_iter()
-            .map(|(values, measures)| Condition {
+            .map(|(values, measures)| ConditionTrials {
                 values,
                 numbers: (0..trials).map(u64::cast_signed).collect(),
                 outcomes: Vec::new(),
@@ -251,7 +252,7 @@ impl Observations {
     }
 }
 
-impl Condition {
+impl ConditionTrials {
     /// Returns the value of `metric` in one trial: `None` where the run did not reach it.
     pub(crate) fn reading(&self, row: usize, metric: &Metric) -> Result<Option<f64>, FailedTrial> {
         let Some(outcome) = self.outcomes.get(row) else {

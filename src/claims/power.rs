@@ -12,6 +12,7 @@ use super::metric::Metric;
 use super::observations::Observations;
 use super::published::{PublishedCell, PublishedTableError, read, selection};
 use super::verdict::{Judgement, rounded};
+use crate::condition::Condition;
 use crate::rng::Seeds;
 use crate::stats::real;
 use serde_json::{Value, json};
@@ -124,7 +125,7 @@ pub enum PowerError {
 /// Where the claim assumes no truth, or the truth is not known for a condition the claim compares.
 pub fn power(
     claim: &Claim,
-    conditions: &[Vec<(String, String)>],
+    conditions: &[Condition],
     trials: u64,
     context: &Context<'_>,
     replicates: u32,
@@ -158,7 +159,7 @@ type Truths = Vec<(usize, BTreeMap<String, Truth>)>;
 
 fn truths(
     claim: &Claim,
-    conditions: &[Vec<(String, String)>],
+    conditions: &[Condition],
     context: &Context<'_>,
 ) -> Result<Truths, PowerError> {
     let Some(assume) = &claim.power else { return Err(PowerError::NoTruth) };
@@ -176,7 +177,7 @@ fn truths(
     };
     let (mut all, pools) = (Vec::new(), claim.expect.as_form().scope().pools());
     for (i, condition) in conditions.iter().enumerate() {
-        let value_of = |f: &str| condition.iter().find(|(n, _)| n == f).map(|(_, v)| v.as_str());
+        let value_of = |f: &str| condition.value(f);
         if !pools.iter().any(|pool| pool.admits(value_of)) {
             continue;
         }
@@ -230,7 +231,7 @@ fn published_truth<'a>(
 
 fn chance(
     claim: &Claim,
-    conditions: &[Vec<(String, String)>],
+    conditions: &[Condition],
     truths: &Truths,
     trials: u64,
     context: &Context<'_>,

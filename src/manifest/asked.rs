@@ -4,10 +4,11 @@ use super::knowledge::Knowledge;
 use super::lint;
 use super::parts::Parts;
 use super::resolver::Resolver;
+use crate::condition::Condition;
 use crate::digest::MeaningDigest;
 use crate::studies::Expectations;
 use crate::studies::prior_map::{Parameters, SharedReference};
-use crate::studies::{Condition, ConditionAsWritten, Prior, Remark, Surroundings};
+use crate::studies::{ConditionAsWritten, Prior, Remark, Surroundings};
 use serde_json::{Value, json};
 use std::sync::Arc;
 

@@ -4,8 +4,8 @@ use super::choice::FactorDoc;
 use super::document::ManifestDoc;
 use super::faults::{Faults, step};
 use super::names::{is_kebab, kebab};
+use crate::condition::Condition;
 use crate::factor::Factor;
-use crate::studies::Condition;
 use crate::studies::FactorValue;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -24,7 +24,7 @@ const RESERVED: [&str; 7] = ["key", "trial", "outcome", "coverage-percent", "val
 /// Crosses the factors of `doc`: returns them and the conditions, last factor fastest, those of `include` at the end.
 pub(super) fn cross(doc: &ManifestDoc, faults: &mut Faults<'_>) -> (Vec<Factor>, Vec<Condition>) {
     let mut factors: Vec<Factor> = Vec::new();
-    let mut cells = vec![Condition(Vec::new())];
+    let mut cells = vec![Condition::default()];
     if doc.factors.0.len() > MOST_FACTORS {
         let found = doc.factors.0.len();
         let message = format!("expected at most {MOST_FACTORS} factors, found {found}");
@@ -56,7 +56,7 @@ pub(super) fn cross(doc: &ManifestDoc, faults: &mut Faults<'_>) -> (Vec<Factor>,
             FactorDoc::List(list) => {
                 note(list, &pointer, faults);
                 for cell in &cells {
-                    next.extend(list.iter().map(|value| with(cell, name, value)));
+                    next.extend(list.iter().map(|value| cell.clone().with(name, &value.0)));
                 }
             }
             FactorDoc::By(by) => {
@@ -73,7 +73,9 @@ pub(super) fn cross(doc: &ManifestDoc, faults: &mut Faults<'_>) -> (Vec<Factor>,
                 }
                 for cell in &cells {
                     let list = cell.value(&by.by).and_then(|level| by.values.get(level));
-                    next.extend(list.into_iter().flatten().map(|value| with(cell, name, value)));
+                    next.extend(
+                        list.into_iter().flatten().map(|value| cell.clone().with(name, &value.0)),
+                    );
                 }
             }
         }
@@ -105,12 +107,6 @@ pub(super) fn cross(doc: &ManifestDoc, faults: &mut Faults<'_>) -> (Vec<Factor>,
         }
     }
     (factors, cells)
-}
-
-fn with(cell: &Condition, name: &str, value: &FactorValue) -> Condition {
-    let mut cell = cell.clone();
-    cell.0.push((name.to_owned(), value.0.clone()));
-    cell
 }
 
 fn check_name(name: &str, pointer: &str, faults: &mut Faults<'_>) {
@@ -190,8 +186,7 @@ fn include(
         if !check_cell(cell, factors, &pointer, faults) || !missing.is_empty() {
             continue;
         }
-        let added =
-            Condition(factors.iter().map(|f| (f.name.clone(), cell[&f.name].0.clone())).collect());
+        let added: Condition = factors.iter().map(|f| (&f.name, &cell[&f.name].0)).collect();
         if there.insert(added.clone()) {
             cells.push(added);
         } else {

@@ -3,10 +3,11 @@
 use super::document::{Author, Cite};
 use super::input::Input;
 use crate::claims::{Claim, Sensitivity};
+use crate::condition::Condition;
 use crate::digest::MeaningDigest;
 use crate::document::Tree;
 use crate::factor::Factor;
-use crate::studies::{Calibrated, Condition, Setup, StudyKind};
+use crate::studies::{Calibrated, Setup, StudyKind};
 use crate::studies::{FigureRequest, TableRequest};
 use crate::table::Table;
 use serde::{Deserialize, Serialize};

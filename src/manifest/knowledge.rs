@@ -2,12 +2,12 @@
 
 use super::document::UnknownAs;
 use super::worlds::UsedWorld;
+use crate::condition::Condition;
 use crate::digest::{Hasher, MeaningDigest};
 use crate::geometry::Pose;
 use crate::grid::{GridFrame, Occupancy, OccupancyGrid};
 use crate::json;
 use crate::robot::Robot;
-use crate::studies::Condition;
 use crate::studies::prior_map::Parameters;
 use crate::studies::prior_map::tour::TopoMetricMap;
 use serde_json::Value;

@@ -12,13 +12,14 @@ use super::library::{InputError, Known, normalised};
 use super::lint;
 use super::readers;
 use super::resolver::Resolver;
+use crate::condition::Condition;
 use crate::digest::{Sha256Digest, TrialKey};
 use crate::document::{Diagnostic, Source, reports};
 use crate::grid::OccupancyGrid;
 use crate::json;
 use crate::rng::Seeds;
 use crate::studies::prior_map::{self, PriorMap};
-use crate::studies::{Condition, Setup, Study, TrialSpec};
+use crate::studies::{Setup, Study, TrialSpec};
 use crate::world::floor_plan::{self, FloorPlanSettings};
 use crate::world::map_server;
 use serde_json::json;
@@ -272,7 +273,7 @@ fn spec(
     ];
     TrialSpec {
         key: TrialKey(Sha256Digest::of(json::canonical(&content))),
-        condition: Condition(Vec::new()),
+        condition: Condition::default(),
         trial,
         seeds: Seeds::new(seed, coordinates),
         setup: Setup::new(setup),

@@ -6,10 +6,10 @@ use super::experiment::CalibrationRun;
 use super::faults::{Faults, step};
 use super::input::{InputKind, WrittenIn};
 use super::library::{Library, Made, Unread, joined, normalised, relative_to};
+use crate::condition::Condition;
 use crate::digest::MeaningDigest;
 use crate::document::{Diagnostic, Source};
 use crate::factor::Factor;
-use crate::studies::Condition;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 

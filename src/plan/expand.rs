@@ -3,10 +3,11 @@
 use super::key::{ENGINE_VERSION, explain, key_content, key_of, study_digest};
 use super::resolved::ResolvedStudy;
 use super::selection::{Selection, SelectionError};
+use crate::condition::Condition;
 use crate::digest::StudyDigest;
 use crate::manifest::{Experiment, ResolvedCondition};
 use crate::rng::Seeds;
-use crate::studies::{Condition, TrialSpec};
+use crate::studies::TrialSpec;
 
 /// An experiment and its trials: condition by condition, trial by trial.
 #[derive(Debug, Clone)]
@@ -154,7 +155,7 @@ fn seeds(experiment: &Experiment, condition: &Condition, trial: u32) -> Seeds {
     let mut coordinates = vec![("study".to_owned(), experiment.kind.name().to_owned())];
     // Sorted, so that the order of factors in the manifest moves no number.
     let mut levels: Vec<_> =
-        condition.0.iter().filter(|(name, _)| !experiment.shared_noise.contains(name)).collect();
+        condition.iter().filter(|(name, _)| !experiment.shared_noise.contains(name)).collect();
     levels.sort();
     coordinates
         .extend(levels.into_iter().map(|(name, value)| (format!("factor {name}"), value.clone())));

@@ -5,10 +5,11 @@
 //! means the same has the same key, whoever planned it.
 
 use super::resolved::ResolvedStudy;
+use crate::condition::Condition;
 use crate::digest::{Sha256Digest, StudyDigest, TrialKey};
 use crate::json;
 use crate::manifest::{Experiment, Meanings};
-use crate::studies::{Condition, Setup, StudyKind, TrialSpec};
+use crate::studies::{Setup, StudyKind, TrialSpec};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
@@ -63,7 +64,7 @@ pub fn key_content(
 
 /// Returns the value of every factor, by its name.
 pub(super) fn levels(condition: &Condition) -> BTreeMap<String, String> {
-    condition.0.iter().cloned().collect()
+    condition.iter().cloned().collect()
 }
 
 /// Computes the key of that content.

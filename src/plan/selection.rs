@@ -1,8 +1,9 @@
 //! Which trials of a plan to run: `--only`, `--trials` and `--shard`.
 
+use crate::condition::Condition;
 use crate::document::suggestion;
 use crate::manifest::Experiment;
-use crate::studies::Condition;
+
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

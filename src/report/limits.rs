@@ -205,7 +205,7 @@ mod tests {
         let drawn = |records: &[TrialRecord]| {
             request.draw(&assemble::findings(&plan, records), &plan.experiment.tables)
         };
-        let none = |record: &TrialRecord| record.condition().value("prior") == Some("none");
+        let none = |record: &TrialRecord| record.condition.value("prior") == Some("none");
         let half: Vec<TrialRecord> = records.iter().filter(|r| none(r)).cloned().collect();
         assert_eq!(half.len(), 10);
         let alt = drawn(&half).unwrap().alt;

@@ -29,7 +29,7 @@ impl Executor for Mock {
             |step: u8| Sha256Digest::of(format!("{}/{step}", spec.key)).hex()[..16].to_owned();
         TrialRecord {
             key: spec.key,
-            condition: spec.condition.0.clone(),
+            condition: spec.condition.clone(),
             trial: spec.trial,
             outcome: Outcome::EXPLORED,
             cause: String::new(),

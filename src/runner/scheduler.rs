@@ -177,7 +177,7 @@ impl Scheduler {
 
 fn poisoned(stored: &TrialRecord, fresh: &TrialRecord, count: usize, doubted: usize) -> RunError {
     let first = Nondeterminism {
-        condition: stored.condition().slug(),
+        condition: stored.condition.slug(),
         trial: stored.trial,
         key: stored.key,
         first: Sha256Digest::of(stored.to_line()),
@@ -191,7 +191,7 @@ fn poisoned(stored: &TrialRecord, fresh: &TrialRecord, count: usize, doubted: us
 fn recall(store: &dyn TrialStore, spec: &TrialSpec) -> Result<Option<TrialRecord>, StoreError> {
     let Some(mut record) = store.get(&spec.key)? else { return Ok(None) };
     // A key does not depend on the order in which a manifest writes its factors; the record's bytes do.
-    record.condition.clone_from(&spec.condition.0);
+    record.condition.clone_from(&spec.condition);
     record.trial = spec.trial;
     Ok(Some(record))
 }

@@ -1,9 +1,10 @@
 use super::*;
+use crate::condition::Condition;
 use crate::digest::{Sha256Digest, TrialKey};
 use crate::geometry::Pose;
 use crate::rng::Seeds;
 use crate::robot::Robot;
-use crate::studies::{Condition, Outcome, Setup, TrialRecord, TrialSpec, prior_map};
+use crate::studies::{Outcome, Setup, TrialRecord, TrialSpec, prior_map};
 use crate::world::World;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -21,7 +22,7 @@ fn plan(trials: u32) -> Vec<TrialSpec> {
     (0..trials)
         .map(|trial| TrialSpec {
             key: TrialKey(Sha256Digest::of(trial.to_le_bytes())),
-            condition: Condition(vec![("prior".into(), "none".into())]),
+            condition: Condition::from([("prior", "none")]),
             trial,
             seeds: Seeds::new(1, Vec::new()),
             setup: setup.clone(),

@@ -3,7 +3,8 @@
 //! A manifest names it by `calibration: FILE`. How its trials are read, and what follows from them, is the study's own; that they
 //! are run, sealed, read again and driven again is not.
 
-use super::{Condition, Setup, StudyKind, TrialRecord};
+use super::{Setup, StudyKind, TrialRecord};
+use crate::condition::Condition;
 use std::any::Any;
 use std::fmt;
 use std::sync::Arc;

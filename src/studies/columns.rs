@@ -2,6 +2,7 @@
 
 use super::Findings;
 use super::findings::rounded;
+use crate::condition::Condition;
 use crate::factor::Factor;
 use crate::stats::compatibility::{Agreement, Method};
 use crate::table::{Column, Table, Value, unit_of};
@@ -47,7 +48,7 @@ impl<'a, C: 'a> Columns<'a, C> {
         self,
         names: &[String],
         findings: &Findings<'_>,
-        values: fn(&C) -> &[(String, String)],
+        values: fn(&C) -> &Condition,
     ) -> Self {
         names.iter().enumerate().fold(self, |columns, (i, name)| {
             columns.with(findings.factor_column(name), move |cell| {

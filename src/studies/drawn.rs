@@ -1,6 +1,7 @@
 //! A requested figure, drawn, and told in words for those who cannot see it.
 
-use super::{Condition, FactorValue, Findings, Setup};
+use super::{FactorValue, Findings, Setup};
+use crate::condition::Condition;
 use crate::figure::svg;
 use std::collections::BTreeMap;
 

@@ -6,6 +6,7 @@
 
 use super::columns::{Columns, of_factor};
 use super::{Findings, TableRequest};
+use crate::condition::Condition;
 use crate::stats::compatibility::{Agreement, Printed, rules};
 use crate::table::{Column, Table, Value};
 use serde::{Serialize, Serializer};
@@ -248,6 +249,6 @@ impl<C> Abreast<'_, C> {
 }
 
 /// Returns the values of factors, which name a line.
-pub(super) fn values(rows: &[(String, String)]) -> Vec<String> {
+pub(super) fn values(rows: &Condition) -> Vec<String> {
     rows.iter().map(|(_, value)| value.clone()).collect()
 }

@@ -1,7 +1,8 @@
 //! From records to what a reader sees, as far as all studies share it: the trials table and how cells are chosen.
 
 use super::columns::of_factor;
-use super::{Condition, Setup, TrialRecord};
+use super::{Setup, TrialRecord};
+use crate::condition::Condition;
 use crate::factor::Factor;
 use crate::stats::compatibility::{Silence, absence};
 use crate::table::{Column, Table, Value};
@@ -54,7 +55,7 @@ impl<'a> Findings<'a> {
         let mut table = Table::new(columns);
         for record in self.records {
             let mut row: Vec<Value> = vec![record.key.hex().into()];
-            row.extend(self.factor_values(&record.condition()));
+            row.extend(self.factor_values(&record.condition));
             row.push(i64::from(record.trial).into());
             row.push(record.outcome.name().into());
             row.extend(measures.iter().map(|&m| record.measures.get(m).copied().flatten().into()));
@@ -76,17 +77,15 @@ impl<'a> Findings<'a> {
     }
 
     /// Returns every combination of values of `factors`, the last one fastest.
-    pub(super) fn crossed(&self, factors: &[String]) -> Vec<Vec<(String, String)>> {
-        let mut crossed = vec![Vec::new()];
+    pub(super) fn crossed(&self, factors: &[String]) -> Vec<Condition> {
+        let mut crossed = vec![Condition::default()];
         for factor in factors {
             crossed = crossed
                 .into_iter()
                 .flat_map(|row| {
-                    self.values_of(factor).into_iter().map(move |value| {
-                        let mut row: Vec<(String, String)> = row.clone();
-                        row.push((factor.clone(), value));
-                        row
-                    })
+                    self.values_of(factor)
+                        .into_iter()
+                        .map(move |value| row.clone().with(factor, value))
                 })
                 .collect();
         }
@@ -94,39 +93,36 @@ impl<'a> Findings<'a> {
     }
 
     /// Returns those combinations of values of `factors` that were run, in the order of [`Self::crossed`].
-    pub(super) fn ran(&self, factors: &[String]) -> Vec<Vec<(String, String)>> {
+    pub(super) fn ran(&self, factors: &[String]) -> Vec<Condition> {
         let mut crossed = self.crossed(factors);
-        crossed.retain(|cell| {
-            self.conditions().any(|condition| cell.iter().all(|value| condition.contains(value)))
-        });
+        crossed.retain(|cell| self.conditions().any(|condition| condition.has_all(cell)));
         crossed
     }
 
     /// Returns the records whose condition has all values of `fixed`.
-    pub(super) fn matching(&self, fixed: &[(String, String)]) -> Vec<&'a TrialRecord> {
+    pub(super) fn matching(&self, fixed: &Condition) -> Vec<&'a TrialRecord> {
         self.by_condition
             .iter()
-            .filter(|records| fixed.iter().all(|f| records[0].condition.contains(f)))
+            .filter(|records| records[0].condition.has_all(fixed))
             .flat_map(|records| records.iter())
             .collect()
     }
 
     /// Returns the conditions that were run, each as often as it begins anew in plan order.
-    fn conditions(&self) -> impl Iterator<Item = &'a [(String, String)]> {
-        self.by_condition.iter().map(|records| records[0].condition.as_slice())
+    fn conditions(&self) -> impl Iterator<Item = &'a Condition> {
+        self.by_condition.iter().map(|records| &records[0].condition)
     }
 
     /// Returns why a cell of these factor values has no number of ours, where `trials` of it were run.
-    pub(super) fn absence(&self, fixed: &[(String, String)], trials: u64) -> Silence {
-        let planned = |condition: &Condition| fixed.iter().all(|f| condition.0.contains(f));
-        absence(self.design.iter().any(|(condition, _)| planned(condition)), trials)
+    pub(super) fn absence(&self, fixed: &Condition, trials: u64) -> Silence {
+        absence(self.design.iter().any(|(condition, _)| condition.has_all(fixed)), trials)
     }
 
     /// Returns the row of the published table `name` for the values of `fixed` that it has columns for.
     pub(super) fn published_row(
         &self,
         name: &str,
-        fixed: &[(String, String)],
+        fixed: &Condition,
     ) -> Option<(&'a Table, &'a [Value])> {
         let table = self.published.get(name)?;
         let fits = |row: &&Vec<Value>| {

@@ -1,7 +1,8 @@
 //! Made-up findings that every layout of tables has something to say of, and one request or more of each layout.
 
 use super::deadline::{self, Calibration};
-use super::{Condition, Findings, Outcome, Setup, TableRequest, TrialRecord};
+use super::{Findings, Outcome, Setup, TableRequest, TrialRecord};
+use crate::condition::Condition;
 use crate::factor::Factor;
 use crate::geometry::Pose;
 use crate::robot::Robot;
@@ -46,7 +47,7 @@ fn records() -> Vec<TrialRecord> {
                         ("gain", gain),
                         ("stop", stop),
                     ];
-                    record.condition = factors.map(|(f, v)| (f.to_owned(), v.to_owned())).to_vec();
+                    record.condition = Condition::from(factors);
                     record.trial = trial;
                     record.outcome = match (prior, trial) {
                         ("none", 2) => Outcome::TIME_LIMIT,
@@ -159,7 +160,8 @@ pub(crate) fn with_findings<T>(ask: impl FnOnce(&Findings<'_>, &[TableRequest]) 
     ]
     .map(|(name, values)| Factor::new(name, values.iter().copied()));
     let (records, published, setup) = (records(), published(), setup());
-    let mut design: Vec<Condition> = records.iter().map(TrialRecord::condition).collect();
+    let mut design: Vec<Condition> =
+        records.iter().map(|record| record.condition.clone()).collect();
     design.dedup();
     let design = design.iter().map(|condition| (condition, &setup));
     ask(&Findings::new(&factors, &records, &published).designed(design), &requests())

@@ -46,6 +46,7 @@ pub use study::{
     ConditionAsWritten, Prior, Remark, Setup, Stopwatch, Study, StudyKind, StudySetup, Surroundings,
 };
 
+use crate::condition::Condition;
 use crate::digest::TrialKey;
 use crate::rng::Seeds;
 
@@ -72,38 +73,6 @@ pub(crate) use parameters;
 
 /// Every study, in the order in which messages name them.
 pub const STUDIES: &[&dyn Study] = &[&deadline::Deadline, &prior_map::PriorMap, &wander::Wander];
-
-/// One cell of the design: a value for every factor, in the manifest's order.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
-pub struct Condition(pub Vec<(String, String)>);
-
-impl Condition {
-    /// Returns the value of `factor`.
-    pub fn value(&self, factor: &str) -> Option<&str> {
-        self.0.iter().find(|(name, _)| name == factor).map(|(_, value)| value.as_str())
-    }
-
-    /// Returns a file name for this cell: the values joined by underscores, `all` where there is no factor. Only
-    /// `[A-Za-z0-9.-]` of each value survive; resolution refuses manifests where two cells clash.
-    pub fn slug(&self) -> String {
-        let safe = |value: &String| {
-            value
-                .chars()
-                .map(|c| if c.is_ascii_alphanumeric() || ".-".contains(c) { c } else { '-' })
-                .collect::<String>()
-        };
-        let parts: Vec<_> = self.0.iter().map(|(_, value)| safe(value)).collect();
-        if parts.is_empty() { "all".to_owned() } else { parts.join("_") }
-    }
-}
-
-impl std::fmt::Display for Condition {
-    /// Writes the factors as people read them: `prior=floor-plan environment=basic`.
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let parts: Vec<_> = self.0.iter().map(|(name, value)| format!("{name}={value}")).collect();
-        f.write_str(&parts.join(" "))
-    }
-}
 
 /// One trial, self-contained: executing it is a pure function of this value.
 #[derive(Debug, Clone)]

@@ -5,6 +5,7 @@ use super::findings::Findings;
 use super::outcomes::{OutcomeTable, Quantity, named, published_share};
 use super::prior_map::CoverageTable;
 use super::requests::{TableLayout, TableRequest};
+use crate::condition::Condition;
 use crate::figure::{Scatter, ScatterPoint};
 use crate::math;
 use crate::stats::distribution::student_t_quantile;
@@ -48,7 +49,7 @@ const NAMED: usize = 4;
 
 /// A cell on both sides.
 struct Pair {
-    values: Vec<(String, String)>,
+    values: Condition,
     /// The same in short, for its label.
     short: String,
     published: f64,
@@ -106,10 +107,7 @@ impl Findings<'_> {
             _ => (Vec::new(), String::new(), String::new(), "", None),
         };
         let by = wanted.by.clone().unwrap_or(by);
-        let level = |pair: &Pair| {
-            let found = pair.values.iter().find(|(factor, _)| *factor == by);
-            found.map_or_else(String::new, |(_, value)| value.clone())
-        };
+        let level = |pair: &Pair| pair.values.value(&by).unwrap_or_default().to_owned();
         // In the manifest's order, and only those with points.
         let mut groups = if by == COVERAGE { Vec::new() } else { self.values_of(&by) };
         for pair in &pairs {
@@ -156,8 +154,7 @@ impl Findings<'_> {
             .into_iter()
             .filter_map(|cell| {
                 let ((published, n), ours) = (cell.published?, cell.ours?);
-                let mut values = cell.rows.clone();
-                values.push((table.by.clone(), cell.by.clone()));
+                let values = cell.rows.clone().with(&table.by, &cell.by);
                 let short = cell.rows.iter().map(|(_, v)| v.as_str()).chain([cell.by.as_str()]);
                 Some(Pair {
                     short: short.collect::<Vec<_>>().join(" "),
@@ -179,9 +176,8 @@ impl Findings<'_> {
             .into_iter()
             .filter_map(|cell| {
                 let ((published, sd, runs), ours) = (cell.published?, cell.ours?);
-                let mut values = cell.rows.clone();
-                values.push((table.by.clone(), cell.by.clone()));
-                values.push((COVERAGE.to_owned(), cell.percent.to_string()));
+                let values = cell.rows.clone().with(&table.by, &cell.by);
+                let values = values.with(COVERAGE, cell.percent.to_string());
                 let short =
                     values.iter().map(|(_, v)| v.as_str()).collect::<Vec<_>>().join(" ") + " %";
                 let pair = if ratios {

@@ -1,6 +1,7 @@
 //! What a trial yields: one canonical JSON line.
 
-use super::{Condition, Outcome};
+use super::Outcome;
+use crate::condition::Condition;
 use crate::digest::{Hasher, Sha256Digest, TrialKey};
 use crate::json;
 use serde::de::{Error, MapAccess, Visitor};
@@ -77,8 +78,8 @@ pub fn records_digest(records: &[TrialRecord]) -> Sha256Digest {
 pub struct TrialRecord {
     /// The trial this belongs to.
     pub key: TrialKey,
-    /// Factor values of its cell, in the manifest's order.
-    pub condition: Vec<(String, String)>,
+    /// The cell to which it belongs.
+    pub condition: Condition,
     /// Number within the cell, from 0.
     pub trial: u32,
     /// Why it ended.
@@ -123,7 +124,7 @@ impl TrialRecord {
     pub fn panicked(spec: &super::TrialSpec, cause: String) -> Self {
         Self {
             key: spec.key,
-            condition: spec.condition.0.clone(),
+            condition: spec.condition.clone(),
             trial: spec.trial,
             outcome: Outcome::PANICKED,
             cause,
@@ -132,11 +133,6 @@ impl TrialRecord {
             sim_seconds: 0.0,
             chain: Vec::new(),
         }
-    }
-
-    /// Returns the cell to which it belongs.
-    pub fn condition(&self) -> Condition {
-        Condition(self.condition.clone())
     }
 
     /// Writes the canonical line, without its line feed.

@@ -208,12 +208,12 @@ fn records(
         if record.to_line() != line {
             faults.push(Fault::new(&place, "canonical JSON", "the same record spelt otherwise"));
         }
-        if record.condition().slug() != slug {
+        if record.condition.slug() != slug {
             let expected = format!("a record of the condition `{slug}`");
             faults.push(Fault::new(
                 &place,
                 expected,
-                format!("one of `{}`", record.condition().slug()),
+                format!("one of `{}`", record.condition.slug()),
             ));
         }
         // A shard or a selection may leave trials out, never change their order.

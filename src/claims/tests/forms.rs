@@ -2,6 +2,7 @@
 
 use super::faults::{examples, faults};
 use super::*;
+use crate::condition::Condition;
 
 /// Returns `table` with a further column, filled from the row's place.
 fn with(mut table: Table, name: &str, value: impl Fn(usize) -> f64) -> Table {
@@ -224,13 +225,9 @@ fn coverages_of_a_published_table_are_metrics_of_ours() {
         "{less: {metric: distance-m-at-80, where: {prior: floor-plan}, than: {where: {prior: none}}}}",
     );
     stated.power = serde_yaml::from_str("{published: {table: distance-m}}").unwrap();
-    let conditions: Vec<Vec<(String, String)>> = ["none", "floor-plan"]
-        .map(|prior| {
-            [("environment", "basic"), ("furnished", "true"), ("prior", prior)]
-                .map(|(f, v)| (f.to_owned(), v.to_owned()))
-                .to_vec()
-        })
-        .to_vec();
+    let conditions = ["none", "floor-plan"].map(|prior| {
+        Condition::from([("environment", "basic"), ("furnished", "true"), ("prior", prior)])
+    });
     let found = power::power(&stated, &conditions, 10, &context, 50).unwrap();
     assert_eq!(found.planned.supported, 1.0);
 }

@@ -1,6 +1,7 @@
 //! What a verdict says and does not depend on, its one text, and the power said beforehand.
 
 use super::*;
+use crate::condition::Condition;
 use crate::json::canonical;
 
 #[test]
@@ -88,8 +89,7 @@ fn power_is_that_of_the_very_test() {
     stated.power =
         serde_yaml::from_str("{cells: [{where: {strategy: random}, value: 0.3}, {value: 0.6}]}")
             .unwrap();
-    let conditions: Vec<Vec<(String, String)>> =
-        ["random", "frontier"].map(|s| vec![("strategy".to_owned(), s.to_owned())]).to_vec();
+    let conditions = ["random", "frontier"].map(|s| Condition::from([("strategy", s)]));
     let none = BTreeMap::new();
     let context = Context::new(&none, &[], 2019);
     let found = power::power(&stated, &conditions, 30, &context, 1000).unwrap();
@@ -109,13 +109,8 @@ fn power_is_that_of_the_very_test() {
         serde_yaml::from_str("{published: {table: success-percent, scale: 0.01}}").unwrap();
     let tables = published();
     let context = Context::new(&tables, &[], 2019);
-    let conditions: Vec<Vec<(String, String)>> = ["random", "frontier"]
-        .map(|s| {
-            [("start", "C"), ("deadline-s", "5628"), ("strategy", s)]
-                .map(|(f, v)| (f.to_owned(), v.to_owned()))
-                .to_vec()
-        })
-        .to_vec();
+    let conditions = ["random", "frontier"]
+        .map(|s| Condition::from([("start", "C"), ("deadline-s", "5628"), ("strategy", s)]));
     let found = power::power(&stated, &conditions, 50, &context, 100).unwrap();
     assert!(found.planned.supported > 0.97);
     assert_eq!(found.enough, Some(20));

@@ -28,6 +28,7 @@ pub(super) fn in_lines(exhibit: &Exhibit, width: usize) -> String {
 mod tests {
     use super::*;
     use crate::bundle::assemble;
+    use crate::condition::Condition;
     use crate::digest::{Sha256Digest, TrialKey};
     use crate::factor::Factor;
     use crate::report::ReportTable;
@@ -41,14 +42,13 @@ mod tests {
         ["random", "frontier", "normalized-frontier", "corridors-first", "complete-corridor"];
 
     fn record(deadline: &str, strategy: &str, trial: u32, outcome: Outcome) -> TrialRecord {
-        let pair = |name: &str, value: &str| (name.to_owned(), value.to_owned());
         TrialRecord {
             key: TrialKey(Sha256Digest::of(format!("{deadline}{strategy}{trial}"))),
-            condition: vec![
-                pair("start", "A"),
-                pair("deadline-s", deadline),
-                pair("strategy", strategy),
-            ],
+            condition: Condition::from([
+                ("start", "A"),
+                ("deadline-s", deadline),
+                ("strategy", strategy),
+            ]),
             trial,
             outcome,
             cause: String::new(),

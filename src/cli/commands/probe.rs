@@ -49,7 +49,7 @@ pub(super) fn run(
                 "probe": true,
                 "conditions": probed
                     .iter()
-                    .map(|p| json!({"condition": p.record.condition().slug(), "same": p.same}))
+                    .map(|p| json!({"condition": p.record.condition.slug(), "same": p.same}))
                     .collect::<Vec<_>>(),
                 "drift": held.drift(),
                 "wall_seconds": clock.elapsed_seconds(),
@@ -75,7 +75,7 @@ struct Probed<'a> {
 
 impl<'a> Probed<'a> {
     fn of(record: &'a TrialRecord, held: &Held) -> Self {
-        let slug = record.condition().slug();
+        let slug = record.condition.slug();
         let concerns = |d: &Discrepancy| match d {
             Discrepancy::Trial(trial) => trial.condition == slug,
             Discrepancy::Condition { condition, .. } => *condition == slug,
@@ -87,7 +87,7 @@ impl<'a> Probed<'a> {
 
 /// Writes one line a condition, and the drift in full.
 fn in_words(probed: &[Probed<'_>], held: &Held) -> String {
-    let name = |p: &Probed<'_>| format!("{}/{}", p.record.condition().slug(), p.record.trial);
+    let name = |p: &Probed<'_>| format!("{}/{}", p.record.condition.slug(), p.record.trial);
     let width = probed.iter().map(|p| name(p).chars().count()).max().unwrap_or_default();
     let mut text = String::new();
     for p in probed {

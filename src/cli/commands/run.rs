@@ -156,7 +156,7 @@ impl Done {
             text.push_str(&held.in_words());
         }
         for record in self.records.iter().filter(|r| r.outcome == Outcome::PANICKED) {
-            let name = format!("{}/{}", record.condition().slug(), record.trial);
+            let name = format!("{}/{}", record.condition.slug(), record.trial);
             terminal.error(&format!("trial {name} failed: {}", record.cause));
         }
         text.push_str(&format!(

@@ -3,6 +3,7 @@
 use super::Setup;
 use super::calibration::{Calibration, MOTIONS, Pair, SPEEDS, maneuver_name};
 use super::requests::ManeuverTable;
+use crate::condition::Condition;
 use crate::stats::proportion::{Proportion, wilson};
 use crate::studies::columns::Columns;
 use crate::studies::exhibit::{Grid, GridCell, GridRow, Layout, Lines, Measured, Set, Source};
@@ -36,8 +37,7 @@ pub struct ManeuverRow {
 impl Findings<'_> {
     /// Returns the six maneuvers, motion by motion, slow before fast.
     pub fn maneuver_rows(&self, request: &ManeuverTable) -> Vec<ManeuverRow> {
-        let only: Vec<(String, String)> =
-            request.only.iter().map(|(f, v)| (f.clone(), v.0.clone())).collect();
+        let only: Condition = request.only.iter().map(|(f, v)| (f, &v.0)).collect();
         let trials = self.matching(&only);
         // One calibration serves all conditions.
         let mut setups = self.design.iter().filter_map(|(_, setup)| setup.of::<Setup>());

@@ -3,11 +3,12 @@
 
 use super::calibration::{Calibration, Driven};
 use super::parameters::Task;
+use crate::condition::Condition;
 use crate::digest::Sha256Digest;
 use crate::studies::deadline::build_cmdp::{Motion, Speed};
 use crate::studies::{
-    Calibrated, Calibrating, CalibrationError, Condition, Design, Expectations, Outcome,
-    PlannedCalibration, Setup, TrialRecord,
+    Calibrated, Calibrating, CalibrationError, Design, Expectations, Outcome, PlannedCalibration,
+    Setup, TrialRecord,
 };
 use crate::table::{Table, Value};
 use std::sync::Arc;

@@ -1,6 +1,7 @@
 //! From records to the deadline study's Tables 1 and 2, and to whatever else is asked by condition.
 
 use super::{OutcomeTable, Percent, Quantity};
+use crate::condition::Condition;
 use crate::stats::compatibility::{Agreement, Ours, Printed, printed_share};
 use crate::stats::proportion::{Proportion, wilson};
 use crate::stats::summary::Summary;
@@ -16,7 +17,7 @@ const Z: f64 = 1.959_963_984_540_054;
 #[derive(Debug, Clone, PartialEq)]
 pub struct OutcomeCell {
     /// Values of the factors that have rows.
-    pub rows: Vec<(String, String)>,
+    pub rows: Condition,
     /// The value of the factor whose values stand side by side.
     pub by: String,
     /// Trials of this cell that did not fail by a fault of ours.
@@ -46,17 +47,14 @@ impl Findings<'_> {
     /// Returns the cells of a table in the paper's order: rows, then side by side. Cells of conditions that do not
     /// exist are left out together where a whole row is missing.
     pub fn outcome_cells(&self, request: &OutcomeTable) -> Vec<OutcomeCell> {
-        let only: Vec<(String, String)> =
-            request.only.iter().map(|(f, v)| (f.clone(), v.0.clone())).collect();
+        let only: Condition = request.only.iter().map(|(f, v)| (f, &v.0)).collect();
         let columns = self.columns_of(request);
         let mut cells = Vec::new();
         for rows in self.crossed(&request.rows) {
             let line: Vec<OutcomeCell> = columns
                 .iter()
                 .map(|by| {
-                    let mut fixed = only.clone();
-                    fixed.extend(rows.iter().cloned());
-                    fixed.push((request.by.clone(), by.clone()));
+                    let fixed = only.clone().and(&rows).with(&request.by, by);
                     self.outcome_cell(request, rows.clone(), by.clone(), &fixed)
                 })
                 .collect();
@@ -78,9 +76,9 @@ impl Findings<'_> {
     fn outcome_cell(
         &self,
         request: &OutcomeTable,
-        rows: Vec<(String, String)>,
+        rows: Condition,
         by: String,
-        fixed: &[(String, String)],
+        fixed: &Condition,
     ) -> OutcomeCell {
         let mut trials = self.matching(fixed);
         let ran = trials.len() as u64;

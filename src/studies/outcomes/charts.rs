@@ -4,6 +4,7 @@ use super::{
     Estimate as Found, OutcomeCell, OutcomeShares, OutcomeTable, Quantity, measured,
     published_share,
 };
+use crate::condition::Condition;
 use crate::figure::{Estimate, EstimateChart, Look, Panel, PanelLine, Part, ShareChart, Shares};
 use crate::stats::summary::quantile;
 use crate::studies::findings::Findings;
@@ -42,27 +43,23 @@ pub(in crate::studies) fn named(factor: &str, value: &str) -> String {
     format!("{} {value}", factor.replace('-', " "))
 }
 
-/// Returns values in words, separated by commas.
-fn all_named(values: &[(String, String)]) -> String {
-    values.iter().map(|(f, v)| named(f, v)).collect::<Vec<_>>().join(", ")
-}
-
 /// Returns panels of `cells`, `abreast` rows each, in lines by the first of several factors that have rows.
 fn lines<C, R>(
     cells: &[C],
     abreast: usize,
-    rows_of: impl Fn(&C) -> &[(String, String)],
+    rows_of: impl Fn(&C) -> &Condition,
     row: impl Fn(&C) -> R,
 ) -> Vec<PanelLine<R>> {
     let mut lines: Vec<PanelLine<R>> = Vec::new();
     for group in cells.chunks(abreast.max(1)) {
         let Some(first) = group.first() else { continue };
         let values = rows_of(first);
-        let (line, panel) = values.split_at(usize::from(values.len() > 1));
-        let line = all_named(line);
-        let limit = panel.iter().find(|(factor, _)| factor == DEADLINE);
+        let own = usize::from(values.len() > 1);
+        let words: Vec<String> = values.iter().map(|(f, v)| named(f, v)).collect();
+        let line = words[..own].join(", ");
+        let limit = values.iter().skip(own).find(|(factor, _)| factor == DEADLINE);
         let panel = Panel {
-            name: all_named(panel),
+            name: words[own..].join(", "),
             rows: group.iter().map(&row).collect(),
             mark: limit.and_then(|(_, value)| value.parse().ok()),
         };
@@ -136,10 +133,8 @@ impl Findings<'_> {
     fn estimate(&self, request: &OutcomeTable, cell: &OutcomeCell) -> Estimate {
         let middle_half = match &request.show {
             Quantity::Mean(measure) => {
-                let mut fixed: Vec<(String, String)> =
-                    request.only.iter().map(|(f, v)| (f.clone(), v.0.clone())).collect();
-                fixed.extend(cell.rows.iter().cloned());
-                fixed.push((request.by.clone(), cell.by.clone()));
+                let only: Condition = request.only.iter().map(|(f, v)| (f, &v.0)).collect();
+                let fixed = only.and(&cell.rows).with(&request.by, &cell.by);
                 let mut trials = self.matching(&fixed);
                 trials.retain(|record| record.outcome != Outcome::PANICKED);
                 let values = measured(&trials, measure);
@@ -180,10 +175,8 @@ impl Findings<'_> {
             .filter(|(outcome, _)| ended(*outcome) || printed(*outcome))
             .collect();
         let row = |cell: &OutcomeCell| {
-            let mut fixed: Vec<(String, String)> =
-                request.only.iter().map(|(f, v)| (f.clone(), v.0.clone())).collect();
-            fixed.extend(cell.rows.iter().cloned());
-            fixed.push((request.by.clone(), cell.by.clone()));
+            let only: Condition = request.only.iter().map(|(f, v)| (f, &v.0)).collect();
+            let fixed = only.and(&cell.rows).with(&request.by, &cell.by);
             self.shares(request, &parts, &fixed)
         };
         let named_part = |(outcome, look): &(Outcome, Look)| {
@@ -210,7 +203,7 @@ impl Findings<'_> {
         &self,
         request: &OutcomeShares,
         parts: &[(Outcome, Look)],
-        fixed: &[(String, String)],
+        fixed: &Condition,
     ) -> Shares {
         let mut trials = self.matching(fixed);
         trials.retain(|record| record.outcome != Outcome::PANICKED);
@@ -259,10 +252,11 @@ mod tests {
             for trial in 0..10_u32 {
                 let late = strategy == "slow" && trial > 6;
                 let mut record = blank.clone();
-                record.condition =
-                    [("start", "A"), ("deadline-s", deadline), ("strategy", strategy)]
-                        .map(|(f, v)| (f.to_owned(), v.to_owned()))
-                        .to_vec();
+                record.condition = Condition::from([
+                    ("start", "A"),
+                    ("deadline-s", deadline),
+                    ("strategy", strategy),
+                ]);
                 record.trial = trial;
                 record.outcome = if late { Outcome::LATE } else { Outcome::REACHED };
                 let time = (!late).then_some(20.0 + f64::from(trial));

@@ -5,6 +5,7 @@ mod layout;
 
 use super::requests::{AgreementTable, CoverageTable};
 use super::results::CoverageCell;
+use crate::condition::Condition;
 use crate::math::ln;
 use crate::stats::agreement::{Line, line, log_ratio_half_width, rmse, skill_over_constant};
 use crate::stats::compatibility::{Agreement, Method};
@@ -56,7 +57,7 @@ pub struct TableAgreement {
 
 /// A log ratio on both sides.
 struct Ratio {
-    block: Vec<(String, String)>,
+    block: Condition,
     ours: f64,
     published: f64,
     inside: Option<bool>,
@@ -102,7 +103,7 @@ impl Findings<'_> {
             }
             // The levels of a single factor have been compared above.
             for reading in self.ran(&readings).iter().filter(|reading| reading.len() > 1) {
-                let has = |cell: &&CoverageCell| reading.iter().all(|v| cell.rows.contains(v));
+                let has = |cell: &&CoverageCell| cell.rows.has_all(reading);
                 let part: Vec<CoverageCell> = cells.iter().filter(has).cloned().collect();
                 let pairs: Vec<String> = reading.iter().map(|(f, v)| format!("{f}={v}")).collect();
                 let values: Vec<&str> = reading.iter().map(|(_, v)| v.as_str()).collect();
@@ -153,14 +154,13 @@ fn agreement(
             (ours - published).abs() <= log_ratio_half_width(above, below, CONFIDENCE)
         });
         // Readings share the paper's numbers.
-        let mut block = above.cell.rows.clone();
-        block.retain(|(factor, _)| !readings.contains(factor));
-        ratios.push(Ratio { block, ours, published, inside });
+        let block = above.cell.rows.iter().filter(|(factor, _)| !readings.contains(factor));
+        ratios.push(Ratio { block: block.cloned().collect(), ours, published, inside });
     }
-    let mut blocks: Vec<&[(String, String)]> = Vec::new();
+    let mut blocks: Vec<&Condition> = Vec::new();
     let mut places: Vec<Vec<usize>> = Vec::new();
     for (i, ratio) in ratios.iter().enumerate() {
-        if let Some(known) = blocks.iter().position(|block| *block == ratio.block) {
+        if let Some(known) = blocks.iter().position(|block| **block == ratio.block) {
             places[known].push(i);
         } else {
             blocks.push(&ratio.block);

@@ -131,8 +131,7 @@ impl Findings<'_> {
 
     /// Summarises the runs among the first `n` trials of a cell that got there.
     fn first_runs(&self, request: &CoverageTable, cell: &CoverageCell, n: u64) -> Summary {
-        let mut fixed = cell.rows.clone();
-        fixed.push((request.by.clone(), cell.by.clone()));
+        let fixed = cell.rows.clone().with(&request.by, &cell.by);
         let measure = request.metric.measure_at(cell.percent);
         let first = self.matching(&fixed).into_iter().filter(|r| u64::from(r.trial) < n);
         let reached: Vec<f64> =

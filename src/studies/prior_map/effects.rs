@@ -4,6 +4,7 @@
 mod layout;
 
 use super::requests::EffectsTable;
+use crate::condition::Condition;
 use crate::factor::Factor;
 use crate::math::{exp, ln};
 use crate::stats::means::{TTest, welch_matched};
@@ -33,7 +34,7 @@ pub struct Effect {
     /// The factor's first level that was run.
     pub against: String,
     /// What names the cell besides its coverage.
-    pub within: Vec<(String, String)>,
+    pub within: Condition,
     /// Coverage (percent).
     pub percent: u32,
     /// Combinations of all other factors' values that were run at both levels.
@@ -123,7 +124,7 @@ impl Findings<'_> {
         &self,
         wanted: &EffectsTable,
         (factor, level, against): (&str, &str, &str),
-        within: &[(String, String)],
+        within: &Condition,
         percent: u32,
     ) -> Effect {
         let groups = |level: &str| self.groups(wanted, (factor, level), within, percent);
@@ -149,7 +150,7 @@ impl Findings<'_> {
             factor: factor.to_owned(),
             level: level.to_owned(),
             against: against.to_owned(),
-            within: within.to_vec(),
+            within: within.clone(),
             percent,
             matched,
             compared: pairs.len() as u64,
@@ -167,12 +168,11 @@ impl Findings<'_> {
         &self,
         wanted: &EffectsTable,
         (factor, level): (&str, &str),
-        within: &[(String, String)],
+        within: &Condition,
         percent: u32,
-    ) -> BTreeMap<Vec<(String, String)>, Group> {
+    ) -> BTreeMap<Condition, Group> {
         let measure = wanted.metric.measure_at(percent);
-        let mut fixed = within.to_vec();
-        fixed.push((factor.to_owned(), level.to_owned()));
+        let fixed = within.clone().with(factor, level);
         let mut groups: BTreeMap<_, Group> = BTreeMap::new();
         for record in self.matching(&fixed) {
             let others = record.condition.iter().filter(|pair| !fixed.contains(pair)).cloned();
@@ -188,7 +188,7 @@ impl Findings<'_> {
     fn published_mean(
         &self,
         wanted: &EffectsTable,
-        within: &[(String, String)],
+        within: &Condition,
         percent: u32,
     ) -> Option<f64> {
         let single =
@@ -198,8 +198,8 @@ impl Findings<'_> {
                 }
                 _ => None,
             });
-        let mut fixed: Vec<(String, String)> = within.iter().cloned().chain(single).collect();
-        fixed.push(("coverage-percent".to_owned(), percent.to_string()));
+        let fixed: Condition = within.iter().cloned().chain(single).collect();
+        let fixed = fixed.with("coverage-percent", percent.to_string());
         let (table, row) = self.published_row(wanted.published.as_ref()?, &fixed)?;
         table.value(row, "value").as_f64()
     }

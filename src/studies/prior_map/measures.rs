@@ -1,6 +1,7 @@
 //! From records to a table of whole trials' measures, as the numbers of section 4.5.
 
 use super::requests::MeasuresTable;
+use crate::condition::Condition;
 use crate::stats::compatibility::{Agreement, Ours, Printed};
 use crate::stats::summary::Summary;
 use crate::studies::columns::{Columns, whole};
@@ -14,7 +15,7 @@ use crate::table::Column;
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeasureCell {
     /// Values of the row's factors.
-    pub rows: Vec<(String, String)>,
+    pub rows: Condition,
     /// The measure.
     pub measure: String,
     /// Trials of this cell, whether or not they have the measure.
@@ -30,13 +31,12 @@ pub struct MeasureCell {
 impl Findings<'_> {
     /// Returns the cells of a table: rows that were run, then measures.
     pub fn measure_cells(&self, request: &MeasuresTable) -> Vec<MeasureCell> {
-        let cell = |rows: &Vec<(String, String)>, measure: &String| {
+        let cell = |rows: &Condition, measure: &String| {
             let here = self.matching(rows);
             let values: Vec<f64> =
                 here.iter().filter_map(|r| r.measures.get(measure).copied().flatten()).collect();
             let published = request.published.as_ref().and_then(|name| {
-                let mut fixed = rows.clone();
-                fixed.push(("measure".to_owned(), measure.clone()));
+                let fixed = rows.clone().with("measure", measure);
                 let (table, row) = self.published_row(name, &fixed)?;
                 let number = |column: &str| table.value(row, column).as_f64();
                 #[expect(
@@ -182,10 +182,7 @@ mod tests {
     fn record(prior: &str, noise: &str, trial: u32, distance: Option<f64>) -> TrialRecord {
         TrialRecord {
             key: TrialKey(Sha256Digest::of(format!("{prior}{noise}{trial}"))),
-            condition: vec![
-                ("prior".to_owned(), prior.to_owned()),
-                ("noise".to_owned(), noise.to_owned()),
-            ],
+            condition: Condition::from([("prior", prior), ("noise", noise)]),
             trial,
             outcome: Outcome::EXPLORED,
             cause: String::new(),

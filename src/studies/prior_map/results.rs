@@ -4,6 +4,7 @@ mod layout;
 
 use super::cell_tests::CellTests;
 use super::requests::{CoverageCurve, CoverageTable, Metric};
+use crate::condition::Condition;
 use crate::figure::{LineChart, PublishedPoint, Series};
 use crate::stats::compatibility::{Agreement, Ours, Printed};
 use crate::stats::summary::{Summary, median, quantile};
@@ -14,7 +15,7 @@ use crate::table::{Table, Value};
 #[derive(Debug, Clone, PartialEq)]
 pub struct CoverageCell {
     /// Values of the row's factors, coverage, and the column's value.
-    pub rows: Vec<(String, String)>,
+    pub rows: Condition,
     /// Coverage (percent).
     pub percent: u32,
     /// The value of the factor whose values stand side by side.
@@ -62,7 +63,7 @@ impl Findings<'_> {
         for record in self.records {
             for point in &record.series {
                 let mut row: Vec<Value> = vec![record.key.short().into()];
-                row.extend(self.factor_values(&record.condition()));
+                row.extend(self.factor_values(&record.condition));
                 row.push(i64::from(record.trial).into());
                 row.extend(
                     [point.time_s, point.distance_m, point.coverage_percent].map(Value::from),
@@ -87,16 +88,14 @@ impl Findings<'_> {
         // A reading that the design does not have is no row of cells that nobody reached.
         let readings = self.readings(request);
         let ran = self.ran(&readings);
-        let is_read = |rows: &Vec<(String, String)>| {
-            readings.is_empty()
-                || ran.iter().any(|reading| reading.iter().all(|value| rows.contains(value)))
+        let is_read = |rows: &Condition| {
+            readings.is_empty() || ran.iter().any(|reading| rows.has_all(reading))
         };
         for rows in self.crossed(&request.rows).into_iter().filter(is_read) {
             for &percent in &request.at {
                 let first = cells.len();
                 for by in self.values_of(&request.by) {
-                    let mut fixed = rows.clone();
-                    fixed.push((request.by.clone(), by.clone()));
+                    let fixed = rows.clone().with(&request.by, &by);
                     cells.push(self.coverage_cell(request, rows.clone(), percent, by, &fixed));
                 }
                 let baseline = request.baseline.as_ref().map(|b| b.0.as_str());
@@ -110,18 +109,17 @@ impl Findings<'_> {
     fn coverage_cell(
         &self,
         request: &CoverageTable,
-        rows: Vec<(String, String)>,
+        rows: Condition,
         percent: u32,
         by: String,
-        fixed: &[(String, String)],
+        fixed: &Condition,
     ) -> CoverageCell {
         let measure = request.metric.measure_at(percent);
         let here = self.matching(fixed);
         let reached: Vec<f64> =
             here.iter().filter_map(|r| r.measures.get(&measure).copied().flatten()).collect();
         let published = request.published.as_ref().and_then(|name| {
-            let mut fixed = fixed.to_vec();
-            fixed.push(("coverage-percent".to_owned(), percent.to_string()));
+            let fixed = fixed.clone().with("coverage-percent", percent.to_string());
             let (table, row) = self.published_row(name, &fixed)?;
             let number = |column: &str| table.value(row, column).as_f64();
             Some((number("value")?, number("sd"), number("n")))
@@ -150,11 +148,9 @@ impl Findings<'_> {
         wanted: &CoverageCurve,
         tables: &[&CoverageTable],
     ) -> LineChart {
-        let only: Vec<(String, String)> =
-            wanted.only.iter().map(|(f, v)| (f.clone(), v.0.clone())).collect();
+        let only: Condition = wanted.only.iter().map(|(f, v)| (f, &v.0)).collect();
         let series = self.values_of(&wanted.by).into_iter().map(|value| {
-            let mut fixed = only.clone();
-            fixed.push((wanted.by.clone(), value.clone()));
+            let fixed = only.clone().with(&wanted.by, &value);
             self.curve(wanted, &fixed, value, tables)
         });
         let x_title = match wanted.against {
@@ -173,7 +169,7 @@ impl Findings<'_> {
     fn curve(
         &self,
         wanted: &CoverageCurve,
-        fixed: &[(String, String)],
+        fixed: &Condition,
         name: String,
         tables: &[&CoverageTable],
     ) -> Series {

@@ -135,13 +135,14 @@ impl Swept {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::condition::Condition;
     use crate::digest::{Sha256Digest, TrialKey};
     use crate::document::Source;
     use crate::geometry::Pose;
     use crate::rng::Seeds;
     use crate::robot::urdf;
     use crate::studies::wander::{Driving, Mission, Parameters};
-    use crate::studies::{self, Condition, reenact};
+    use crate::studies::{self, reenact};
     use crate::world::document;
     use std::sync::Arc;
 
@@ -162,7 +163,7 @@ mod tests {
         };
         TrialSpec {
             key: TrialKey(Sha256Digest::of(number.to_le_bytes())),
-            condition: Condition(Vec::new()),
+            condition: Condition::default(),
             trial: number,
             seeds: Seeds::new(1, vec![("trial".to_owned(), number.to_string())]),
             setup: studies::Setup::new(setup),

@@ -3,6 +3,7 @@
 use crate::claims::power::{Chance, Power, PowerError, REPLICATES, power as power_of};
 use crate::claims::{Claim, Context};
 use crate::cli::args::Format;
+use crate::condition::Condition;
 use crate::plan::Plan;
 use serde_json::{Value, json};
 
@@ -10,12 +11,12 @@ use serde_json::{Value, json};
 pub(super) fn power(plan: &Plan, format: Format) -> String {
     let experiment = &plan.experiment;
     let context = Context::new(&experiment.published, &experiment.shared_noise, experiment.seed);
-    let mut conditions: Vec<Vec<(String, String)>> = Vec::new();
+    let mut conditions: Vec<Condition> = Vec::new();
     let mut trials = Vec::new();
     for spec in &plan.trials {
         // The plan goes condition by condition.
-        if conditions.last() != Some(&spec.condition.0) {
-            conditions.push(spec.condition.0.clone());
+        if conditions.last() != Some(&spec.condition) {
+            conditions.push(spec.condition.clone());
             trials.push(0);
         }
         trials.iter_mut().last().into_iter().for_each(|n| *n += 1);

@@ -117,7 +117,7 @@ fn record(
     measures.insert("time-s".to_owned(), time);
     TrialRecord {
         key: spec.key,
-        condition: spec.condition.0.clone(),
+        condition: spec.condition.clone(),
         trial: spec.trial,
         outcome: ending.outcome,
         cause: ending.cause,

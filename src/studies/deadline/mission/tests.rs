@@ -2,16 +2,17 @@
 
 use super::policy_chart::policy_chart;
 use super::*;
+use crate::condition::Condition;
 use crate::digest::{Sha256Digest, TrialKey};
 use crate::document::Source;
 use crate::rng::Seeds;
 use crate::robot::{Robot, urdf};
+use crate::studies;
 use crate::studies::deadline::build_cmdp::{Expectation, Maneuvers, Motion, Speed};
 use crate::studies::deadline::calibration::{MOTIONS, SPEEDS, maneuver_name};
 use crate::studies::deadline::columns;
 use crate::studies::deadline::strategy::Strategy;
 use crate::studies::deadline::{Calibration, Parameters};
-use crate::studies::{self, Condition};
 use crate::world::World;
 use crate::world::generate::{Family, generate};
 use std::sync::Arc;
@@ -42,7 +43,7 @@ fn trial(world: World, start: &str, parameters: Parameters, trial: u32) -> Trial
     let setup = Setup::new(Arc::new(world), pioneer(), pose, Some(calibration()), parameters);
     TrialSpec {
         key: TrialKey(Sha256Digest::of(trial.to_le_bytes())),
-        condition: Condition(vec![("start".into(), start.into())]),
+        condition: Condition::from([("start", start)]),
         trial,
         seeds: Seeds::new(2019, vec![("trial".into(), trial.to_string())]),
         setup: studies::Setup::new(setup),

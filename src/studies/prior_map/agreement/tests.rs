@@ -1,6 +1,7 @@
 //! Agreement and tests of cells on made-up runs around the paper's own numbers.
 
 use super::*;
+use crate::condition::Condition;
 use crate::factor::Factor;
 use crate::studies::prior_map::Metric;
 use crate::studies::{Layout, TrialRecord, fixture};
@@ -28,10 +29,7 @@ fn records(value: impl Fn(f64) -> f64, late: std::ops::Range<u32>) -> Vec<TrialR
             let off = 1.0 + 0.03 * (f64::from(trial) - 7.0) / 4.5;
             let mut record = blank.clone();
             record.trial = trial;
-            record.condition = vec![
-                ("environment".to_owned(), environment.to_owned()),
-                ("prior".to_owned(), prior.to_owned()),
-            ];
+            record.condition = Condition::from([("environment", environment), ("prior", prior)]);
             let end = (!late.contains(&trial)).then_some(value(at_95) * off);
             record.measures.insert("distance-m-at-80".to_owned(), Some(value(at_80) * off));
             record.measures.insert("distance-m-at-95".to_owned(), end);
@@ -174,8 +172,7 @@ fn every_reading_that_was_run_has_its_own_score() {
     for (gain, stop, share) in readings {
         // What lies with the floor plan below 30 m is less by that share; the baseline stays.
         for mut record in records(|x| if [16.0, 28.0].contains(&x) { share * x } else { x }, 0..0) {
-            record.condition.push(("gain".to_owned(), gain.to_owned()));
-            record.condition.push(("stop".to_owned(), stop.to_owned()));
+            record.condition = record.condition.with("gain", gain).with("stop", stop);
             all.push(record);
         }
     }

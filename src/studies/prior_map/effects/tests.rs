@@ -1,6 +1,7 @@
 //! Effects on made-up runs whose logarithms are round numbers.
 
 use super::*;
+use crate::condition::Condition;
 use crate::factor::Factor;
 use crate::stats::assert_close;
 use crate::studies::prior_map::Metric;
@@ -29,7 +30,7 @@ fn records() -> Vec<TrialRecord> {
         for (trial, log) in (0..).zip(logs) {
             let mut record = blank.clone();
             record.trial = trial;
-            record.condition = pairs.map(|(f, v)| (f.to_owned(), v.to_owned())).to_vec();
+            record.condition = Condition::from(pairs);
             record.measures.insert("distance-m-at-80".to_owned(), log.map(exp));
             // At 70 % from the start: no distance, and no logarithm of it.
             record.measures.insert("distance-m-at-70".to_owned(), Some(0.0));

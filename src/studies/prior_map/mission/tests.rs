@@ -1,18 +1,19 @@
 //! Whole trials in a small flat of our own.
 
 use super::*;
+use crate::condition::Condition;
 use crate::digest::{Sha256Digest, TrialKey};
 use crate::document::Source;
 use crate::geometry::Point;
 use crate::grid::{GridFrame, Occupancy, OccupancyGrid};
 use crate::rng::Seeds;
 use crate::robot::Robot;
+use crate::studies;
 use crate::studies::prior_map::columns;
 use crate::studies::prior_map::tour::{self, TopoMetricMap};
 use crate::studies::prior_map::{
     Candidate, Coverage, Crossing, Gain, Parameters, Reselect, Strategy, View,
 };
-use crate::studies::{self, Condition};
 use crate::world::{Body, Solid, World};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -90,7 +91,7 @@ fn spec(trial: u32, prior: bool, parameters: Parameters) -> TrialSpec {
     let setup = Setup { parameters, ..setup(prior.then(footprint)) };
     TrialSpec {
         key: TrialKey(Sha256Digest::of("test")),
-        condition: Condition(vec![("prior".into(), "none".into())]),
+        condition: Condition::from([("prior", "none")]),
         trial,
         seeds: Seeds::new(1, vec![("trial".into(), trial.to_string())]),
         setup: studies::Setup::new(setup),

@@ -156,7 +156,7 @@ impl Trace {
         measures.insert("coverage-percent".to_owned(), Some(self.coverage_percent()));
         TrialRecord {
             key: spec.key,
-            condition: spec.condition.0.clone(),
+            condition: spec.condition.clone(),
             trial: spec.trial,
             outcome,
             cause,
