@@ -18,8 +18,13 @@ trap 'rm -rf "$work"' EXIT
 fail() { echo "kill $killed, seed $seed: $*" >&2 && exit 1; }
 results_of() { sed -n 's/.*"results_digest":"\([^"]*\)".*/\1/p' "$1"; }
 cached_of() { sed -n 's/.*"cached":\([0-9]*\).*/\1/p' "$1"; }
-# Every record with its digest. What a killed process had not finished has another name.
-records() { find "$1" -name "*.json" -exec sha256sum {} + 2>/dev/null | LC_ALL=C sort; }
+# Every whole line of every file of records. What a killed process had not finished has no end.
+records() {
+  local file
+  for file in "$1"/segments/*.jsonl; do
+    [ ! -f "$file" ] || head -n "$(wc -l <"$file")" "$file"
+  done | grep -E '^\{"key":"[0-9a-f]{64}","sha256":.*\}\}$' | LC_ALL=C sort -u
+}
 
 killed=0 kept=0 midway=0
 "$reenact" "${study[@]}" --no-cache --out "$work/undisturbed" >"$work/undisturbed.json"

@@ -57,6 +57,9 @@ pub mod verify;
 pub mod report;
 
 // The shell: files, clock, environment and the command line.
+#[cfg(feature = "shell")]
 pub mod cli;
+#[cfg(feature = "shell")]
 pub mod provenance;
+#[cfg(feature = "shell")]
 pub mod store;

@@ -1,159 +1,17 @@
 //! Files: the only user of the file system besides the command line. Everything is written whole or not at all.
 
+mod directory;
 mod partial;
+mod segments;
 
+pub use directory::DirectoryStore;
 pub use partial::abandon;
 
 use crate::bundle::{Archive, Fault, archive};
-use crate::digest::{Sha256Digest, TrialKey};
-use crate::runner::{StoreError, TrialStore};
-use crate::studies::{Outcome, TrialRecord};
 use fs_err as fs;
 use partial::Partial;
-use std::collections::BTreeSet;
 use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
-
-/// Most bytes of one record: an hour's trial has a hundredth of it.
-const MOST_RECORD: u64 = 16 << 20;
-
-/// Finished trials in a directory: `ab/<key>.json`, one file each, safe to share between processes.
-///
-/// A file is `{"sha256":"<of the record's line>","record":<the line>}`. One that a crash or a failing disk left
-/// damaged does not match its digest, counts as absent and is replaced. Whatever is no file at all there is nobody's record:
-/// it is left alone and its trial is not kept.
-#[derive(Debug, Clone)]
-pub struct DirectoryStore {
-    root: PathBuf,
-    /// What is no file in a record's place, and what it is.
-    odd: Arc<Mutex<BTreeSet<(PathBuf, String)>>>,
-}
-
-impl DirectoryStore {
-    /// Creates a store at `root`; the folder is made when it is first written to.
-    pub fn new(root: impl Into<PathBuf>) -> Self {
-        Self { root: root.into(), odd: Arc::default() }
-    }
-
-    /// Returns a warning for everything met in a record's place that is no file; each is given once.
-    pub fn warnings(&self) -> Vec<String> {
-        let odd = std::mem::take(&mut *self.odd.lock().unwrap_or_else(PoisonError::into_inner));
-        odd.iter()
-            .map(|(path, found)| {
-                format!(
-                    "trial store: expected the record of a trial in `{}`, found {found}: it is left alone, and its trial is \
-                     run each time and not kept; remove it",
-                    path.display()
-                )
-            })
-            .collect()
-    }
-
-    /// Returns whether something that is no file stands in the place of the record at `path`; it is remembered.
-    fn is_odd(&self, path: &Path) -> bool {
-        let Some(found) = kind_of(path) else { return false };
-        let mut odd = self.odd.lock().unwrap_or_else(PoisonError::into_inner);
-        odd.insert((path.to_owned(), found.to_owned()));
-        true
-    }
-
-    /// Returns where the store is.
-    pub fn root(&self) -> &Path {
-        &self.root
-    }
-
-    /// Removes what runs that were killed had begun to write and never will end.
-    pub fn sweep(&self) {
-        for folder in fs::read_dir(&self.root).into_iter().flatten().flatten() {
-            if folder.file_type().is_ok_and(|kind| kind.is_dir()) {
-                partial::sweep(&folder.path());
-            }
-        }
-    }
-
-    fn refusal(&self, doing: &str, error: &io::Error) -> StoreError {
-        StoreError::Io(format!("cannot {doing} `{}`: {}", self.root.display(), reason(error)))
-    }
-
-    fn path(&self, key: &TrialKey) -> PathBuf {
-        let hex = key.hex();
-        self.root.join(&hex[..2]).join(format!("{hex}.json"))
-    }
-
-    /// Counts the records and their bytes.
-    ///
-    /// # Errors
-    /// Where the directory cannot be read; an absent one is empty.
-    pub fn size(&self) -> io::Result<(usize, u64)> {
-        let (mut records, mut bytes) = (0, 0);
-        if !self.root.exists() {
-            return Ok((0, 0));
-        }
-        for folder in fs::read_dir(&self.root)? {
-            let folder = folder?.path();
-            if !folder.is_dir() {
-                continue;
-            }
-            for file in fs::read_dir(&folder)? {
-                let file = file?;
-                let metadata = file.metadata()?;
-                if metadata.is_file() && file.path().extension().is_some_and(|e| e == "json") {
-                    records += 1;
-                    bytes += metadata.len();
-                }
-            }
-        }
-        Ok((records, bytes))
-    }
-}
-
-impl TrialStore for DirectoryStore {
-    fn get(&self, key: &TrialKey) -> Result<Option<TrialRecord>, StoreError> {
-        let path = self.path(key);
-        if self.is_odd(&path) {
-            return Ok(None);
-        }
-        match read(&path, MOST_RECORD) {
-            Ok(bytes) => Ok(decode(&bytes).filter(|record| record.key == *key)),
-            // Too large to be one: damaged.
-            Err(e) if matches!(e.kind(), io::ErrorKind::NotFound | io::ErrorKind::FileTooLarge) => {
-                Ok(None)
-            }
-            Err(e) => Err(self.refusal("read", &e)),
-        }
-    }
-
-    fn put(&self, record: &TrialRecord) -> Result<(), StoreError> {
-        let key = record.key;
-        if record.outcome == Outcome::PANICKED {
-            return Err(StoreError::Panicked { key, cause: record.cause.clone() });
-        }
-        let refused = |e: io::Error| self.refusal("write to", &e);
-        let path = self.path(&key);
-        if self.is_odd(&path) {
-            return Ok(());
-        }
-        let folder = path.parent().unwrap_or(&self.root);
-        fs::create_dir_all(folder).map_err(refused)?;
-        let mut file = Partial::new(folder).map_err(refused)?;
-        file.write(&encode(record)).map_err(refused)?;
-        // Whoever comes second compares: two processes may finish the same trial at once.
-        match file.persist_new(&path).map_err(refused)? {
-            None => sync_folder(folder).map_err(refused),
-            Some(file) => match self.get(&key)? {
-                Some(stored) if stored.to_line() == record.to_line() => Ok(()),
-                Some(stored) => Err(StoreError::conflict(&stored, record)),
-                None if self.is_odd(&path) => Ok(()),
-                None => {
-                    // Damaged: the fresh record takes its place.
-                    file.persist(&path).map_err(refused)?;
-                    sync_folder(folder).map_err(refused)
-                }
-            },
-        }
-    }
-}
 
 /// Says what went wrong, without the numbers of one operating system.
 pub fn reason(error: &io::Error) -> String {
@@ -168,19 +26,6 @@ pub fn reason(error: &io::Error) -> String {
         Kind::QuotaExceeded => "the quota of this disk is used up".to_owned(),
         _ => error.to_string(),
     }
-}
-
-fn encode(record: &TrialRecord) -> Vec<u8> {
-    let line = record.to_line();
-    format!("{{\"sha256\":\"{}\",\"record\":{line}}}\n", Sha256Digest::of(&line)).into_bytes()
-}
-
-fn decode(bytes: &[u8]) -> Option<TrialRecord> {
-    let text = std::str::from_utf8(bytes).ok()?;
-    let (digest, rest) = text.strip_prefix("{\"sha256\":\"")?.split_at_checked(64)?;
-    let line = rest.strip_prefix("\",\"record\":")?.strip_suffix("}\n")?;
-    let whole = Sha256Digest::from_hex(digest)? == Sha256Digest::of(line);
-    whole.then(|| TrialRecord::from_line(line).ok())?
 }
 
 /// Publishes `bytes` as `directory/name`: written beside it, made durable, renamed. A reader sees the old file or the
@@ -360,79 +205,6 @@ pub fn open_bundle(
 mod tests {
     use super::*;
     use crate::bundle::{Form, Limits, sample};
-
-    #[test]
-    fn records_survive_and_damage_is_replaced() {
-        let directory = tempfile::tempdir().unwrap();
-        let store = DirectoryStore::new(directory.path().join("new/store"));
-        let record = sample::record(7, "none", 0);
-        assert_eq!(store.size().unwrap(), (0, 0));
-        assert_eq!(store.get(&record.key).unwrap(), None);
-        store.put(&record).unwrap();
-        store.put(&record).unwrap();
-        assert_eq!(store.get(&record.key).unwrap().as_ref(), Some(&record));
-        assert_eq!(store.size().unwrap().0, 1);
-        let path = store.path(&record.key);
-        assert!(path.ends_with(format!("{}/{}.json", &record.key.hex()[..2], record.key)));
-        let whole = fs::read(&path).unwrap();
-        for cut in 0..whole.len() {
-            fs::write(&path, &whole[..cut]).unwrap();
-            assert_eq!(store.get(&record.key).unwrap(), None, "torn at {cut}, it is no record");
-            let mut zeroed = whole.clone();
-            zeroed[cut..].fill(0);
-            fs::write(&path, &zeroed).unwrap();
-            assert_eq!(store.get(&record.key).unwrap(), None, "with zeros from {cut} neither");
-        }
-        store.put(&record).unwrap();
-        assert_eq!(fs::read(&path).unwrap(), whole);
-        let left: Vec<_> = fs::read_dir(path.parent().unwrap()).unwrap().collect();
-        assert_eq!(left.len(), 1, "no temporary file stays");
-    }
-
-    #[test]
-    fn two_results_for_one_key_are_a_hard_error() {
-        let directory = tempfile::tempdir().unwrap();
-        let store = DirectoryStore::new(directory.path());
-        let stored = sample::record(7, "none", 0);
-        store.put(&stored).unwrap();
-        let mut fresh = stored.clone();
-        fresh.chain[1] = "0".repeat(16);
-        let expected = format!(
-            "trial {}: expected the record in the store (sha256:{}), found another (sha256:{}) whose states first differ \
-             between 10 s and 20 s of simulated time; equal keys must give equal bytes, so please report it, with both \
-             records",
-            stored.key,
-            Sha256Digest::of(stored.to_line()),
-            Sha256Digest::of(fresh.to_line())
-        );
-        assert_eq!(store.put(&fresh).unwrap_err().to_string(), expected);
-        assert_eq!(store.get(&stored.key).unwrap(), Some(stored.clone()), "the first stays");
-        fresh.outcome = Outcome::PANICKED;
-        fresh.cause = "index out of bounds".into();
-        assert_eq!(
-            store.put(&fresh).unwrap_err().to_string(),
-            format!(
-                "trial {}: expected a result to store, found a panic (index out of bounds); panics are never stored",
-                stored.key
-            )
-        );
-    }
-
-    #[test]
-    fn many_writers_agree() {
-        let directory = tempfile::tempdir().unwrap();
-        let store = DirectoryStore::new(directory.path());
-        std::thread::scope(|scope| {
-            for _ in 0..4 {
-                scope.spawn(|| {
-                    for trial in 0..20 {
-                        store.put(&sample::record(7, "none", trial)).unwrap();
-                    }
-                });
-            }
-        });
-        assert_eq!(store.size().unwrap().0, 20);
-    }
 
     #[test]
     fn bundles_are_published_whole_and_opened_as_zip_or_folder() {

@@ -1,5 +1,5 @@
 //! Runs that are interrupted or killed say how to go on, lose nothing that was finished and leave nothing half written; and
-//! what stands in a record's place without being one is left alone.
+//! what stands among the files of records without being one is left alone.
 #![cfg(unix)]
 
 use crate::sandbox::{Answer, Sandbox, TINY};
@@ -23,18 +23,11 @@ fn named(place: &Sandbox, below: &str, part: &str) -> Vec<PathBuf> {
     files
 }
 
-/// Returns the records in the store.
-fn stored(place: &Sandbox) -> Vec<PathBuf> {
-    let mut files = place.files("store");
-    files.retain(|file| file.extension().is_some_and(|extension| extension == "json"));
-    files
-}
-
 /// Begins `command` and waits until a few trials are in the store.
 fn begun(place: &Sandbox, command: &str) -> Child {
     let mut command = place.command(&[command, "tiny.yaml", "--jobs", "1"]);
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    while stored(place).len() < 3 {
+    while place.records("store").len() < 3 {
         assert!(child.try_wait().unwrap().is_none(), "it ended by itself");
         std::thread::sleep(Duration::from_millis(5));
     }
@@ -70,7 +63,7 @@ fn an_interrupted_run_says_how_to_go_on_and_leaves_nothing_half_written() {
             })
             .and_then(|kept| kept.parse::<usize>().ok())
             .unwrap_or_else(|| panic!("{stderr}"));
-        let stored = stored(&place).len();
+        let stored = place.records("store").len();
         assert!((3..=40).contains(&kept) && kept <= stored, "{kept} told, {stored} kept");
         assert_eq!(named(&place, "", ".partial-"), [] as [PathBuf; 0]);
         let plan = place.run(&["plan", "tiny.yaml"]).stdout;
@@ -85,9 +78,9 @@ fn what_killed_runs_left_half_written_is_swept_and_nothing_else() {
     let child = begun(&place, "run");
     send("-KILL", &child);
     child.wait_with_output().unwrap();
-    let stored = stored(&place);
-    // As one that was at its file just then leaves it, and one of another machine that may still be at work.
-    let folder = stored[0].parent().unwrap();
+    // As one of a version that kept a file for each record leaves it, and one of another machine that may still be at work.
+    let folder = place.path("store/ab");
+    fs::create_dir(&folder).unwrap();
     let (old, live) = (folder.join(".partial-aBcDeF"), folder.join(".partial-0badcafe-aBcDeF"));
     fs::write(&old, "half").unwrap();
     fs::write(&live, "half").unwrap();
@@ -99,9 +92,9 @@ fn what_killed_runs_left_half_written_is_swept_and_nothing_else() {
     assert_eq!(named(&place, "", ".partial-"), [live]);
 }
 
-/// Every shape but a file, in the places of finished records: each is named, its trial is run again and not kept.
+/// Every shape but a file, among the files of records: each is named, and what the others hold is used.
 #[test]
-fn what_is_no_file_in_a_record_s_place_is_named_and_left_alone() {
+fn what_is_no_file_of_records_is_named_and_left_alone() {
     let place = place();
     let words = ["run", "tiny.yaml", "--trials", "4", "--format", "json"];
     let results = |answer: &Answer| {
@@ -109,26 +102,22 @@ fn what_is_no_file_in_a_record_s_place_is_named_and_left_alone() {
         (told["results_digest"].clone(), told["cached"].as_u64().unwrap())
     };
     let (undisturbed, _) = results(&place.run(&words));
-    let records = stored(&place);
-    assert_eq!(records.len(), 4);
-    for record in &records[..3] {
-        fs::remove_file(record).unwrap();
-    }
-    assert!(Command::new("mkfifo").arg(&records[0]).status().unwrap().success());
-    fs::create_dir(&records[1]).unwrap();
-    std::os::unix::fs::symlink(&records[2], &records[2]).unwrap();
+    assert_eq!(place.records("store").len(), 4);
+    let odd = ["a", "b", "c"].map(|name| place.path(&format!("store/segments/{name}.jsonl")));
+    assert!(Command::new("mkfifo").arg(&odd[0]).status().unwrap().success());
+    fs::create_dir(&odd[1]).unwrap();
+    std::os::unix::fs::symlink(&odd[2], &odd[2]).unwrap();
     for _ in 0..2 {
         let answer = place.run(&words);
-        assert_eq!((results(&answer), answer.code), ((undisturbed.clone(), 1), 0));
+        assert_eq!((results(&answer), answer.code), ((undisturbed.clone(), 4), 0));
         let found = ["a pipe", "a folder", "a symbolic link that leads nowhere"];
-        let says: Vec<String> = records
+        let says: Vec<String> = odd
             .iter()
             .zip(found)
-            .map(|(record, found)| {
+            .map(|(path, found)| {
                 format!(
-                    "warning: trial store: expected the record of a trial in `{}`, found {found}: it is left alone, and its \
-                     trial is run each time and not kept; remove it\n",
-                    record.display()
+                    "warning: trial store: expected a file of records at `{}`, found {found}: it is left alone; remove it\n",
+                    path.display()
                 )
             })
             .collect();

@@ -153,6 +153,20 @@ impl Sandbox {
         listing(&self.path(below)).into_iter().filter_map(is_file).collect()
     }
 
+    /// Returns the whole lines of the files of records in the store `below`.
+    pub(crate) fn records(&self, below: &str) -> Vec<String> {
+        let mut lines = Vec::new();
+        for file in self.files(&format!("{below}/segments")) {
+            // What is torn may be anything.
+            let bytes = fs::read(file).unwrap();
+            let text = String::from_utf8_lossy(&bytes);
+            lines.extend(
+                text.split_inclusive('\n').filter(|line| line.ends_with("}}\n")).map(str::to_owned),
+            );
+        }
+        lines
+    }
+
     /// Gives `command` this sandbox's working directory and environment, and nothing of the tester's but the search path.
     pub(crate) fn dress<'a>(&self, command: &'a mut Command) -> &'a mut Command {
         let root = self.folder.path();

@@ -8,6 +8,7 @@ use crate::plan::Plan;
 use crate::runner::{RunError, Scheduler, StoreError, TrialStore};
 use crate::store::DirectoryStore;
 use crate::studies::{self, CalibrationError, TrialRecord, TrialSpec, planned_calibration};
+use std::cell::RefCell;
 
 /// Why there are no passages.
 #[derive(Debug, thiserror::Error)]
@@ -29,6 +30,8 @@ pub(super) enum Calibrator<'a> {
     StandIn,
     /// From the store alone.
     Stored(&'a DirectoryStore),
+    /// From the store where it has all of it; else numbers stand in that enter no result, and it is noted what is not there.
+    AtHand(&'a DirectoryStore, &'a RefCell<Option<Unmeasured>>),
     /// From the store, and by running what it has not.
     Run {
         /// Who runs it.
@@ -52,6 +55,13 @@ impl Calibrator<'_> {
         let records = match self {
             Self::StandIn => Vec::new(),
             Self::Stored(store) => stored(&plan, store)?,
+            Self::AtHand(store, missing) => match stored(&plan, store) {
+                Err(error @ Unmeasured::NotRun { .. }) => {
+                    missing.replace(Some(error));
+                    return Ok(CalibrationTrials::StandIn);
+                }
+                records => records?,
+            },
             Self::Run { scheduler, store } => {
                 let progress = Progress::of(&plan.trials, terminal).labelled(&plan.experiment.name);
                 let progress = progress.interruptible(store.is_some());
@@ -75,7 +85,9 @@ impl Calibrator<'_> {
     ) -> Result<[Vec<u8>; 2], ExploreError> {
         match self {
             Self::StandIn => manifest::unexplored(spec, sealed_as),
-            Self::Stored(_) | Self::Run { .. } => manifest::explored(spec, sealed_as),
+            Self::Stored(_) | Self::AtHand(..) | Self::Run { .. } => {
+                manifest::explored(spec, sealed_as)
+            }
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The trials of an experiment, in plan order.
 
-use super::key::{ENGINE_VERSION, explain, key_content, key_of, study_digest};
+use super::key::{ENGINE_VERSION, Keys, explain, key_content, study_digest};
 use super::resolved::ResolvedStudy;
 use super::selection::{Selection, SelectionError};
 use crate::condition::Condition;
@@ -123,23 +123,23 @@ fn expand(experiment: &Experiment, selection: &Selection) -> Vec<TrialSpec> {
         if !selection.wants(condition) {
             continue;
         }
+        let keys = Keys::of(key_content(
+            experiment.kind,
+            experiment.seed,
+            &experiment.shared_noise,
+            condition,
+            0,
+            setup,
+            meanings,
+        ));
         for trial in 0..count {
             let mine = number % shards == shard - 1;
             number = number.wrapping_add(1);
             if !mine {
                 continue;
             }
-            let content = key_content(
-                experiment.kind,
-                experiment.seed,
-                &experiment.shared_noise,
-                condition,
-                trial,
-                setup,
-                meanings,
-            );
             trials.push(TrialSpec {
-                key: key_of(&content),
+                key: keys.key(trial),
                 condition: condition.clone(),
                 trial,
                 seeds: seeds(experiment, condition, trial),

@@ -6,16 +6,20 @@
 
 use super::resolved::ResolvedStudy;
 use crate::condition::Condition;
-use crate::digest::{Sha256Digest, StudyDigest, TrialKey};
+use crate::digest::{Hasher, Sha256Digest, StudyDigest, TrialKey};
 use crate::json;
 use crate::manifest::{Experiment, Meanings};
 use crate::studies::{Setup, StudyKind, TrialSpec};
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 /// Version of everything that turns a trial's content into its bytes. Raised whenever any trial's record
 /// changes; the golden digests in `tests/` fail when that is forgotten.
 pub const ENGINE_VERSION: &str = "1";
+
+/// The key that holds the number of the trial.
+const TRIAL: &str = "trial";
 
 /// Returns the content of a trial's key.
 ///
@@ -49,7 +53,7 @@ pub fn key_content(
         "seed": seed,
         "shared-noise": shared,
         "condition": levels(condition),
-        "trial": trial,
+        TRIAL: trial,
         "robot": meanings.robot,
         "world": meanings.world,
         "prior": meanings.prior,
@@ -67,9 +71,42 @@ pub(super) fn levels(condition: &Condition) -> BTreeMap<String, String> {
     condition.iter().cloned().collect()
 }
 
-/// Computes the key of that content.
-pub(super) fn key_of(content: &Value) -> TrialKey {
-    TrialKey(Sha256Digest::of(json::canonical(content)))
+/// The keys of the trials of one condition: what their contents have in common is written and hashed once.
+pub(super) struct Keys {
+    /// Fed with the canonical JSON up to the number of the trial.
+    before: Hasher,
+    /// What follows the number.
+    after: String,
+}
+
+impl Keys {
+    /// Begins the keys of contents that are `content` but for the number of the trial.
+    pub(super) fn of(content: Value) -> Self {
+        let (mut first, mut last) = (Map::new(), Map::new());
+        if let Value::Object(content) = content {
+            for (name, value) in content {
+                match name.as_str().cmp(TRIAL) {
+                    Ordering::Less => first.insert(name, value),
+                    Ordering::Equal => None,
+                    Ordering::Greater => last.insert(name, value),
+                };
+            }
+        }
+        // Canonical JSON has its keys in order: two objects, joined in the middle.
+        let (first, last) =
+            (json::canonical(&Value::Object(first)), json::canonical(&Value::Object(last)));
+        let mut before = Hasher::new();
+        before.update(&first[..first.len() - 1]).update(if first == "{}" { "" } else { "," });
+        before.update(format!("\"{TRIAL}\":"));
+        let after = if last == "{}" { "}".to_owned() } else { format!(",{}", &last[1..]) };
+        Self { before, after }
+    }
+
+    /// Computes the key of the trial with this number.
+    pub(super) fn key(&self, trial: u32) -> TrialKey {
+        let mut hasher = self.before.clone();
+        TrialKey(hasher.update(trial.to_string()).update(&self.after).digest())
+    }
 }
 
 /// Computes the digest of what was asked: of `study.resolved.json`, and so of the manifest's meaning and all input
@@ -115,5 +152,27 @@ fn lines(path: &str, value: &Value, text: &mut String) {
             }
         }
         leaf => text.push_str(&format!("  {path} = {}\n", json::canonical(leaf))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Checks that keys are the digests of their contents' canonical JSON, whatever stands before and behind the number.
+    #[test]
+    fn keys_of_a_condition_are_those_of_each_content() {
+        let full = json!({"condition": {"prior": "none"}, "maneuvers": {}, "start": [0.5, {}], "trial": 0, "world": "w"});
+        for content in
+            [full, json!({"trial": 0}), json!({"a": {}, "trial": 0}), json!({"trial": 0, "z": []})]
+        {
+            let keys = Keys::of(content.clone());
+            for trial in [0, 7, 1_999_999] {
+                let mut content = content.clone();
+                content[TRIAL] = trial.into();
+                let digest = Sha256Digest::of(json::canonical(&content));
+                assert_eq!(keys.key(trial), TrialKey(digest), "{content}");
+            }
+        }
     }
 }

@@ -29,7 +29,8 @@ static OWN_PREFIX: LazyLock<Option<String>> =
 /// A file that is renamed into place, or vanishes.
 pub(super) struct Partial {
     file: NamedTempFile,
-    listed: Listed,
+    /// Goes with it.
+    _listed: Listed,
 }
 
 /// An entry of [`UNDER_WAY`] that goes with its file.
@@ -60,7 +61,7 @@ impl Partial {
             if !is_taken && file.path().exists() {
                 let listed = Listed(file.path().to_owned());
                 under_way.insert(listed.0.clone());
-                return Ok(Self { file, listed });
+                return Ok(Self { file, _listed: listed });
             }
         }
     }
@@ -74,18 +75,6 @@ impl Partial {
     /// Renames it to `path`, whatever is there.
     pub(super) fn persist(self, path: &Path) -> io::Result<()> {
         self.file.persist(path).map(drop).map_err(|e| e.error)
-    }
-
-    /// Renames it to `path`; it comes back where something is there.
-    pub(super) fn persist_new(self, path: &Path) -> io::Result<Option<Self>> {
-        let Self { file, listed } = self;
-        match file.persist_noclobber(path) {
-            Ok(_) => Ok(None),
-            Err(e) if e.error.kind() == io::ErrorKind::AlreadyExists => {
-                Ok(Some(Self { file: e.file, listed }))
-            }
-            Err(e) => Err(e.error),
-        }
     }
 }
 

@@ -10,6 +10,7 @@ use crate::cli::terminal::{Terminal, counted};
 use crate::provenance::{Environment, processors};
 use crate::runner::TrialStore as _;
 use crate::store::DirectoryStore;
+use std::cell::RefCell;
 
 /// Lists the trials and estimates the rest, explains one of them, or says how likely they are to decide each claim.
 pub(in crate::cli) fn run(
@@ -18,7 +19,12 @@ pub(in crate::cli) fn run(
     terminal: Terminal,
 ) -> Result<Exit, Failure> {
     let store = DirectoryStore::new(environment.store().map_err(Failure::not_understood)?);
-    let calibrator = Calibrator::Stored(&store);
+    // What a calibration measured is part of a trial's key, and of nothing else here.
+    let missing = RefCell::new(None);
+    let calibrator = match &args.explain {
+        Some(_) => Calibrator::Stored(&store),
+        None => Calibrator::AtHand(&store, &missing),
+    };
     let loaded = load::manifest(&args.manifest, &args.select.set, calibrator, terminal)?;
     let (plan, _) = load::plan(loaded.experiment, &args.select)?;
     if let Some(wanted) = &args.explain {
@@ -30,10 +36,14 @@ pub(in crate::cli) fn run(
         terminal.result(&power::power(&plan, args.format));
         return Ok(Exit::Yes);
     }
+    let missing = missing.into_inner();
     let mut text = String::new();
     let (mut done, mut known_seconds) = (0, 0.0);
     for spec in &plan.trials {
-        let record = store.get(&spec.key).map_err(Failure::failed)?;
+        let record = match &missing {
+            Some(_) => None,
+            None => store.get(&spec.key).map_err(Failure::failed)?,
+        };
         let state = match &record {
             Some(record) => {
                 done += 1;
@@ -44,7 +54,7 @@ pub(in crate::cli) fn run(
         };
         text.push_str(&format!(
             "{}  {}/{}  {state}\n",
-            spec.key.short(),
+            missing.as_ref().map_or_else(|| spec.key.short(), |_| NO_KEY.to_owned()),
             spec.condition.slug(),
             spec.trial
         ));
@@ -56,8 +66,14 @@ pub(in crate::cli) fn run(
         estimate(left, done, known_seconds)
     ));
     terminal.result(&text);
+    if let Some(missing) = missing {
+        terminal.note(&format!("note: keys depend on what the calibration measures; {missing}"));
+    }
     Ok(Exit::Yes)
 }
+
+/// What stands for a key that nobody can know yet.
+const NO_KEY: &str = "--------";
 
 /// Says how long the rest takes, where trials of this plan have been seen; a processor simulates some 300 times faster
 /// than real time.

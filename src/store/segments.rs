@@ -1,0 +1,284 @@
+//! Files of records to which one process at a time appends.
+//!
+//! A lock says that a segment's writer lives: the kernel takes it away with the process, and the next writer goes on where it
+//! ended. So there are as many segments as processes were ever at work at once, and no more. Locks of another kernel prove
+//! nothing, so that a segment's name says which kernel its writers run on.
+
+use super::{kind_of, open};
+use crate::digest::{Sha256Digest, TrialKey};
+use crate::provenance;
+use crate::studies::TrialRecord;
+use std::collections::btree_map::Entry;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs::{self, File, TryLockError};
+use std::io::{self, BufRead as _, BufReader, Read as _, Seek as _, SeekFrom, Write as _};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Most bytes of one record: an hour's trial has a hundredth of it.
+pub(super) const MOST_RECORD: u64 = 16 << 20;
+
+/// How the line of a record begins, up to the trial's key, and how it goes on behind it.
+const HEAD: &str = "{\"key\":\"";
+const BEHIND: &str = "\",\"sha256\":\"";
+
+/// All segments of a store, as far as they were read, and the one that this process appends to.
+#[derive(Debug)]
+pub(super) struct Segments {
+    folder: PathBuf,
+    state: Mutex<State>,
+}
+
+#[derive(Debug, Default)]
+struct State {
+    /// Where the lines of each trial are: one, but for what is damaged or two processes finished at once.
+    places: BTreeMap<TrialKey, Vec<Place>>,
+    /// How much of each segment was read.
+    read: BTreeMap<PathBuf, Segment>,
+    own: Option<Own>,
+    /// What is no file, and what it is.
+    odd: BTreeSet<(PathBuf, &'static str)>,
+}
+
+/// A segment that was read.
+#[derive(Debug)]
+struct Segment {
+    file: Arc<Mutex<File>>,
+    /// Up to the end of its last whole line.
+    to: u64,
+}
+
+/// A line in a segment.
+#[derive(Debug, Clone)]
+struct Place {
+    file: Arc<Mutex<File>>,
+    from: u64,
+    length: usize,
+}
+
+/// The segment that this process appends to, as long as it holds the lock.
+#[derive(Debug)]
+struct Own(File);
+
+impl Drop for Own {
+    fn drop(&mut self) {
+        // Only a power cut could take what was appended; from here on not even that.
+        let _ = self.0.sync_data();
+    }
+}
+
+impl Segments {
+    /// Creates those in `folder`, which is made when it is first written to.
+    pub(super) fn new(folder: PathBuf) -> Self {
+        Self { folder, state: Mutex::default() }
+    }
+
+    /// Returns every whole record that stands under `key`.
+    pub(super) fn get(&self, key: &TrialKey) -> io::Result<Vec<TrialRecord>> {
+        let places = {
+            let mut state = self.lock();
+            if !state.places.contains_key(key) {
+                // Another process may have finished it since.
+                state.read_on(&self.folder)?;
+            }
+            state.places.get(key).cloned().unwrap_or_default()
+        };
+        let mut records = Vec::new();
+        for place in places {
+            records.extend(decode(&place.read()?));
+        }
+        Ok(records)
+    }
+
+    /// Appends the line of a record.
+    pub(super) fn append(&self, line: &[u8]) -> io::Result<()> {
+        let mut state = self.lock();
+        let own = match state.own.take() {
+            Some(own) => own,
+            None => Own::in_folder(&self.folder)?,
+        };
+        let own = state.own.insert(own);
+        let before = own.0.metadata()?.len();
+        // One call for the whole line.
+        if let Err(error) = own.0.write_all(line) {
+            // A part would stay in the way of the next line.
+            let _ = own.0.set_len(before);
+            return Err(error);
+        }
+        state.read_on(&self.folder)
+    }
+
+    /// Counts the trials that have a line, and the bytes of all lines.
+    pub(super) fn size(&self) -> io::Result<(usize, u64)> {
+        let mut state = self.lock();
+        state.read_on(&self.folder)?;
+        Ok((state.places.len(), state.read.values().map(|segment| segment.to).sum()))
+    }
+
+    /// Returns what was met that is no file, and what it is; each once.
+    pub(super) fn odd(&self) -> BTreeSet<(PathBuf, &'static str)> {
+        std::mem::take(&mut self.lock().odd)
+    }
+
+    fn lock(&self) -> std::sync::MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl State {
+    /// Reads what was appended to any segment since the last time.
+    fn read_on(&mut self, folder: &Path) -> io::Result<()> {
+        for path in segments_in(folder)? {
+            if let Some(found) = kind_of(&path) {
+                self.odd.insert((path, found));
+                continue;
+            }
+            let length = fs::metadata(&path)?.len();
+            let segment = match self.read.entry(path) {
+                Entry::Occupied(known) => known.into_mut(),
+                Entry::Vacant(new) => {
+                    let (file, _) = open(new.key())?.into_parts();
+                    new.insert(Segment { file: Arc::new(Mutex::new(file)), to: 0 })
+                }
+            };
+            if length > segment.to {
+                for (key, place) in segment.read_on()? {
+                    self.places.entry(key).or_default().push(place);
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Segment {
+    /// Returns the lines behind those that were read, as far as they are whole and begin as a record's does.
+    fn read_on(&mut self) -> io::Result<Vec<(TrialKey, Place)>> {
+        let file = Arc::clone(&self.file);
+        let mut file = file.lock().unwrap_or_else(PoisonError::into_inner);
+        file.seek(SeekFrom::Start(self.to))?;
+        let mut reader = BufReader::with_capacity(1 << 16, &mut *file);
+        let (mut places, mut line) = (Vec::new(), Vec::new());
+        loop {
+            line.clear();
+            let mut length = reader.by_ref().take(MOST_RECORD).read_until(b'\n', &mut line)? as u64;
+            if length == MOST_RECORD && line.last() != Some(&b'\n') {
+                // Too long to be one.
+                line.clear();
+                length += reader.skip_until(b'\n')? as u64;
+            } else if line.last() != Some(&b'\n') {
+                // The end, or a line that is being written or never will be whole.
+                return Ok(places);
+            }
+            if let Some(key) = key_of(&line) {
+                let file = Arc::clone(&self.file);
+                places.push((key, Place { file, from: self.to, length: line.len() }));
+            }
+            self.to += length;
+        }
+    }
+}
+
+impl Place {
+    /// Returns the line; less where the file is not what it was.
+    fn read(&self) -> io::Result<Vec<u8>> {
+        let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut line = Vec::with_capacity(self.length);
+        file.seek(SeekFrom::Start(self.from))?;
+        (&mut *file).take(self.length as u64).read_to_end(&mut line)?;
+        Ok(line)
+    }
+}
+
+impl Own {
+    /// Returns one that no other process appends to: one that is there, or a new one.
+    fn in_folder(folder: &Path) -> io::Result<Self> {
+        fs::create_dir_all(folder)?;
+        let kernel = provenance::kernel();
+        for number in 0..u32::MAX {
+            let name = match &kernel {
+                Some(kernel) => format!("{kernel}-{number}.jsonl"),
+                None => format!("{number}.jsonl"),
+            };
+            let path = folder.join(name);
+            if kind_of(&path).is_some() {
+                continue;
+            }
+            let mut options = fs::OpenOptions::new();
+            options.read(true).append(true);
+            let is_new = !path.exists();
+            // Without a name for the kernel nobody knows whether a lock proves anything: never one that is there.
+            let file = match options.clone().create_new(is_new).open(&path) {
+                Ok(_) if !is_new && kernel.is_none() => continue,
+                // Another process was quicker; it may be another's, too.
+                Err(e) if e.kind() == io::ErrorKind::AlreadyExists => continue,
+                Err(e) if !is_new && e.kind() == io::ErrorKind::PermissionDenied => continue,
+                opened => opened?,
+            };
+            match file.try_lock() {
+                Err(TryLockError::WouldBlock) => continue,
+                // Where there are no locks, nobody takes what is there.
+                Err(TryLockError::Error(_)) if !is_new => continue,
+                Ok(()) | Err(TryLockError::Error(_)) => {}
+            }
+            let mut own = Self(file);
+            own.end_line()?;
+            return Ok(own);
+        }
+        Err(io::ErrorKind::StorageFull.into())
+    }
+
+    /// Ends a last line that was torn, so that the next one is whole.
+    fn end_line(&mut self) -> io::Result<()> {
+        let mut last = [b'\n'];
+        if self.0.metadata()?.len() > 0 {
+            self.0.seek(SeekFrom::End(-1))?;
+            self.0.read_exact(&mut last)?;
+        }
+        if last == [b'\n'] { Ok(()) } else { self.0.write_all(b"\n") }
+    }
+}
+
+/// Returns everything in `folder` that is called as a segment is, in the order of the names; nothing where it is absent.
+fn segments_in(folder: &Path) -> io::Result<Vec<PathBuf>> {
+    let entries = match fs::read_dir(folder) {
+        Ok(entries) => entries,
+        Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
+        Err(e) => return Err(e),
+    };
+    let mut paths = Vec::new();
+    for entry in entries {
+        let path = entry?.path();
+        if path.extension().is_some_and(|extension| extension == "jsonl") {
+            paths.push(path);
+        }
+    }
+    paths.sort();
+    Ok(paths)
+}
+
+/// Returns the line of a record.
+pub(super) fn encode(record: &TrialRecord) -> Vec<u8> {
+    let line = record.to_line();
+    let digest = Sha256Digest::of(&line);
+    format!("{HEAD}{}{BEHIND}{digest}\",\"record\":{line}}}\n", record.key).into_bytes()
+}
+
+/// Returns the key that a line begins with.
+fn key_of(line: &[u8]) -> Option<TrialKey> {
+    let hex = line.strip_prefix(HEAD.as_bytes())?.get(..64)?;
+    Some(TrialKey(Sha256Digest::from_hex(std::str::from_utf8(hex).ok()?)?))
+}
+
+/// Returns the record of a line, with its key before it or not, where it is whole.
+pub(super) fn decode(bytes: &[u8]) -> Option<TrialRecord> {
+    let text = std::str::from_utf8(bytes).ok()?;
+    let rest = match text.strip_prefix(HEAD) {
+        Some(keyed) => keyed.get(64..)?.strip_prefix(BEHIND)?,
+        None => text.strip_prefix("{\"sha256\":\"")?,
+    };
+    let (digest, rest) = rest.split_at_checked(64)?;
+    let line = rest.strip_prefix("\",\"record\":")?.strip_suffix("}\n")?;
+    let whole = Sha256Digest::from_hex(digest)? == Sha256Digest::of(line);
+    whole.then(|| TrialRecord::from_line(line).ok())?
+}
