@@ -23,8 +23,7 @@ fn run(place: &Sandbox, more: &[&str]) -> Command {
 
 /// Counts the records in the store.
 fn stored(place: &Sandbox) -> usize {
-    let is_record = |file: &&PathBuf| file.extension().is_some_and(|extension| extension == "json");
-    place.files("store").iter().filter(is_record).count()
+    place.records("store").len()
 }
 
 /// What a run said of itself.

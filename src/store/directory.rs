@@ -232,8 +232,8 @@ mod tests {
                 scope.spawn(|| (0..20).for_each(|trial| store.put(&record(trial)).unwrap()));
             }
         });
+        assert!(stores.iter().all(|store| store.size().unwrap().0 == 20));
         for store in &stores {
-            assert_eq!(store.size().unwrap().0, 20);
             stores[0].put(&record(99)).unwrap();
             assert_eq!(store.get(&record(99).key).unwrap(), Some(record(99)));
         }
