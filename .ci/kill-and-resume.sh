@@ -23,7 +23,7 @@ records() {
   local file
   for file in "$1"/segments/*.jsonl; do
     [ ! -f "$file" ] || head -n "$(wc -l <"$file")" "$file"
-  done | grep -E '^\{"key":"[0-9a-f]{64}","sha256":.*\}\}$' | LC_ALL=C sort -u
+  done | { grep -E '^\{"key":"[0-9a-f]{64}","sha256":.*\}\}$' || true; } | LC_ALL=C sort -u
 }
 
 killed=0 kept=0 midway=0
