@@ -231,8 +231,10 @@ impl LocalMap {
         // The columns and rows of the new window that the old one has too.
         let shared = |by: i32| (-by).clamp(0, self.side)..(self.side - by).clamp(0, self.side);
         let columns = shared(right);
+        // Of windows side by side no column is shared, and no cell whose index could be computed.
+        let rows = if columns.is_empty() { 0..0 } else { shared(up) };
         #[expect(clippy::cast_sign_loss, reason = "inside of both windows")]
-        for y in shared(up) {
+        for y in rows {
             let to = (y * self.side + columns.start) as usize;
             let from = ((y + up) * self.side + columns.start + right) as usize;
             let row = self.seen[from..].iter().take(columns.len());
@@ -335,6 +337,25 @@ mod tests {
     }
 
     proptest! {
+        /// Checks that a window that moves keeps what it still covers, and knows nothing of the rest.
+        #[test]
+        fn a_window_that_moves_keeps_what_it_covers(x in -9.0..9.0, y in -9.0..9.0, salt in 0_usize..97) {
+            let mut map = LocalMap::new(LocalRule::default());
+            let kinds = [Seen::Unknown, Seen::Free, Seen::Obstacle];
+            for (i, seen) in map.seen.iter_mut().enumerate() {
+                *seen = kinds[i * (salt + 5) / 7 % 3];
+            }
+            let before = LocalMap { seen: map.seen.clone(), ..LocalMap::new(LocalRule::default()) };
+            map.move_to(Pose::new(x, y, 0.0));
+            for (i, &seen) in map.seen.iter().enumerate() {
+                let side = usize::try_from(map.side).unwrap();
+                let at = |i: usize| i32::try_from(i).unwrap();
+                let cell = Cell::new(at(i % side) + map.corner.x, at(i / side) + map.corner.y);
+                let expected = before.index(cell).map_or(Seen::Unknown, |i| before.seen[i]);
+                prop_assert_eq!(seen, expected, "{:?}", cell);
+            }
+        }
+
         #[test]
         fn clearances_are_the_distances_to_the_nearest_obstacle(
             obstacles in prop::collection::vec((0..120_i32, 0..120_i32), 0..40),
