@@ -408,6 +408,46 @@ mod tests {
             prop_assert_eq!(walked, expected);
         }
 
+        /// Checks that beams that end in one cell count as if each was walked by itself, and that scans taken back count
+        /// as if they had never been.
+        #[test]
+        fn counts_are_those_of_every_beam_by_itself(
+            poses in prop::collection::vec((-2.0..2.0, -2.0..2.0, -3.0..3.0), 1..5),
+            ranges in prop::collection::vec(prop_oneof![0.05..9.0, Just(0.31), Just(f64::INFINITY)], 5..60),
+            back: bool,
+        ) {
+            let scan = scan(ranges);
+            let beams = BeamEnds::of(&scan, RULE.clip_range);
+            let mut map = OccupancyMap::new(RULE);
+            for &(x, y, heading) in &poses {
+                map.add(Pose::new(x, y, heading), &beams);
+            }
+            let kept = if back { &poses[1..] } else { &poses[..] };
+            if back {
+                let (x, y, heading) = poses[0];
+                map.remove(Pose::new(x, y, heading), &beams);
+            }
+            let frame = *map.grid.frame();
+            let mut counts = std::collections::BTreeMap::new();
+            for &(x, y, heading) in kept {
+                let sensor = Pose::new(x, y, heading).compose(beams.mount);
+                let from = frame.cell_at(sensor.position());
+                for &(end, is_hit) in &beams.ends {
+                    let to = frame.cell_at(sensor.transform(end));
+                    for cell in line(from, to).filter(|&cell| cell != to || is_hit) {
+                        let (visits, hits) = counts.entry(cell).or_insert((0_u16, 0_u16));
+                        *visits += 1;
+                        *hits += u16::from(cell == to);
+                    }
+                }
+            }
+            for cell in frame.cells() {
+                let count = map.counts.get(cell).unwrap();
+                let expected = counts.get(&cell).copied().unwrap_or((0, 0));
+                prop_assert_eq!((count.visits, count.hits), expected, "{:?}", cell);
+            }
+        }
+
         /// Checks that growing never loses a known cell, and that the cells reported as changed are exactly those that
         /// changed.
         #[test]
