@@ -1,6 +1,6 @@
 //! The command line as people meet it: whole texts and exit codes.
 
-use crate::sandbox::Sandbox;
+use crate::sandbox::{Sandbox, repository};
 use std::path::PathBuf;
 
 /// Creates a folder with the starter study in it.
@@ -169,6 +169,29 @@ fn requests_that_are_not_understood_end_with_2() {
     }
     assert_eq!(desk.run(&["frobnicate"]).code, 2);
     assert_eq!(desk.run(&["--help"]).code, 0);
+}
+
+/// Checks that a plan needs no calibration, and that a key does.
+#[test]
+fn a_plan_is_shown_before_its_calibration_has_run() {
+    let desk = Sandbox::pinned();
+    let at = |name: &str| repository().join("manifests").join(name).display().to_string();
+    let (manifest, calibration) = (at("deadline.yaml"), at("deadline-calibration.yaml"));
+    let part = ["--trials", "2", "--only", "start=A", "--only", "strategy=frontier"];
+    let answer =
+        desk.run(&[&["plan", &manifest], &part[..], &["--only", "deadline-s=68"]].concat());
+    let not_run = format!(
+        "12000 of its 12000 passages have not run yet: `reenact run {calibration}` runs them"
+    );
+    let says = format!("note: keys depend on what the calibration measures; {not_run}\n");
+    assert_eq!((answer.stderr, answer.code), (says, 0));
+    assert_eq!(
+        answer.stdout,
+        "--------  A_68_frontier/0  to do\n--------  A_68_frontier/1  to do\n2 trials: 0 done, 2 to do\n"
+    );
+    let answer = desk.run(&["plan", &manifest, "--explain", "A_68_frontier/0"]);
+    assert_eq!((answer.stdout.as_str(), answer.code), ("", 2));
+    assert!(answer.stderr.contains(&not_run), "{}", answer.stderr);
 }
 
 #[test]

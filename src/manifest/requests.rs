@@ -105,13 +105,7 @@ impl<'m> Requests<'m> {
         }
         self.check_only(&table.only, pointer, faults);
         self.check_columns(&table.by, &table.rows, pointer, faults);
-        self.check_published(
-            table.published.as_ref(),
-            &table.by,
-            &table.rows,
-            &format!("{pointer}/published"),
-            faults,
-        );
+        self.check_beside(table.published.as_ref(), &table.by, &table.rows, pointer, faults);
     }
 
     fn check_measures(self, wanted: &MeasuresTable, pointer: &str, faults: &mut Faults<'_>) {
@@ -146,13 +140,7 @@ impl<'m> Requests<'m> {
                 faults.key_fault(pointer, message).label("it is neither in `by` nor in `rows`");
             faults.push(fault.help(format!("add `{}` to `rows`", factor.name)).warning());
         }
-        self.check_published(
-            table.published.as_ref(),
-            &table.by,
-            &table.rows,
-            &format!("{pointer}/published"),
-            faults,
-        );
+        self.check_beside(table.published.as_ref(), &table.by, &table.rows, pointer, faults);
     }
 
     /// Checks that effects are of factors that have something to compare, in runs that share no noise.
@@ -240,6 +228,18 @@ impl<'m> Requests<'m> {
                 faults.at(&place, format!("`{row}` stands in the columns already"), "remove it");
             }
         }
+    }
+
+    /// Does [`Self::check_published`] for the layout at `pointer`, which names its numbers in `published`.
+    fn check_beside(
+        self,
+        name: Option<&String>,
+        by: &str,
+        rows: &[String],
+        pointer: &str,
+        faults: &mut Faults<'_>,
+    ) {
+        self.check_published(name, by, rows, &format!("{pointer}/published"), faults);
     }
 
     /// Reports published numbers that the table cannot stand beside.
