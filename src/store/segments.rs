@@ -1,8 +1,9 @@
 //! Files of records to which one process at a time appends.
 //!
 //! A lock says that a segment's writer lives: the kernel takes it away with the process, and the next writer goes on where it
-//! ended. So there are as many segments as processes were ever at work at once, and no more. Locks of another kernel prove
-//! nothing, so that a segment's name says which kernel its writers run on.
+//! ended. So from one start of a machine to the next there are as many segments as processes were ever at work at once. Locks
+//! of another kernel prove nothing, so that a segment's name says which kernel its writers run on; where a kernel gives itself no
+//! name (any but Linux), every process that has something to append begins a segment.
 
 use super::{kind_of, open};
 use crate::digest::{Sha256Digest, TrialKey};
