@@ -8,13 +8,40 @@ use crate::geometry::{Outline, Point, Pose};
 use crate::math;
 use crate::rng::Stream;
 use crate::robot::Lidar;
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
+use std::ops::Range;
+
+/// A wall as the lidar sees it, in the world's frame (m).
+#[derive(Debug, Clone, Copy)]
+struct Wall {
+    /// Its ends; the solid side is on the right of a → b.
+    a: Point,
+    b: Point,
+    /// b − a.
+    along: Point,
+    /// A sensor for which (a − sensor) × (b − a) exceeds this is further from the wall's line than the longest range.
+    reach: f64,
+}
+
+impl Wall {
+    fn new(a: Point, b: Point, max_range: f64) -> Self {
+        Self { a, b, along: b - a, reach: (b - a).norm() * max_range + SLACK }
+    }
+
+    /// Returns whether the sensor is surely behind the wall or too far from it. What is left is looked at exactly.
+    fn is_out_of_sight(&self, sensor: Point) -> bool {
+        let side = (self.a - sensor).cross(self.along);
+        side < -SLACK || side > self.reach
+    }
+}
+
+/// By how much a product of lengths (m²) may be off by rounding, generously.
+const SLACK: f64 = 1e-6;
 
 /// A caster for one lidar in one world.
 #[derive(Debug, Clone)]
 pub struct WallSweep {
-    /// Ends of walls in the world, the solid side on the right of a → b.
-    walls: Vec<(Point, Point)>,
+    walls: Vec<Wall>,
     circles: Vec<(Point, f64)>,
     /// Unit direction of each beam in the sensor's frame.
     beams: Vec<Point>,
@@ -38,7 +65,8 @@ impl WallSweep {
                     walls.extend(
                         outline
                             .sides()
-                            .map(|s| if doubled_area > 0.0 { (s.b, s.a) } else { (s.a, s.b) }),
+                            .map(|s| if doubled_area > 0.0 { (s.b, s.a) } else { (s.a, s.b) })
+                            .map(|(a, b)| Wall::new(a, b, lidar.max_range)),
                     );
                 }
             }
@@ -70,29 +98,34 @@ impl WallSweep {
             let (dx, dy) = (p.x - sensor.x, p.y - sensor.y);
             Point::new(cos * dx + sin * dy, cos * dy - sin * dx)
         };
-        for &(a, b) in &self.walls {
-            let (a, b) = (local(a), local(b));
+        let in_sight = |wall: &&Wall| !wall.is_out_of_sight(sensor.position());
+        for wall in self.walls.iter().filter(in_sight) {
+            let (a, b) = (local(wall.a), local(wall.b));
             // Seen from its open side, a wall runs counter-clockwise around the sensor.
             let along = b - a;
             let numerator = a.cross(along);
             if numerator <= 0.0 || self.is_beyond(a, along, numerator) {
                 continue;
             }
-            let first = math::atan2(a.y, a.x);
+            // Rough angles suffice to choose candidates: which beams meet the wall is found exactly below.
+            let (first, mut last) = (rough_angle(a) - ROUGHNESS, rough_angle(b) + ROUGHNESS);
             // Less than half a turn, because the wall is seen from its open side.
-            let mut last = math::atan2(b.y, b.x);
             if last < first {
                 last += TAU;
             }
-            self.for_beams(first, last, |i| {
-                let direction = self.beams[i];
-                if a.cross(direction) >= 0.0 && direction.cross(b) >= 0.0 {
+            for candidates in self.beams_between(first, last) {
+                // Few do not meet it, at either end.
+                let meets = |d: &Point| a.cross(*d) >= 0.0 && d.cross(b) >= 0.0;
+                let beams = &self.beams[candidates.clone()];
+                let before = beams.iter().take_while(|d| !meets(d)).count();
+                let after = beams[before..].iter().rev().take_while(|d| !meets(d)).count();
+                let meeting = candidates.start + before..candidates.end - after;
+                let beams = &self.beams[meeting.clone()];
+                for (nearest, direction) in ranges[meeting].iter_mut().zip(beams) {
                     let range = numerator / direction.cross(along);
-                    if range < ranges[i] {
-                        ranges[i] = range;
-                    }
+                    *nearest = if range < *nearest { range } else { *nearest };
                 }
-            });
+            }
         }
         for &(center, radius) in &self.circles {
             let center = local(center);
@@ -102,7 +135,7 @@ impl WallSweep {
             }
             let middle = math::atan2(center.y, center.x);
             let half = math::asin(radius / distance);
-            self.for_beams(middle - half, middle + half, |i| {
+            for i in self.beams_between(middle - half, middle + half).into_iter().flatten() {
                 let direction = self.beams[i];
                 let (along, beside) = (direction.dot(center), direction.cross(center));
                 let inside = radius * radius - beside * beside;
@@ -112,7 +145,7 @@ impl WallSweep {
                         ranges[i] = range;
                     }
                 }
-            });
+            }
         }
         for range in ranges {
             if *range > self.max_range {
@@ -132,27 +165,37 @@ impl WallSweep {
         }
     }
 
-    /// Calls `visit` with every beam between the angles `first` and `last` (rad, `last` ≥ `first`), and with
-    /// one more on either side for rounding.
-    fn for_beams(&self, first: f64, last: f64, mut visit: impl FnMut(usize)) {
+    /// Returns the beams between the angles `first` and `last` (rad, `last` ≥ `first`), with one more on either side for
+    /// rounding: in up to three parts, for a wall may be met one turn further round, where the field of view crosses ±π.
+    fn beams_between(&self, first: f64, last: f64) -> [Range<usize>; 3] {
         #[expect(clippy::cast_precision_loss, reason = "beam numbers are small")]
-        let highest = self.beams.len() as f64 - 1.0;
-        // The wall may be met one turn further round, where the field of view crosses ±π.
-        for turn in [-TAU, 0.0, TAU] {
-            let low = ((first + turn - self.min_angle) / self.increment).floor().max(0.0);
-            let high = ((last + turn - self.min_angle) / self.increment).ceil().min(highest);
-            if low <= high {
-                #[expect(
-                    clippy::cast_possible_truncation,
-                    clippy::cast_sign_loss,
-                    reason = "both are beam numbers"
-                )]
-                for i in low as usize..=high as usize {
-                    visit(i);
-                }
-            }
-        }
+        let count = self.beams.len() as f64;
+        [-TAU, 0.0, TAU].map(|turn| {
+            let number = |angle: f64| (angle + turn - self.min_angle) / self.increment;
+            let (low, high) = (number(first).floor().max(0.0), number(last).ceil() + 1.0);
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "both are beam numbers"
+            )]
+            let beams = low as usize..high.clamp(low, count.max(low)) as usize;
+            beams.start.min(self.beams.len())..beams.end.min(self.beams.len())
+        })
     }
+}
+
+/// How far off [`rough_angle`] may be (rad).
+const ROUGHNESS: f64 = 0.0016;
+
+/// Returns the angle of `direction` (rad, in (-π, π]) to within [`ROUGHNESS`]: an arctangent by a cubic in each eighth of
+/// the circle (Rajan et al. 2006, "Efficient Approximations for the Arctangent Function", equation 9).
+fn rough_angle(direction: Point) -> f64 {
+    let (x, y) = (direction.x.abs(), direction.y.abs());
+    let ratio = x.min(y) / x.max(y);
+    let eighth = ratio * (FRAC_PI_4 + (1.0 - ratio) * (0.2447 + 0.0663 * ratio));
+    let quarter = if y > x { FRAC_PI_2 - eighth } else { eighth };
+    let half = if direction.x < 0.0 { PI - quarter } else { quarter };
+    if direction.y < 0.0 { -half } else { half }
 }
 
 /// Adds Gaussian noise to the ranges that hit something, kept within the sensor's limits; as Gazebo does,
@@ -187,6 +230,15 @@ mod tests {
             max_range: 30.0,
             rate_hz: 20.0,
             noise_sd: 0.0,
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn rough_angles_are_as_near_as_they_claim(angle in -PI..PI, length in 1e-6..1e3_f64) {
+            let (sin, cos) = math::sin_cos(angle);
+            let found = rough_angle(Point::new(cos, sin) * length);
+            prop_assert!((found - angle).abs() < ROUGHNESS, "{found}");
         }
     }
 
@@ -256,7 +308,7 @@ mod tests {
         ]
         .map(|(x, y, l, w)| Outline::rectangle(Point::new(x, y), l, w, 0.0))
         .to_vec();
-        let lidar = lidar(7200, std::f64::consts::PI);
+        let lidar = lidar(7200, PI);
         let mut ranges = Vec::new();
         WallSweep::new(&room, &lidar).cast(Pose::new(1.0, -2.0, 0.3), &mut ranges);
         assert!(ranges.iter().all(|r| r.is_finite()));
