@@ -81,7 +81,10 @@ impl CellSet {
                 for (row, bits) in (0..).zip(&mut block) {
                     *bits = by_row.bits[by_row.index(wide, tall * WORD + row)];
                 }
-                transpose(&mut block);
+                // Most blocks are all of one kind.
+                if block.iter().any(|bits| *bits != block[0]) || !matches!(block[0], 0 | u64::MAX) {
+                    transpose(&mut block);
+                }
                 for (column, bits) in (0..).zip(&block) {
                     let index = by_column.index(tall, wide * WORD + column);
                     by_column.bits[index] = *bits;
@@ -89,6 +92,21 @@ impl CellSet {
             }
         }
         Self { by_row, by_column }
+    }
+
+    /// Returns the word that begins at the cell (`x`, `y`), `x` where words begin; `None` outside of the rectangle.
+    pub fn word(&self, x: i32, y: i32) -> Option<u64> {
+        let rows = &self.by_row;
+        let (word, line) = ((x - rows.start) / WORD, y - rows.first);
+        let is_within = x >= rows.start && word < rows.words && (0..rows.count).contains(&line);
+        is_within.then(|| rows.bits[rows.index(word, line)])
+    }
+
+    /// Returns whether `run` has any member.
+    pub fn has_any(&self, run: Run) -> bool {
+        let mut any = false;
+        self.lines(run.axis).words_of(run, |_, _| any = true);
+        any
     }
 
     /// Counts the members among the cells of `run`.
@@ -194,6 +212,11 @@ mod tests {
                 prop_assert!(members.windows(2).all(|w| w[0] < w[1]));
                 let found: BTreeSet<Cell> = members.iter().map(|&along| run.cell(along)).collect();
                 prop_assert_eq!(set.count(run) as usize, inside.len());
+                prop_assert_eq!(set.has_any(run), !inside.is_empty());
+                let word = set.word(CellSet::word_start(from), line);
+                let starts = CellSet::word_start(from);
+                let expected = (0..64).filter(|i| cells.contains(&(starts + i, line))).fold(0, |bits, i| bits | 1 << i);
+                prop_assert_eq!(word.unwrap_or(0), expected);
                 prop_assert_eq!(found, inside);
             }
         }

@@ -28,6 +28,60 @@ pub fn line(from: Cell, to: Cell) -> impl Iterator<Item = Cell> {
     })
 }
 
+/// The same line over a grid's indices, each step computed by itself, so that none waits for the one before.
+///
+/// After k steps along the longer side the line is round(k × short / long) steps across, halves up. In units of 2^-32, with
+/// the slope rounded up, that is exact for lines of up to 2^15 steps.
+#[derive(Debug, Clone, Copy)]
+pub struct Walk {
+    long: i32,
+    slope: i64,
+    along: isize,
+    across: isize,
+    is_wide: bool,
+}
+
+/// Half a step across.
+const HALF: i64 = 1 << 31;
+
+impl Walk {
+    /// Creates the walk from `from` to `to` over a grid of `width` cells.
+    pub fn new(from: Cell, to: Cell, width: i32) -> Self {
+        let (dx, dy) = ((to.x - from.x).abs(), (to.y - from.y).abs());
+        let width = isize::try_from(width).unwrap_or(0);
+        let aside = if to.x < from.x { -1 } else { 1 };
+        let up = if to.y < from.y { -width } else { width };
+        let is_wide = dx >= dy;
+        let (long, short, along, across) =
+            if is_wide { (dx, dy, aside, up) } else { (dy, dx, up, aside) };
+        debug_assert!(long <= 1 << 15, "longer than is exact");
+        let slope = if short == 0 { 0 } else { (i64::from(short) << 32) / i64::from(long) + 1 };
+        Self { long, slope, along, across, is_wide }
+    }
+
+    /// Returns the offsets of its cells from the index of the first one, but for the last one.
+    pub fn offsets(self) -> impl Iterator<Item = isize> {
+        self.first(self.long)
+    }
+
+    /// Returns the same as far as the line stays within `columns` columns and `rows` rows, counted from its first cell
+    /// forward.
+    pub fn offsets_within(self, columns: i32, rows: i32) -> impl Iterator<Item = isize> {
+        let (along, across) = if self.is_wide { (columns, rows) } else { (rows, columns) };
+        let limit = (i64::from(across) << 32) - HALF;
+        let until = if self.slope > 0 { (limit + self.slope - 1) / self.slope } else { i64::MAX };
+        self.first(self.long.min(along).min(i32::try_from(until).unwrap_or(i32::MAX)))
+    }
+
+    fn first(self, steps: i32) -> impl Iterator<Item = isize> {
+        (0..i64::from(steps)).map(move |k| {
+            #[expect(clippy::cast_possible_truncation, reason = "steps are few")]
+            let (k, turns) = (k as isize, ((k * self.slope + HALF) >> 32) as isize);
+            k * self.along + turns * self.across
+        })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -45,6 +99,32 @@ mod tests {
                 (x - 3).abs().max((y + 2).abs()) + 1
             );
             prop_assert!(cells.windows(2).all(|w| w[0].neighbours8().contains(&w[1])));
+        }
+    }
+    proptest! {
+        #[test]
+        fn walks_are_lines(x in -300..300_i32, y in -300..300_i32, columns in 1..400_i32, rows in 1..400_i32) {
+            let (from, to) = (Cell::new(0, 0), Cell::new(x, y));
+            let walk = Walk::new(from, to, 1000);
+            let index = |cell: Cell| isize::try_from(cell.y * 1000 + cell.x).unwrap();
+            let expected: Vec<_> = line(from, to).filter(|&cell| cell != to).map(index).collect();
+            prop_assert_eq!(walk.offsets().collect::<Vec<_>>(), expected);
+            let is_within = |cell: &Cell| cell.x.abs() < columns && cell.y.abs() < rows;
+            let within = line(from, to).filter(|&cell| cell != to).take_while(is_within);
+            let expected: Vec<_> = within.map(index).collect();
+            prop_assert_eq!(walk.offsets_within(columns, rows).collect::<Vec<_>>(), expected);
+        }
+    }
+
+    #[test]
+    fn the_longest_walks_are_exact() {
+        let long = 1 << 15;
+        for short in [1, 2, 3, 9_999, 16_383, 16_384, 16_385, 32_766, 32_767, 32_768] {
+            let walk = Walk::new(Cell::new(0, 0), Cell::new(long, short), 1 << 16);
+            for (k, offset) in (0..i64::from(long)).zip(walk.offsets()) {
+                let rounded = (2 * k * i64::from(short) + i64::from(long)) / (2 * i64::from(long));
+                assert_eq!(offset as i64, k + (rounded << 16), "{short}, {k}");
+            }
         }
     }
 }

@@ -8,8 +8,8 @@ mod line;
 mod visibility;
 
 pub use cell_set::{Axis, CellSet, Run};
-pub use line::line;
-pub use visibility::visible_runs;
+pub use line::{Walk, line};
+pub use visibility::{examine_runs, visible_runs};
 
 use crate::geometry::{Bounds, Point};
 use serde::{Deserialize, Serialize};

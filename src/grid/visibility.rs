@@ -18,8 +18,22 @@ use std::cmp::Ordering;
 /// Calls `see` with all cells within `radius` cells of `origin` (Euclidean, centres) that are visible from it
 /// past the cells that are `blocking`, the origin itself included, in runs that do not overlap. Blocking cells are not
 /// visible; a blocking origin still sees.
-pub fn visible_runs(origin: Cell, radius: i32, blocking: &CellSet, mut see: impl FnMut(Run)) {
-    see(Run { axis: Axis::X, line: origin.y, from: origin.x, to: origin.x });
+pub fn visible_runs(origin: Cell, radius: i32, blocking: &CellSet, see: impl FnMut(Run)) {
+    examine_runs(origin, radius, blocking, |_| (), see);
+}
+
+/// Does the same, and calls `examine` with the runs of cells on which it depends: as long as none of them becomes blocking or
+/// ceases to be, the same cells are visible. These are among them; runs may overlap.
+pub fn examine_runs(
+    origin: Cell,
+    radius: i32,
+    blocking: &CellSet,
+    mut examine: impl FnMut(Run),
+    mut see: impl FnMut(Run),
+) {
+    let own = Run { axis: Axis::X, line: origin.y, from: origin.x, to: origin.x };
+    examine(own);
+    see(own);
     for quadrant in [
         Quadrant { origin, axis: Axis::X, columns: 1, rows: 1 },
         Quadrant { origin, axis: Axis::Y, columns: -1, rows: 1 },
@@ -27,8 +41,10 @@ pub fn visible_runs(origin: Cell, radius: i32, blocking: &CellSet, mut see: impl
         Quadrant { origin, axis: Axis::Y, columns: 1, rows: -1 },
     ] {
         let blocks = |row, from, to, found: &mut Vec<i32>| {
+            let run = quadrant.run(row, from, to);
+            examine(run);
             found.clear();
-            blocking.members(quadrant.run(row, from, to), found);
+            blocking.members(run, found);
             quadrant.to_columns(found);
         };
         sweep(radius, blocks, |row, from, to| see(quadrant.run(row, from, to)));
@@ -125,7 +141,7 @@ impl Shadow {
 /// Only the gaps between shadows are examined: a square within a shadow adds none.
 fn sweep(
     radius: i32,
-    blocks: impl Fn(i32, i32, i32, &mut Vec<i32>),
+    mut blocks: impl FnMut(i32, i32, i32, &mut Vec<i32>),
     mut see: impl FnMut(i32, i32, i32),
 ) {
     let mut earlier: Vec<Shadow> = Vec::new();
@@ -277,6 +293,38 @@ mod tests {
             });
             prop_assert_eq!(visits, seen.len(), "each cell is told once");
             prop_assert_eq!(&seen, &brute_force(radius, &blocked));
+        }
+    }
+
+    proptest! {
+        /// Checks that what is visible depends on nothing but the cells that are said to decide it, and that it is among
+        /// them.
+        #[test]
+        fn only_examined_cells_matter(
+            raw in prop::collection::btree_set((-12..=12, -12..=12), 0..60),
+            others in prop::collection::btree_set((-12..=12, -12..=12), 0..60),
+            radius in 0..10,
+        ) {
+            let cells = |raw: &BTreeSet<(i32, i32)>| -> BTreeSet<Cell> {
+                raw.iter().map(|&(x, y)| Cell::new(x, y)).collect()
+            };
+            let look = |blocked: &BTreeSet<Cell>| {
+                let set = CellSet::of_words(Cell::new(-20, -20), Cell::new(20, 20), |x, y| {
+                    (0..64).filter(|i| blocked.contains(&Cell::new(x + i, y))).fold(0, |bits, i| bits | 1 << i)
+                });
+                let (mut examined, mut seen) = (BTreeSet::new(), BTreeSet::new());
+                let cells = |run: Run| (run.from..=run.to).map(move |along| run.cell(along));
+                examine_runs(Cell::new(0, 0), radius, &set, |run| examined.extend(cells(run)), |run| {
+                    seen.extend(cells(run));
+                });
+                (examined, seen)
+            };
+            let blocked = cells(&raw);
+            let (examined, seen) = look(&blocked);
+            prop_assert!(seen.is_subset(&examined));
+            let elsewhere = cells(&others).into_iter().filter(|cell| !examined.contains(cell));
+            let changed: BTreeSet<Cell> = blocked.symmetric_difference(&elsewhere.collect()).copied().collect();
+            prop_assert_eq!(look(&changed), (examined, seen));
         }
     }
 

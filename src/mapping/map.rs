@@ -2,7 +2,7 @@
 
 use super::beam_ends::BeamEnds;
 use crate::geometry::{Bounds, Point, Pose};
-use crate::grid::{Cell, Grid, GridFrame, Occupancy, OccupancyGrid};
+use crate::grid::{Cell, Grid, GridFrame, Occupancy, OccupancyGrid, Walk};
 use crate::robot::Scan;
 
 /// The rule by which a scan is taken into the map.
@@ -315,25 +315,14 @@ impl OccupancyMap {
 }
 
 /// Visits the cells of the line `from` .. `to` by index, its end only where that is a hit. Both are within the grid,
-/// and so is what lies between; the walk is that of [`crate::grid::line`], over indices.
+/// and so is what lies between.
 fn walk(frame: &GridFrame, from: Cell, to: Cell, is_hit: bool, mut visit: impl FnMut(usize, bool)) {
-    let (Some(mut index), Some(_)) = (frame.index(from), frame.index(to)) else { return };
-    let (dx, dy) = ((to.x - from.x).abs(), (to.y - from.y).abs());
-    let width = isize::try_from(frame.width).unwrap_or(0);
-    let aside = if to.x < from.x { -1 } else { 1 };
-    let up = if to.y < from.y { -width } else { width };
-    // Every step goes along the longer side, and some go across too: chosen without a branch, which could not be foreseen.
-    let (long, short, along, across) =
-        if dx >= dy { (dx, dy, aside, up) } else { (dy, dx, up, aside) };
-    let mut error = long - short;
-    for _ in 0..long {
-        visit(index, false);
-        let turns = 2 * error <= long;
-        error += if turns { long - short } else { -short };
-        index = index.wrapping_add_signed(along + if turns { across } else { 0 });
+    let (Some(first), Some(last)) = (frame.index(from), frame.index(to)) else { return };
+    for offset in Walk::new(from, to, frame.width).offsets() {
+        visit(first.wrapping_add_signed(offset), false);
     }
     if is_hit {
-        visit(index, true);
+        visit(last, true);
     }
 }
 

@@ -1,10 +1,9 @@
 //! The recent surroundings of the robot: a rolling window for the operator.
 
 use crate::geometry::{Point, Pose};
-use crate::grid::{Cell, GridFrame};
+use crate::grid::{Cell, GridFrame, Walk};
 use crate::math;
 use crate::robot::Scan;
-use std::cmp::Ordering;
 
 /// Size and reach of the window (prior-map facts, section 4, `costmap.yaml`).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,6 +36,11 @@ impl Default for LocalRule {
     }
 }
 
+/// How many medians are sought together.
+const LANES: usize = 8;
+/// How many cells are looked at together for obstacles.
+const LOT: usize = 24;
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Seen {
     Unknown,
@@ -65,6 +69,9 @@ pub struct LocalMap {
     metres: Vec<f64>,
     ends: Vec<Cell>,
     ranges: Vec<f64>,
+    /// Memory for the medians.
+    windows: Vec<[f64; LANES]>,
+    window: Vec<f64>,
 }
 
 impl LocalMap {
@@ -96,6 +103,8 @@ impl LocalMap {
             metres: metres.collect(),
             ends: Vec::new(),
             ranges: Vec::new(),
+            windows: Vec::new(),
+            window: Vec::new(),
         }
     }
 
@@ -145,60 +154,44 @@ impl LocalMap {
         }
     }
 
+    /// Takes over `ranges`, each replaced by the median of those around it; by fewer at both ends.
     fn smooth(&mut self, ranges: &[f64]) {
         self.ranges.clear();
+        self.ranges.extend_from_slice(ranges);
         let half = self.rule.median_beams / 2;
         if half == 0 {
-            self.ranges.extend_from_slice(ranges);
             return;
         }
-        // The window's ranges in order, kept so while it moves on by one.
-        let mut window: Vec<f64> = Vec::with_capacity(2 * half + 2);
-        let place = |window: &[f64], range: f64| {
-            window.partition_point(|other| other.total_cmp(&range) == Ordering::Less)
-        };
-        for &range in ranges.iter().take(half) {
-            window.insert(place(&window, range), range);
+        // Many windows at once where all of their ranges exist.
+        let mut middle = half;
+        self.windows.resize(2 * half + 1, [0.0; LANES]);
+        while middle + half + LANES <= ranges.len() {
+            for (window, first) in self.windows.iter_mut().zip(middle - half..) {
+                window.copy_from_slice(&ranges[first..first + LANES]);
+            }
+            self.ranges[middle..middle + LANES].copy_from_slice(&medians(&mut self.windows));
+            middle += LANES;
         }
-        for i in 0..ranges.len() {
-            if let Some(&range) = ranges.get(i + half) {
-                window.insert(place(&window, range), range);
-            }
-            if let Some(&range) = i.checked_sub(half + 1).and_then(|i| ranges.get(i)) {
-                window.remove(place(&window, range));
-            }
-            self.ranges.push(window[window.len() / 2]);
+        let window = &mut self.window;
+        for i in (0..half.min(ranges.len())).chain(middle..ranges.len()) {
+            window.clear();
+            window.extend_from_slice(
+                &ranges[i.saturating_sub(half)..(i + half + 1).min(ranges.len())],
+            );
+            window.sort_unstable_by(f64::total_cmp);
+            self.ranges[i] = window[window.len() / 2];
         }
     }
 
-    /// Marks the cells between `from` and `to` as free, as far as they are within the window: the walk of
-    /// [`crate::grid::line`], over indices.
+    /// Marks the cells between `from` and `to` as free, as far as they are within the window.
     fn clear_line(&mut self, from: Cell, to: Cell) {
-        let (dx, dy) = ((to.x - from.x).abs(), (to.y - from.y).abs());
-        let (x, y) = (from.x - self.corner.x, from.y - self.corner.y);
-        let Some(mut index) = self.index(from) else { return };
+        let Some(first) = self.index(from) else { return };
         // How many cells of the window lie ahead, with the first one.
         let room = |at: i32, forward: bool| if forward { self.side - at } else { at + 1 };
-        let aside = if to.x < from.x { -1 } else { 1 };
-        let row = isize::try_from(self.side).unwrap_or(0);
-        let up = if to.y < from.y { -row } else { row };
-        let (room_x, room_y) = (room(x, to.x >= from.x), room(y, to.y >= from.y));
-        // Every step goes along the longer side, and some go across too, as in the walk of the map.
-        let (long, short, along, across, room_along, mut room_across) = if dx >= dy {
-            (dx, dy, aside, up, room_x, room_y)
-        } else {
-            (dy, dx, up, aside, room_y, room_x)
-        };
-        let mut error = long - short;
-        for _ in 0..long.min(room_along) {
-            if room_across == 0 {
-                return;
-            }
-            self.seen[index] = Seen::Free;
-            let turns = 2 * error <= long;
-            error += if turns { long - short } else { -short };
-            room_across -= i32::from(turns);
-            index = index.wrapping_add_signed(along + if turns { across } else { 0 });
+        let columns = room(from.x - self.corner.x, to.x >= from.x);
+        let rows = room(from.y - self.corner.y, to.y >= from.y);
+        for offset in Walk::new(from, to, self.side).offsets_within(columns, rows) {
+            self.seen[first.wrapping_add_signed(offset)] = Seen::Free;
         }
     }
 
@@ -269,12 +262,20 @@ impl LocalMap {
         let rows = self.seen.chunks(side).zip(self.nearness.chunks_mut(side));
         for ((seen, near), has_obstacle) in rows.zip(&mut self.has_obstacle) {
             *has_obstacle = false;
-            for (x, _) in seen.iter().enumerate().filter(|(_, seen)| **seen == Seen::Obstacle) {
+            for (lot, cells) in seen.chunks(LOT).enumerate() {
+                // Most lots have none, which is seen without going cell by cell.
+                let is_obstacle = |seen: &Seen| *seen == Seen::Obstacle;
+                if !cells.iter().fold(false, |any, seen| any | is_obstacle(seen)) {
+                    continue;
+                }
                 *has_obstacle = true;
-                let skipped = self.squares.len() / 2;
-                let (first, skipped) = (x.saturating_sub(skipped), skipped.saturating_sub(x));
-                for (here, there) in near[first..].iter_mut().zip(&self.squares[skipped..]) {
-                    *here = (*here).min(*there);
+                for (x, _) in cells.iter().enumerate().filter(|(_, seen)| is_obstacle(seen)) {
+                    let x = lot * LOT + x;
+                    let skipped = self.squares.len() / 2;
+                    let (first, skipped) = (x.saturating_sub(skipped), skipped.saturating_sub(x));
+                    for (here, there) in near[first..].iter_mut().zip(&self.squares[skipped..]) {
+                        *here = (*here).min(*there);
+                    }
                 }
             }
         }
@@ -293,6 +294,24 @@ impl LocalMap {
             }
         }
     }
+}
+
+/// Returns the medians across `windows`, whose order is lost: the smallest go to the front, one after another, as far as
+/// the middle.
+fn medians(windows: &mut [[f64; LANES]]) -> [f64; LANES] {
+    let middle = windows.len() / 2;
+    for place in 0..=middle {
+        let (done, rest) = windows.split_at_mut(place + 1);
+        let smallest = &mut done[place];
+        for other in rest {
+            for (low, high) in smallest.iter_mut().zip(other) {
+                // A range is never NaN, and which of two equal ones is taken does not matter.
+                let (a, b) = (*low, *high);
+                (*low, *high) = if b < a { (b, a) } else { (a, b) };
+            }
+        }
+    }
+    windows[middle]
 }
 
 #[cfg(test)]
