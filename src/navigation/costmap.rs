@@ -43,12 +43,39 @@ impl CostGrid {
         self.cost(cell).is_some_and(|cost| cost < lethal)
     }
 
+    /// Returns the costs of row `y` of the grid; more than any cost where cells are unknown.
+    pub fn row(&self, y: i32) -> &[u8] {
+        match padded_index(&self.frame, Cell::new(0, y)) {
+            Some(first) => &self.costs[first..first + padded_width(&self.frame) - 2],
+            None => &[],
+        }
+    }
+
     /// Copies `length` costs of a row of `other` from the cell `from` on, to `to` and the cells after it. Both rows
     /// hold them.
     pub(super) fn copy_row(&mut self, to: Cell, other: &Self, from: Cell, length: usize) {
         let (to, from) = (padded_index(&self.frame, to), padded_index(&other.frame, from));
         if let (Some(to), Some(from)) = (to, from) {
             self.costs[to..to + length].copy_from_slice(&other.costs[from..from + length]);
+        }
+    }
+
+    /// Does the same, and adds the padded indices of the costs that this changes to `changed`.
+    pub(super) fn copy_changes(
+        &mut self,
+        to: Cell,
+        other: &Self,
+        from: Cell,
+        length: usize,
+        changed: &mut Vec<u32>,
+    ) {
+        let (to, from) = (padded_index(&self.frame, to), padded_index(&other.frame, from));
+        let (Some(to), Some(from)) = (to, from) else { return };
+        let (old, new) = (&mut self.costs[to..to + length], &other.costs[from..from + length]);
+        if old != new {
+            let index = |i: usize| u32::try_from(to + i).unwrap_or(u32::MAX);
+            changed.extend((0..length).filter(|&i| old[i] != new[i]).map(index));
+            old.copy_from_slice(new);
         }
     }
 

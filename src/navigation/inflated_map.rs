@@ -1,21 +1,49 @@
 //! An inflated map that is kept current: after a change only the cells that it can reach are inflated anew.
 
 use super::CostGrid;
-use super::inflation::inflate_in_steps;
+use super::inflation::Fires;
 use crate::grid::{Cell, GridFrame, Occupancy, OccupancyGrid};
 use std::sync::Arc;
 
+/// A map inflated. What changed between two such states of one map can be asked for.
+#[derive(Debug, Clone)]
+pub struct Ground {
+    /// The costs.
+    pub costs: Arc<CostGrid>,
+    pub(super) moment: Option<Moment>,
+}
+
+impl From<Arc<CostGrid>> for Ground {
+    /// Takes costs of which nothing is known but themselves.
+    fn from(costs: Arc<CostGrid>) -> Self {
+        Self { costs, moment: None }
+    }
+}
+
+/// A state of an inflated map: how often it was inflated anew, and how many changes were noted since.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Moment {
+    renewal: u64,
+    changes: usize,
+}
+
 /// A map and its inflation. [`InflatedMap::update`] gives what [`super::inflate`] gives, sooner.
 ///
-/// Why only the neighbourhood of a change needs inflating follows from how a brushfire spreads. Let all fires be out
-/// after K steps. A difference between two maps spreads by one cell (in steps of 4 neighbours) with every step, so that
-/// costs differ at most K cells from it. Inflating a cut-out errs within K cells of its edge; a fire that enters there
-/// after the K-th step stays within `radius` of where it began, so it gets 2 `radius` further at most. Where fires take
-/// longer than K steps, which winding free cells can cause, everything is inflated anew.
+/// Why only the neighbourhood of a change needs inflating follows from how a brushfire spreads: a difference between two
+/// maps gets one cell further (in steps of 4 neighbours) with every step. Let all fires of the map before be out after K
+/// steps.
+/// 1. Beyond K cells of the change everything is then as before: out.
+/// 2. A cut-out that reaches K cells further yet lacks what is beyond its edge, which spreads by a cell a step too, and
+///    so is right, after K steps, within K cells of the change.
+/// 3. Where the cut-out's fires are out by then, all are, and what is within K cells of the change is final. Where they
+///    take longer, which winding free cells can cause, K was too small.
 #[derive(Debug, Clone)]
 pub struct InflatedMap {
-    radius: u32,
+    fires: Fires,
     known: Option<Known>,
+    renewal: u64,
+    /// The costs (padded indices) that changed since everything was inflated anew, in order.
+    changes: Vec<u32>,
 }
 
 #[derive(Debug, Clone)]
@@ -27,25 +55,25 @@ struct Known {
     /// Cells of the lattice.
     free: Vec<Cell>,
     costs: Arc<CostGrid>,
-    /// Whether all fires were out after [`STEPS`].
-    calm: bool,
+    /// After how many steps all fires were out: K.
+    steps: u32,
 }
 
-/// K: straight fires of a radius of 9 cells are out after 13.
-const STEPS: u32 = 16;
 /// Changes this near (cells) to each other are taken for one.
-const NEAR: i32 = 24;
+const NEAR: i32 = 12;
 /// With more changed places than this everything is inflated anew.
-const PLACES: usize = 24;
+const PLACES: usize = 64;
+/// More changes than this are not kept: whoever follows them would rather start again.
+const REMEMBERED: usize = 1 << 16;
 
 impl InflatedMap {
     /// Creates an empty state, to be inflated over `radius` cells.
     pub fn new(radius: u32) -> Self {
-        Self { radius, known: None }
+        Self { fires: Fires::new(radius), known: None, renewal: 0, changes: Vec::new() }
     }
 
     /// Inflates `map`, whose cell (0, 0) is the cell `offset` of a lattice that stays, with the cells of `free` taken for free,
-    /// and returns its costs. `changed` holds all cells in which `map` differs from the one before, and may hold more. Both
+    /// and returns it. `changed` holds all cells in which `map` differs from the one before, and may hold more. Both
     /// are cells of the lattice.
     pub fn update(
         &mut self,
@@ -53,7 +81,11 @@ impl InflatedMap {
         offset: Cell,
         free: &[Cell],
         changed: impl IntoIterator<Item = Cell>,
-    ) -> Arc<CostGrid> {
+    ) -> Ground {
+        let same_cells = self.known.as_ref().is_some_and(|known| known.map.frame() == map.frame());
+        if !same_cells || self.changes.len() > REMEMBERED {
+            self.forget();
+        }
         let known = self.known.take().and_then(|known| known.grown_to(map.frame(), offset));
         let known = if let Some(known) = known {
             self.renewed(known, map, free, changed)
@@ -66,18 +98,30 @@ impl InflatedMap {
         };
         let costs = Arc::clone(&known.costs);
         self.known = Some(known);
-        costs
+        let moment = Moment { renewal: self.renewal, changes: self.changes.len() };
+        Ground { costs, moment: Some(moment) }
     }
 
-    fn anew(&self, map: OccupancyGrid, offset: Cell, free: &[Cell]) -> Known {
-        let (costs, steps) = inflate_in_steps(&map, self.radius);
-        let (free, calm) = (free.to_vec(), steps <= STEPS);
-        Known { map, offset, free, costs: Arc::new(costs), calm }
+    /// Returns the costs (padded indices) that may have changed since `moment`, or `None` where nobody knows.
+    pub(super) fn changes_since(&self, moment: Option<Moment>) -> Option<&[u32]> {
+        let moment = moment.filter(|moment| moment.renewal == self.renewal)?;
+        self.changes.get(moment.changes..)
+    }
+
+    fn forget(&mut self) {
+        self.renewal += 1;
+        self.changes.clear();
+    }
+
+    fn anew(&mut self, map: OccupancyGrid, offset: Cell, free: &[Cell]) -> Known {
+        self.forget();
+        let (costs, steps) = self.fires.spread(&map);
+        Known { map, offset, free: free.to_vec(), costs: Arc::new(costs), steps }
     }
 
     /// Brings `known` up to date.
     fn renewed(
-        &self,
+        &mut self,
         mut known: Known,
         map: &OccupancyGrid,
         free: &[Cell],
@@ -104,13 +148,15 @@ impl InflatedMap {
         if places.is_empty() {
             return known;
         }
-        match self.patches(&known, places) {
-            Some(patches) => {
+        match self.patches(&known, &places) {
+            Some((patches, steps)) => {
+                known.steps = steps;
                 let whole = Arc::make_mut(&mut known.costs);
                 for Patch { redone, seen, costs } in patches {
                     for y in redone.low.y..=redone.high.y {
                         let from = Cell::new(redone.low.x - seen.low.x, y - seen.low.y);
-                        whole.copy_row(Cell::new(redone.low.x, y), &costs, from, redone.width());
+                        let to = Cell::new(redone.low.x, y);
+                        whole.copy_changes(to, &costs, from, redone.width(), &mut self.changes);
                     }
                 }
                 known
@@ -119,26 +165,34 @@ impl InflatedMap {
         }
     }
 
-    /// Inflates the neighbourhoods of the changed `places`; `None` where that does not pay or is impossible.
-    fn patches(&self, known: &Known, places: Vec<Rectangle>) -> Option<Vec<Patch>> {
-        if !known.calm || places.len() > PLACES {
+    /// Inflates the neighbourhoods of the changed `places`, and returns them with the steps after which all fires are
+    /// out; `None` where that does not pay.
+    fn patches(&self, known: &Known, places: &[Rectangle]) -> Option<(Vec<Patch>, u32)> {
+        if places.len() > PLACES {
             return None;
         }
         let frame = known.map.frame();
-        let reach = i32::try_from(STEPS).ok()?;
-        let margin = reach + 2 * i32::try_from(self.radius).ok()? + 1;
-        let around = |place: Rectangle| place.grown(reach, frame).grown(margin, frame);
-        let places = merged(places, |place| around(place).cells());
-        let cost: usize = places.iter().map(|&place| around(place).cells()).sum();
-        if 10 * cost > 9 * frame.len() {
-            return None;
+        let mut steps = known.steps;
+        'longer: loop {
+            let reach = i32::try_from(steps).ok()?;
+            let around = |place: Rectangle| place.grown(2 * reach, frame);
+            let places = merged(places.to_vec(), |place| around(place).cells());
+            let cost: usize = places.iter().map(|&place| around(place).cells()).sum();
+            if 10 * cost > 9 * frame.len() {
+                return None;
+            }
+            let mut patches = Vec::with_capacity(places.len());
+            for place in places {
+                let (redone, seen) = (place.grown(reach, frame), around(place));
+                let (costs, taken) = self.fires.spread(&seen.cut_out(&known.map));
+                if taken > steps {
+                    steps = taken;
+                    continue 'longer;
+                }
+                patches.push(Patch { redone, seen, costs });
+            }
+            return Some((patches, steps));
         }
-        let patch = |place: Rectangle| {
-            let (redone, seen) = (place.grown(reach, frame), around(place));
-            let (costs, steps) = inflate_in_steps(&seen.cut_out(&known.map), self.radius);
-            (steps <= STEPS).then_some(Patch { redone, seen, costs })
-        };
-        places.into_iter().map(patch).collect()
     }
 }
 
@@ -309,7 +363,7 @@ mod tests {
         ) {
             let mut map = rooms(&strewn);
             let mut kept = InflatedMap::new(radius);
-            kept.update(&map, AT, &[], []);
+            let mut ground = kept.update(&map, AT, &[], []);
             for (x, y, kind, dx, dy) in changes {
                 let mut changed = change(&mut map, (x, y, kind));
                 changed.extend(change(&mut map, (x + dx, y + dy, kind + 1)));
@@ -319,8 +373,15 @@ mod tests {
                 for cell in free {
                     with_place.set(cell, Occupancy::Free);
                 }
-                let costs = kept.update(&map, AT, &free.map(lattice), changed);
-                prop_assert_eq!(&*costs, &inflate(&with_place, radius));
+                let before = ground;
+                ground = kept.update(&map, AT, &free.map(lattice), changed);
+                prop_assert_eq!(&*ground.costs, &inflate(&with_place, radius));
+                if let Some(told) = kept.changes_since(before.moment) {
+                    let (old, new) = (before.costs.padded(), ground.costs.padded());
+                    let changed = (0..old.len()).filter(|&i| old[i] != new[i]);
+                    let told: std::collections::BTreeSet<_> = told.iter().map(|&i| i as usize).collect();
+                    prop_assert!(changed.eq(told));
+                }
             }
         }
     }
@@ -338,10 +399,10 @@ mod tests {
         }
         assert_eq!(places.len(), 2);
         let known = kept.known.clone().unwrap();
-        let patches = kept.patches(&known, places.clone()).unwrap();
+        let (patches, _) = kept.patches(&known, &places).unwrap();
         assert_eq!(patches.len(), 2, "one for each is cheaper than one for both");
         let crowd = vec![places[0]; PLACES + 1];
-        assert!(kept.patches(&known, crowd).is_none());
+        assert!(kept.patches(&known, &crowd).is_none());
     }
 
     #[test]
@@ -362,11 +423,11 @@ mod tests {
         grown.set(place, Occupancy::Occupied);
         let offset = Cell::new(AT.x - 31, AT.y - 2);
         let changed = [Cell::new(place.x + offset.x, place.y + offset.y)];
-        assert_eq!(*kept.update(&grown, offset, &[], changed), inflate(&grown, 9));
+        assert_eq!(*kept.update(&grown, offset, &[], changed).costs, inflate(&grown, 9));
     }
 
     #[test]
-    fn fires_that_wind_for_long_are_not_patched() {
+    fn fires_that_wind_for_long_are_waited_for() {
         let frame = GridFrame { resolution: 0.1, origin: Point::ZERO, width: 200, height: 200 };
         let mut map = OccupancyGrid::filled(frame, Occupancy::Unknown);
         // A winding lane of free cells, one obstacle at its end.
@@ -381,10 +442,11 @@ mod tests {
         }
         map.set(Cell::new(103, 100), Occupancy::Occupied);
         let mut kept = InflatedMap::new(9);
-        assert_eq!(*kept.update(&map, AT, &[], []), inflate(&map, 9));
-        assert!(!kept.known.as_ref().unwrap().calm);
+        assert_eq!(*kept.update(&map, AT, &[], []).costs, inflate(&map, 9));
+        assert_eq!(kept.known.as_ref().unwrap().steps, 44);
         let obstacle = Cell::new(102, 102);
         map.set(obstacle, Occupancy::Occupied);
-        assert_eq!(*kept.update(&map, AT, &[], [lattice(obstacle)]), inflate(&map, 9));
+        let ground = kept.update(&map, AT, &[], [lattice(obstacle)]);
+        assert_eq!(*ground.costs, inflate(&map, 9));
     }
 }

@@ -11,63 +11,7 @@ const LOT: usize = 32;
 /// distance in cells to the obstacle that reached the cell first over free cells. Unknown cells are neither inflated
 /// nor crossed (prior-map facts, section 4, "Inflation").
 pub fn inflate(map: &OccupancyGrid, radius: u32) -> CostGrid {
-    inflate_in_steps(map, radius).0
-}
-
-/// Does [`inflate`], and returns how many steps the fires took until all were out.
-pub(super) fn inflate_in_steps(map: &OccupancyGrid, radius: u32) -> (CostGrid, u32) {
-    let frame = *map.frame();
-    let mut grid = CostGrid::unknown(frame);
-    let width = padded_width(&frame);
-    let costs = grid.padded_mut();
-    // A brushfire: every cell of its front remembers its offset from the obstacle its fire came from.
-    let fires = Fires::new(radius);
-    let beginning = fires.beginning();
-    let mut front: Vec<Fire> = Vec::new();
-    for (y, row) in map.values().chunks((width - 2).max(1)).enumerate() {
-        let first = (y + 1) * width + 1;
-        // Two loops that have no branch in most cells: what a cell holds cannot be foreseen.
-        for (cost, value) in costs[first..].iter_mut().zip(row) {
-            *cost = match value {
-                Occupancy::Occupied => 100,
-                Occupancy::Free => 0,
-                Occupancy::Unknown => UNKNOWN,
-            };
-        }
-        for (i, cells) in row.chunks(LOT).enumerate() {
-            let is_occupied = |value: &Occupancy| *value == Occupancy::Occupied;
-            if !cells.iter().fold(false, |any, value| any | is_occupied(value)) {
-                continue;
-            }
-            for (x, _) in cells.iter().enumerate().filter(|(_, value)| is_occupied(value)) {
-                front.push(Fire { index: first + i * LOT + x, offset: beginning });
-            }
-        }
-    }
-    let mut next = Vec::new();
-    let mut steps = 0;
-    while !front.is_empty() {
-        steps += 1;
-        for &Fire { index, offset } in &front {
-            let neighbours = [
-                Fire { index: index + 1, offset: offset + 1 },
-                Fire { index: index + width, offset: offset + fires.side },
-                Fire { index: index - 1, offset: offset - 1 },
-                Fire { index: index - width, offset: offset - fires.side },
-            ];
-            for fire in neighbours {
-                let cost = fires.costs[fire.offset];
-                // Unknown cells hold more than any cost.
-                if costs[fire.index] < cost {
-                    costs[fire.index] = cost;
-                    next.push(fire);
-                }
-            }
-        }
-        front.clear();
-        std::mem::swap(&mut front, &mut next);
-    }
-    (grid, steps)
+    Fires::new(radius).spread(map).0
 }
 
 /// A cell that a fire has reached: its padded index, and its offset from where the fire began, as [`Fires`] numbers it.
@@ -78,20 +22,77 @@ struct Fire {
 }
 
 /// The square of offsets that a fire can have, with one more on each side.
-struct Fires {
+#[derive(Debug, Clone)]
+pub(super) struct Fires {
     side: usize,
     /// The cost at each offset, row by row; 0 where it is out of reach, which no cell is below.
     costs: Vec<u8>,
 }
 
 impl Fires {
-    fn new(radius: u32) -> Self {
+    /// Creates fires that reach `radius` cells.
+    pub(super) fn new(radius: u32) -> Self {
         let edge = i64::from(radius) + 1;
         let within = i64::from(radius) * i64::from(radius);
         let costs = (-edge..=edge)
             .flat_map(|dy| (-edge..=edge).map(move |dx| dx * dx + dy * dy))
             .map(|squared| if squared < within { cost_at(squared, radius) } else { 0 });
         Self { side: 2 * radius as usize + 3, costs: costs.collect() }
+    }
+
+    /// Inflates the map, and returns how many steps the fires took until all were out.
+    pub(super) fn spread(&self, map: &OccupancyGrid) -> (CostGrid, u32) {
+        let frame = *map.frame();
+        let mut grid = CostGrid::unknown(frame);
+        let width = padded_width(&frame);
+        let costs = grid.padded_mut();
+        // A brushfire: every cell of its front remembers its offset from the obstacle its fire came from.
+        let beginning = self.beginning();
+        let mut front: Vec<Fire> = Vec::new();
+        for (y, row) in map.values().chunks((width - 2).max(1)).enumerate() {
+            let first = (y + 1) * width + 1;
+            // Two loops that have no branch in most cells: what a cell holds cannot be foreseen.
+            for (cost, value) in costs[first..].iter_mut().zip(row) {
+                *cost = match value {
+                    Occupancy::Occupied => 100,
+                    Occupancy::Free => 0,
+                    Occupancy::Unknown => UNKNOWN,
+                };
+            }
+            for (i, cells) in row.chunks(LOT).enumerate() {
+                let is_occupied = |value: &Occupancy| *value == Occupancy::Occupied;
+                if !cells.iter().fold(false, |any, value| any | is_occupied(value)) {
+                    continue;
+                }
+                for (x, _) in cells.iter().enumerate().filter(|(_, value)| is_occupied(value)) {
+                    front.push(Fire { index: first + i * LOT + x, offset: beginning });
+                }
+            }
+        }
+        let mut next = Vec::new();
+        let mut steps = 0;
+        while !front.is_empty() {
+            steps += 1;
+            for &Fire { index, offset } in &front {
+                let neighbours = [
+                    Fire { index: index + 1, offset: offset + 1 },
+                    Fire { index: index + width, offset: offset + self.side },
+                    Fire { index: index - 1, offset: offset - 1 },
+                    Fire { index: index - width, offset: offset - self.side },
+                ];
+                for fire in neighbours {
+                    let cost = self.costs[fire.offset];
+                    // Unknown cells hold more than any cost.
+                    if costs[fire.index] < cost {
+                        costs[fire.index] = cost;
+                        next.push(fire);
+                    }
+                }
+            }
+            front.clear();
+            std::mem::swap(&mut front, &mut next);
+        }
+        (grid, steps)
     }
 
     /// Returns the offset of where a fire begins.

@@ -2,7 +2,8 @@
 
 use super::CostGrid;
 use super::costmap::{padded_index, padded_len, padded_width};
-use crate::grid::Cell;
+use super::inflated_map::{Ground, InflatedMap, Moment};
+use crate::grid::{Cell, GridFrame};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::sync::Arc;
@@ -25,6 +26,7 @@ const BOX: i32 = 5;
 #[derive(Debug, Clone)]
 pub struct Wavefront {
     costs: Arc<CostGrid>,
+    moment: Option<Moment>,
     goal: Cell,
     lethal: u8,
     weight: f64,
@@ -45,32 +47,57 @@ pub struct Wavefront {
     units_per_metre: f64,
 }
 
+/// A wave that has let go of its costs, so that they can be changed in place.
+#[derive(Debug)]
+pub struct RestingWave(Wavefront);
+
 impl Wavefront {
     /// Starts the wave from `goal` over `costs`, crossing cells cheaper than `lethal`. Where the goal itself is not
     /// crossable, all crossable cells in the 11-cell box around it are seeds instead.
-    pub fn from_goal(costs: Arc<CostGrid>, goal: Cell, lethal: u8, weight: f64) -> Self {
-        Self::instead_of(None, costs, goal, lethal, weight)
+    pub fn from_goal(ground: impl Into<Ground>, goal: Cell, lethal: u8, weight: f64) -> Self {
+        Self::in_memory_of(None, ground.into(), goal, lethal, weight)
     }
 
-    /// Does the same from an earlier wave: where that came from the same goal, only what changed since is spread anew, else
-    /// its memory is used where it has the right size.
+    /// Does the same from an `earlier` wave: where that came from the same goal, over an earlier state of the same `map`,
+    /// only what changed since is spread anew, else its memory is used where it has the right size.
     pub fn instead_of(
-        earlier: Option<Self>,
-        costs: Arc<CostGrid>,
+        earlier: RestingWave,
+        map: &InflatedMap,
+        ground: Ground,
         goal: Cell,
         lethal: u8,
         weight: f64,
     ) -> Self {
-        let frame = *costs.frame();
-        let mut earlier = earlier;
-        if let Some(wave) = &mut earlier
-            && *wave.costs.frame() == frame
-            && (wave.goal, wave.lethal) == (goal, lethal)
+        let RestingWave(mut wave) = earlier;
+        if (wave.goal, wave.lethal) == (goal, lethal)
             && wave.weight == weight
-            && wave.follow(&costs)
+            && let Some(changes) = map.changes_since(wave.moment)
         {
-            return earlier.unwrap_or_else(|| Self::from_goal(costs, goal, lethal, weight));
+            // The frame is the same: another one would have been inflated anew.
+            wave.costs = Arc::clone(&ground.costs);
+            wave.moment = ground.moment;
+            if wave.follow(changes) {
+                return wave;
+            }
         }
+        Self::in_memory_of(Some(wave), ground, goal, lethal, weight)
+    }
+
+    /// Lets go of the costs.
+    pub fn rest(self) -> RestingWave {
+        let nothing = GridFrame { width: 0, height: 0, ..*self.costs.frame() };
+        RestingWave(Self { costs: Arc::new(CostGrid::unknown(nothing)), ..self })
+    }
+
+    fn in_memory_of(
+        earlier: Option<Self>,
+        ground: Ground,
+        goal: Cell,
+        lethal: u8,
+        weight: f64,
+    ) -> Self {
+        let Ground { costs, moment } = ground;
+        let frame = *costs.frame();
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
@@ -102,6 +129,7 @@ impl Wavefront {
             lethal,
             weight,
             costs,
+            moment,
         };
         if wave.costs.is_below(goal, lethal) {
             wave.seed(goal);
@@ -193,24 +221,18 @@ impl Wavefront {
         }
     }
 
-    /// Makes this the wave over `costs`, of the same frame, by looking at what they change (Ramalingam and Reps 1996), and
-    /// returns whether it could: not where the seeds may be others, or so much changes that starting again is cheaper.
+    /// Makes this the wave over its costs as they are now by looking at what `changed` in them, padded indices and perhaps more
+    /// than did change (Ramalingam and Reps 1996), and returns whether it could: not where the seeds may be others, or so much
+    /// changes that starting again is cheaper.
     ///
     /// 1. Whatever was reached by a step that now costs more, and by no other step as cheaply, is forgotten: nearest to the
     ///    goal first, so that all it may hang on is decided before it. It may hang on a cell that has come nearer since and
     ///    has not yet passed that on, so that its distance may be more than that cell's and the step.
     /// 2. What was forgotten or has another cost is reached anew from what is left.
     /// 3. The wave goes on at the nearest of these.
-    fn follow(&mut self, costs: &Arc<CostGrid>) -> bool {
-        let width = padded_width(costs.frame());
-        let mut changed: Vec<usize> = Vec::new();
-        let rows = self.costs.padded().chunks(width).zip(costs.padded().chunks(width));
-        for (y, (old, new)) in rows.enumerate() {
-            if old != new {
-                let differ = |x: &usize| old[*x] != new[*x];
-                changed.extend((0..width).filter(differ).map(|x| y * width + x));
-            }
-        }
+    fn follow(&mut self, changed: &[u32]) -> bool {
+        let width = padded_width(self.costs.frame());
+        let changed: Vec<usize> = changed.iter().map(|&index| index as usize).collect();
         let is_near_goal = |index: &usize| {
             let (x, y) = (index % width, index / width);
             let off = |at: usize, goal: i32| i32::try_from(at).unwrap_or(i32::MAX) - 1 - goal;
@@ -220,7 +242,7 @@ impl Wavefront {
         if changed.len() > most || changed.iter().any(is_near_goal) {
             return false;
         }
-        self.costs = Arc::clone(costs);
+        let costs = Arc::clone(&self.costs);
         let costs = costs.padded();
         // 1. What no longer holds.
         let mut doubtful: BinaryHeap<Reverse<(u32, usize)>> = BinaryHeap::new();

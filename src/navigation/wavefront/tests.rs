@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::geometry::Point;
-use crate::grid::GridFrame;
+use crate::grid::{GridFrame, Occupancy, OccupancyGrid};
 use proptest::prelude::*;
 
 fn open(width: i32, height: i32) -> CostGrid {
@@ -12,6 +12,15 @@ fn open(width: i32, height: i32) -> CostGrid {
         costs.set(cell, 0);
     }
     costs
+}
+
+/// Lets `wave` follow to `costs`, told of what differs.
+fn follow(wave: &mut Wavefront, costs: &CostGrid) -> bool {
+    let (old, new) = (wave.costs.padded(), costs.padded());
+    let changed: Vec<u32> =
+        (0_u32..).zip(old.iter().zip(new)).filter(|(_, (a, b))| a != b).map(|(i, _)| i).collect();
+    wave.costs = Arc::new(costs.clone());
+    wave.follow(&changed)
 }
 
 #[test]
@@ -57,13 +66,13 @@ fn a_change_far_from_the_goal_is_followed_and_one_beside_it_is_not() {
     for y in 0..12 {
         costs.set(Cell::new(20, y), 100);
     }
-    assert!(wave.follow(&Arc::new(costs.clone())));
+    assert!(follow(&mut wave, &costs));
     let mut anew = Wavefront::from_goal(Arc::new(costs.clone()), goal, 75, 10.0);
     for cell in costs.frame().cells() {
         assert_eq!(wave.distance(cell), anew.distance(cell), "{cell:?}");
     }
     costs.set(Cell::new(5, 5), 100);
-    assert!(!wave.follow(&Arc::new(costs)));
+    assert!(!follow(&mut wave, &costs));
 }
 
 #[test]
@@ -83,12 +92,12 @@ fn what_hung_on_a_cell_before_it_came_nearer_is_forgotten_with_it() {
     assert_ne!(wave.distance(Cell::new(29, 12)), UNREACHED);
     // ... then straight ahead, which its last cells have not heard of, ...
     costs.set(Cell::new(20, 12), 0);
-    assert!(wave.follow(&Arc::new(costs.clone())));
+    assert!(follow(&mut wave, &costs));
     wave.distance(Cell::new(25, 12));
     // ... and then not at all.
     costs.set(Cell::new(20, 12), 100);
     costs.set(Cell::new(25, 8), 100);
-    assert!(wave.follow(&Arc::new(costs)));
+    assert!(follow(&mut wave, &costs));
     assert_eq!(wave.distance(Cell::new(29, 12)), UNREACHED);
 }
 
@@ -155,7 +164,8 @@ proptest! {
         }
         // In the same memory, to another goal.
         let goal = Cell::new(2, 3);
-        let mut again = Wavefront::instead_of(Some(wave), Arc::clone(&costs), goal, 101, 10.0);
+        let ground = Arc::clone(&costs).into();
+        let mut again = Wavefront::in_memory_of(Some(wave), ground, goal, 101, 10.0);
         for (index, distance) in by_relaxation(&costs, goal, 101).into_iter().enumerate() {
             prop_assert_eq!(again.distance(costs.frame().cell_of(index)), distance);
         }
@@ -183,11 +193,37 @@ proptest! {
                 costs.set(Cell::new(x, y), cost);
             }
             costs.set(goal, 0);
-            wave = Wavefront::instead_of(Some(wave), Arc::new(costs.clone()), goal, 75, 10.0);
+            if !follow(&mut wave, &costs) {
+                wave = Wavefront::in_memory_of(Some(wave), Arc::new(costs.clone()).into(), goal, 75, 10.0);
+            }
             let mut whole = wave.clone();
             for (index, distance) in by_relaxation(&costs, goal, 75).into_iter().enumerate() {
                 prop_assert_eq!(whole.distance(costs.frame().cell_of(index)), distance);
             }
+        }
+    }
+}
+
+#[test]
+fn a_wave_over_a_map_is_told_of_what_changes_in_it() {
+    let frame = GridFrame { resolution: 0.1, origin: Point::ZERO, width: 150, height: 150 };
+    let mut map = OccupancyGrid::filled(frame, Occupancy::Free);
+    let mut inflated = InflatedMap::new(3);
+    let (offset, goal, robot) = (Cell::new(0, 0), Cell::new(20, 20), Cell::new(140, 140));
+    let ground = inflated.update(&map, offset, &[], []);
+    let mut wave = Wavefront::from_goal(ground, goal, 75, 10.0);
+    for at in [Cell::new(80, 80), Cell::new(100, 90), Cell::new(60, 70)] {
+        assert_ne!(wave.distance(robot), UNREACHED);
+        map.set(at, Occupancy::Occupied);
+        let resting = wave.rest();
+        let ground = inflated.update(&map, offset, &[], [at]);
+        assert!(
+            inflated.changes_since(resting.0.moment).is_some_and(|changes| !changes.is_empty())
+        );
+        wave = Wavefront::instead_of(resting, &inflated, ground.clone(), goal, 75, 10.0);
+        let mut anew = Wavefront::from_goal(ground, goal, 75, 10.0);
+        for cell in frame.cells() {
+            assert_eq!(wave.distance(cell), anew.distance(cell), "{cell:?}");
         }
     }
 }

@@ -26,7 +26,6 @@ use crate::rng::Stream;
 use crate::robot::{Lidar, Odometry, Scan, Twist};
 use crate::units::{Seconds, Tick};
 use std::f64::consts::FRAC_PI_2;
-use std::sync::Arc;
 
 pub use super::phase::Ending;
 
@@ -282,9 +281,9 @@ impl Explorer {
 
     fn drive_on(&mut self, mut journey: Journey, odometry: Odometry) {
         if std::mem::take(&mut self.map_changed) || self.wave.is_none() {
-            let costs = self.costs(odometry.pose);
-            let earlier = self.wave.take();
-            self.wave = Some(self.terrain.wave_to(earlier, &costs, journey.target));
+            let earlier = self.wave.take().map(Wavefront::rest);
+            let ground = self.terrain.ground(self.mapper.map(), odometry.pose);
+            self.wave = Some(self.terrain.wave_to(earlier, &ground, journey.target));
             self.path_changed = true;
         }
         let robot = self.cell_at(odometry.pose);
@@ -320,8 +319,11 @@ impl Explorer {
     fn choose(&mut self, odometry: Odometry) {
         self.choices += 1;
         self.map_changed = false;
-        let costs = self.costs(odometry.pose);
-        let mut choice = self.appraise(&costs, odometry.pose);
+        // The present wave is followed where the target stays. Where the choice takes time, it serves until then.
+        let is_instant = self.parameters.exploration.decision_jitter_s == 0.0;
+        let mut earlier = self.wave.take_if(|_| is_instant).map(Wavefront::rest);
+        let ground = self.terrain.ground(self.mapper.map(), odometry.pose);
+        let mut choice = self.appraise(&ground.costs, odometry.pose);
         let tolerance = self.parameters.navigation.goal_tolerance_m;
         let robot = self.cell_at(odometry.pose);
         let (mut next, mut way) = (None, None);
@@ -338,7 +340,7 @@ impl Explorer {
                 self.given_up.push(target);
                 continue;
             }
-            let mut wave = self.terrain.wave_to(None, &costs, target);
+            let mut wave = self.terrain.wave_to(earlier.take(), &ground, target);
             if let Some(here) = nearest_reached(&mut wave, robot) {
                 choice.chosen = Some(i);
                 let distance = wave.metres(here).unwrap_or(f64::INFINITY);
@@ -347,6 +349,7 @@ impl Explorer {
                 next = Some(Phase::Driving(self.journey_to(target, closest, odometry.stamp)));
                 break;
             }
+            earlier = Some(wave.rest());
         }
         let next = next.unwrap_or_else(|| {
             Phase::Done(if choice.frontiers.iter().all(|f| self.is_given_up(f, &choice.frame)) {
@@ -407,11 +410,6 @@ impl Explorer {
     fn is_given_up(&self, frontier: &Frontier, frame: &GridFrame) -> bool {
         let candidate = frame.center(frontier.candidate);
         self.given_up.iter().any(|given_up| given_up.distance(candidate) < GIVEN_UP_RADIUS)
-    }
-
-    /// Returns the map inflated, with the place where the robot stands free.
-    fn costs(&mut self, pose: Pose) -> Arc<CostGrid> {
-        self.terrain.costs(self.mapper.map(), pose)
     }
 
     fn cell_at(&self, pose: Pose) -> Cell {

@@ -4,8 +4,7 @@ use super::parameters::Navigation;
 use crate::geometry::{Point, Pose};
 use crate::grid::{Cell, GridFrame, Occupancy};
 use crate::mapping::{Change, OccupancyMap};
-use crate::navigation::{CostGrid, InflatedMap, Wavefront, inflate};
-use std::sync::Arc;
+use crate::navigation::{CostGrid, Ground, InflatedMap, RestingWave, Wavefront, inflate};
 
 /// The map as the navigator sees it, kept current with what changes in it.
 #[derive(Debug)]
@@ -40,7 +39,7 @@ impl Terrain {
     }
 
     /// Returns `map` inflated, with the place of a robot at `pose` free.
-    pub(super) fn costs(&mut self, map: &OccupancyMap, pose: Pose) -> Arc<CostGrid> {
+    pub(super) fn ground(&mut self, map: &OccupancyMap, pose: Pose) -> Ground {
         let offset = map.offset();
         let lattice = |cell: Cell| Cell::new(cell.x + offset.x, cell.y + offset.y);
         let place: Vec<Cell> = place(map.grid().frame(), pose).map(lattice).collect();
@@ -57,15 +56,21 @@ impl Terrain {
         inflate(&map, self.radius)
     }
 
-    /// Starts a wave over `costs` from `target`, with what an `earlier` one knows.
+    /// Starts a wave over `ground` from `target`, with what an `earlier` one knows.
     pub(super) fn wave_to(
         &self,
-        earlier: Option<Wavefront>,
-        costs: &Arc<CostGrid>,
+        earlier: Option<RestingWave>,
+        ground: &Ground,
         target: Point,
     ) -> Wavefront {
-        let goal = costs.frame().cell_at(target);
-        Wavefront::instead_of(earlier, Arc::clone(costs), goal, self.lethal, self.weight)
+        let goal = ground.costs.frame().cell_at(target);
+        let (ground, lethal, weight) = (ground.clone(), self.lethal, self.weight);
+        match earlier {
+            None => Wavefront::from_goal(ground, goal, lethal, weight),
+            Some(earlier) => {
+                Wavefront::instead_of(earlier, &self.inflated, ground, goal, lethal, weight)
+            }
+        }
     }
 }
 
