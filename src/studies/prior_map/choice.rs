@@ -2,6 +2,7 @@
 
 use super::field_of_view::{FieldOfView, Headings};
 use super::frontier::{Frontier, find_frontiers};
+use super::gain_memory::GainMemory;
 use super::information_gain::{AlignedPrior, InformationGain};
 use super::parameters::{Exploration, Gain, Parameters, Strategy, View};
 use super::released_gain::{Rays, ReleasedGain};
@@ -58,6 +59,7 @@ pub struct Chooser {
     rays: Option<Rays>,
     /// Only for the method of reference 8.
     tour: Option<Tour>,
+    memory: GainMemory,
 }
 
 impl Chooser {
@@ -82,6 +84,7 @@ impl Chooser {
             range,
             view,
             tour: None,
+            memory: GainMemory::default(),
         }
     }
 
@@ -132,7 +135,7 @@ impl Chooser {
     }
 
     /// Computes I(p) of every candidate location.
-    fn gains(&self, sight: Sight<'_>, candidates: &[Cell]) -> Vec<f64> {
+    fn gains(&mut self, sight: Sight<'_>, candidates: &[Cell]) -> Vec<f64> {
         let (map, offset, prior) = (sight.map.grid(), sight.map.offset(), self.prior.as_ref());
         let exploration = &self.exploration;
         if let Some(rays) = &self.rays {
@@ -149,17 +152,24 @@ impl Chooser {
         }
         let occlude = exploration.known_obstacles_occlude;
         let gain = InformationGain::new(map, offset, prior, self.range, occlude);
-        let one = |&p: &Cell| match (self.view, &self.headings) {
-            (None, _) => gain.at(p),
-            (Some(_), Some(headings)) => gain.best(p, headings),
-            (Some(view), None) => {
-                let way = map.frame().center(p) - sight.pose.position();
-                // Where it already stands there is no direction of arrival: it keeps its heading.
-                let is_there = way.norm() < map.frame().resolution;
-                let heading = if is_there { sight.pose.heading } else { math::atan2(way.y, way.x) };
-                gain.within(p, view.facing(heading))
+        match (self.view, &self.headings) {
+            (None, _) => self.memory.gains(gain, candidates, InformationGain::at),
+            (Some(_), Some(headings)) => {
+                let best =
+                    |gain: &InformationGain, p, examined: &mut _| gain.best(p, headings, examined);
+                self.memory.gains(gain, candidates, best)
             }
-        };
-        candidates.iter().map(one).collect()
+            (Some(view), None) => {
+                let one = |&p: &Cell| {
+                    let way = map.frame().center(p) - sight.pose.position();
+                    // Where it already stands there is no direction of arrival: it keeps its heading.
+                    let is_there = way.norm() < map.frame().resolution;
+                    let heading =
+                        if is_there { sight.pose.heading } else { math::atan2(way.y, way.x) };
+                    gain.within(p, view.facing(heading))
+                };
+                candidates.iter().map(one).collect()
+            }
+        }
     }
 }

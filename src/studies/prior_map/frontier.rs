@@ -4,10 +4,9 @@
 //! 3. Each chain that is long enough is a frontier, with its candidate location.
 
 use crate::geometry::Point;
-use crate::grid::{Cell, Occupancy, OccupancyGrid};
+use crate::grid::{Cell, GridFrame, Occupancy, OccupancyGrid};
 use crate::navigation::CostGrid;
 use crate::studies::prior_map::Candidate;
-use std::collections::{BTreeMap, VecDeque};
 
 /// A chain of free cells next to unknown ones.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -45,62 +44,60 @@ pub fn find_frontiers(
     minimum: u32,
     candidate: Candidate,
 ) -> Vec<Frontier> {
-    // 1. The flood.
-    let frame = map.frame();
-    let mut met = vec![false; frame.len()];
-    let mut queue = VecDeque::from([robot]);
-    if let Some(index) = frame.index(robot) {
-        met[index] = true;
+    let frame = *map.frame();
+    if !frame.contains(robot) {
+        return Vec::new();
     }
-    // Cells of frontiers with the order of their discovery.
-    let mut order: BTreeMap<Cell, usize> = BTreeMap::new();
-    let (values, width) = (map.values(), usize::try_from(frame.width).unwrap_or(0));
-    let borders_on_unknown = |cell: Cell| match frame.index(cell) {
-        // Three cells of three rows, not one by one: most cells met are well inside.
-        Some(at) if frame.is_inside(cell) => {
-            [at - width, at, at + width]
-                .iter()
-                .any(|&middle| values[middle - 1..=middle + 1].contains(&Occupancy::Unknown))
-                && cell.neighbours8().iter().any(|&n| map.at(n) == Occupancy::Unknown)
+    let ring = Ring::around(&frame);
+    // 1. The flood.
+    let mut is_open: Vec<bool> = ring.rows(false, |y, row| {
+        let costs = costs.row(y);
+        row.iter_mut().zip(costs).for_each(|(open, cost)| *open = *cost < lethal);
+    });
+    let is_beside = beside_unknown(map, ring);
+    let mut flood = vec![ring.index(robot)];
+    is_open[flood[0]] = false;
+    // How many cells of frontiers were discovered before each of them, plus one; 0 for other cells.
+    let mut order = vec![0_u32; is_open.len()];
+    let mut discovered: Vec<usize> = Vec::new();
+    let mut next = 0;
+    while let Some(&index) = flood.get(next) {
+        next += 1;
+        // A cell is its own neighbour there, so that few are left to be looked at.
+        if is_beside[index] {
+            let neighbours = ring.cell(index).neighbours8();
+            if neighbours.iter().any(|&n| map.at(n) == Occupancy::Unknown) {
+                discovered.push(index);
+                order[index] = u32::try_from(discovered.len()).unwrap_or(u32::MAX);
+            }
         }
-        _ => cell.neighbours8().iter().any(|&n| map.at(n) == Occupancy::Unknown),
-    };
-    while let Some(cell) = queue.pop_front() {
-        if borders_on_unknown(cell) {
-            order.insert(cell, order.len());
-        }
-        for neighbour in cell.neighbours4() {
-            let Some(index) = frame.index(neighbour) else { continue };
-            if !met[index] && costs.is_below(neighbour, lethal) {
-                met[index] = true;
-                queue.push_back(neighbour);
+        for neighbour in ring.beside(index) {
+            if std::mem::take(&mut is_open[neighbour]) {
+                flood.push(neighbour);
             }
         }
     }
     // 2. The chains, by the discovery of their first cells.
-    let mut by_discovery: Vec<Cell> = vec![robot; order.len()];
-    for (&cell, &i) in &order {
-        by_discovery[i] = cell;
-    }
     let mut frontiers = Vec::new();
-    for first in by_discovery {
-        if !order.contains_key(&first) {
+    for first in discovered {
+        if order[first] == 0 {
             continue; // taken into an earlier chain
         }
-        let mut chain = Vec::new();
+        let mut members: Vec<(u32, usize)> = Vec::new();
         let mut next = vec![first];
-        let mut members = BTreeMap::new();
-        while let Some(cell) = next.pop() {
-            if let Some(discovered) = order.remove(&cell) {
-                members.insert(discovered, cell);
-                next.extend(cell.neighbours8().into_iter().filter(|n| order.contains_key(n)));
+        while let Some(index) = next.pop() {
+            let place = std::mem::take(&mut order[index]);
+            if place > 0 {
+                members.push((place, index));
+                next.extend(ring.around_of(index).into_iter().filter(|&n| order[n] > 0));
             }
         }
-        chain.extend(members.into_values());
+        members.sort_unstable();
+        let chain: Vec<Cell> = members.iter().map(|&(_, index)| ring.cell(index)).collect();
         // 3. The candidates.
         if chain.len() >= minimum as usize {
             let candidate = match candidate {
-                Candidate::Middle => middle_of(&chain),
+                Candidate::Middle => middle_of(&chain, ring, &mut order),
                 Candidate::NearestToCentroid => nearest_to_centroid(&chain),
             };
             frontiers.push(Frontier { cells: chain, candidate });
@@ -109,19 +106,88 @@ pub fn find_frontiers(
     frontiers
 }
 
+/// The numbering of a grid's cells with a ring of further ones around them, so that every cell has its neighbours.
+#[derive(Debug, Clone, Copy)]
+struct Ring {
+    width: usize,
+    height: usize,
+}
+
+impl Ring {
+    fn around(frame: &GridFrame) -> Self {
+        let side = |cells: i32| usize::try_from(cells).unwrap_or(0);
+        Self { width: side(frame.width) + 2, height: side(frame.height) + 2 }
+    }
+
+    /// Returns the index of `cell`, which is one of the grid's.
+    #[expect(clippy::cast_sign_loss, reason = "cells of the grid are not negative")]
+    fn index(self, cell: Cell) -> usize {
+        (cell.y as usize + 1) * self.width + cell.x as usize + 1
+    }
+
+    fn cell(self, index: usize) -> Cell {
+        let at = |along: usize| i32::try_from(along).unwrap_or(i32::MAX) - 1;
+        Cell::new(at(index % self.width), at(index / self.width))
+    }
+
+    /// Returns the neighbours that share a side, in the order of [`Cell::neighbours4`].
+    fn beside(self, index: usize) -> [usize; 4] {
+        [index + 1, index + self.width, index - 1, index - self.width]
+    }
+
+    /// Returns the neighbours that share a side or a corner, in the order of [`Cell::neighbours8`].
+    fn around_of(self, index: usize) -> [usize; 8] {
+        let (up, down) = (index + self.width, index - self.width);
+        [index + 1, up + 1, up, up - 1, index - 1, down - 1, down, down + 1]
+    }
+
+    /// Returns values of all cells: `outside` for those of the ring, and those of each row of the grid as `fill` sets them.
+    fn rows<T: Clone>(self, outside: T, mut fill: impl FnMut(i32, &mut [T])) -> Vec<T> {
+        let mut all = vec![outside; self.width * self.height];
+        let rows = all.chunks_mut(self.width).skip(1).take(self.height - 2);
+        for (y, row) in (0..).zip(rows) {
+            fill(y, &mut row[1..self.width - 1]);
+        }
+        all
+    }
+}
+
+/// Returns which cells are unknown or share a side or a corner with one that is: three rows at once, for most cells are well
+/// inside.
+fn beside_unknown(map: &OccupancyGrid, ring: Ring) -> Vec<bool> {
+    let cells = ring.width - 2;
+    let is_unknown = ring.rows(true, |y, row| {
+        let values = usize::try_from(y).map_or(0, |y| y * cells);
+        let values = &map.values()[values..values + cells];
+        row.iter_mut().zip(values).for_each(|(is, value)| *is = *value == Occupancy::Unknown);
+    });
+    ring.rows(false, |y, row| {
+        let first = usize::try_from(y).map_or(0, |y| y * ring.width);
+        for above in 0..3 {
+            let unknown = &is_unknown[first + above * ring.width..][..ring.width];
+            for (is_beside, near) in row.iter_mut().zip(unknown.windows(3)) {
+                *is_beside |= near[0] | near[1] | near[2];
+            }
+        }
+    })
+}
+
 /// Returns the cell half way along the chain: half way on the shortest path, over the chain's own cells, between two of
 /// its ends that are furthest apart.
-fn middle_of(chain: &[Cell]) -> Cell {
-    let (_, one_end) = furthest(chain, chain[0]);
-    let (way_back, other_end) = furthest(chain, one_end);
-    let mut way = vec![other_end];
-    while let Some(&cell) = way.last().and_then(|cell| way_back.get(cell)) {
-        if way.last() == Some(&cell) {
-            break;
-        }
-        way.push(cell);
+///
+/// `numbers` is 0 for all cells of the ring, before and after.
+fn middle_of(chain: &[Cell], ring: Ring, numbers: &mut [u32]) -> Cell {
+    for (number, &cell) in (1..).zip(chain) {
+        numbers[ring.index(cell)] = number;
     }
-    way[way.len() / 2]
+    let (_, one_end) = furthest(chain, 0, ring, numbers);
+    let (way_back, other_end) = furthest(chain, one_end, ring, numbers);
+    for &cell in chain {
+        numbers[ring.index(cell)] = 0;
+    }
+    let back = |&at: &usize| way_back[at].filter(|back| *back != at);
+    let way: Vec<usize> = std::iter::successors(Some(other_end), back).collect();
+    chain[way[way.len() / 2]]
 }
 
 /// Returns the cell nearest to the centroid as the released program computes it: the mean of columns and of rows cut to
@@ -138,22 +204,30 @@ fn nearest_to_centroid(chain: &[Cell]) -> Cell {
     nearest.copied().unwrap_or(centroid)
 }
 
-/// Returns for every cell of the chain the next one back to `from`, and the cell that takes the most steps.
-fn furthest(chain: &[Cell], from: Cell) -> (BTreeMap<Cell, Cell>, Cell) {
-    let members: std::collections::BTreeSet<Cell> = chain.iter().copied().collect();
-    let mut way_back = BTreeMap::from([(from, from)]);
-    let mut queue = VecDeque::from([from]);
-    let mut last = from;
-    while let Some(cell) = queue.pop_front() {
-        last = cell;
-        for neighbour in cell.neighbours8() {
-            if members.contains(&neighbour) && !way_back.contains_key(&neighbour) {
-                way_back.insert(neighbour, cell);
-                queue.push_back(neighbour);
+/// Returns for every cell of the chain the next one back to `from`, and the cell that takes the most steps. Cells are
+/// meant by their place in the chain; `numbers` tells these places, plus one, and 0 for other cells.
+fn furthest(
+    chain: &[Cell],
+    from: usize,
+    ring: Ring,
+    numbers: &[u32],
+) -> (Vec<Option<usize>>, usize) {
+    let mut way_back = vec![None; chain.len()];
+    way_back[from] = Some(from);
+    let mut queue = vec![from];
+    let mut next = 0;
+    while let Some(&at) = queue.get(next) {
+        next += 1;
+        for neighbour in ring.around_of(ring.index(chain[at])) {
+            if let Some(number) = (numbers[neighbour] as usize).checked_sub(1)
+                && way_back[number].is_none()
+            {
+                way_back[number] = Some(at);
+                queue.push(number);
             }
         }
     }
-    (way_back, last)
+    (way_back, queue[queue.len() - 1])
 }
 
 #[cfg(test)]
@@ -228,10 +302,53 @@ mod tests {
         // them.
         let mut chain: Vec<Cell> = (0..5).rev().map(|y| Cell::new(0, y)).collect();
         chain.extend((1..5).map(|x| Cell::new(x, 0)));
-        assert_eq!(middle_of(&chain), Cell::new(1, 0));
+        let frame = GridFrame { resolution: 0.1, origin: Point::ZERO, width: 5, height: 5 };
+        let mut numbers = vec![0; 49];
+        assert_eq!(middle_of(&chain, Ring::around(&frame), &mut numbers), Cell::new(1, 0));
+        assert!(numbers.iter().all(|number| *number == 0));
         assert_eq!(nearest_to_centroid(&chain), Cell::new(0, 2), "the first within a whole cell");
         let moved: Vec<Cell> = chain.iter().map(|c| Cell::new(c.x - 7, c.y - 9)).collect();
         assert_eq!(nearest_to_centroid(&moved), Cell::new(-7, -7), "wherever the map begins");
+    }
+
+    /// Finds the cells of frontiers, chain by chain, as the description reads.
+    fn by_the_book(
+        map: &OccupancyGrid,
+        costs: &CostGrid,
+        robot: Cell,
+        lethal: u8,
+    ) -> Vec<Vec<Cell>> {
+        let is_beside_unknown =
+            |cell: Cell| cell.neighbours8().iter().any(|&n| map.at(n) == Occupancy::Unknown);
+        let mut flood = vec![robot];
+        let mut next = 0;
+        while next < flood.len() {
+            for cell in flood[next].neighbours4() {
+                if costs.is_below(cell, lethal) && !flood.contains(&cell) {
+                    flood.push(cell);
+                }
+            }
+            next += 1;
+        }
+        let mut left: Vec<Cell> =
+            flood.into_iter().filter(|&cell| is_beside_unknown(cell)).collect();
+        let order = left.clone();
+        let mut chains = Vec::new();
+        while !left.is_empty() {
+            let mut chain = vec![left.remove(0)];
+            let mut next = 0;
+            while next < chain.len() {
+                let is_near = |cell: &Cell| chain[next].neighbours8().contains(cell);
+                let (near, far): (Vec<Cell>, Vec<Cell>) =
+                    left.iter().partition(|cell| is_near(cell));
+                chain.extend(near);
+                left = far;
+                next += 1;
+            }
+            chain.sort_by_key(|cell| order.iter().position(|other| other == cell));
+            chains.push(chain);
+        }
+        chains
     }
 
     proptest! {
@@ -247,6 +364,9 @@ mod tests {
             });
             let mut map = OccupancyGrid::from_cells(frame, cells.collect());
             map.set(Cell::new(2, 2), Occupancy::Free);
+            let costs = inflate(&map, 1);
+            let found: Vec<_> = find(&map, 1).into_iter().map(|frontier| frontier.cells).collect();
+            prop_assert_eq!(found, by_the_book(&map, &costs, Cell::new(2, 2), 60));
             let mut seen = std::collections::BTreeSet::new();
             for frontier in find(&map, 1) {
                 prop_assert!(frontier.cells.contains(&frontier.candidate));

@@ -1,13 +1,16 @@
 //! I(p): "the estimate of the amount of new (unexplored) area visible from p" (section 3.2).
 
 use super::field_of_view::{Headings, Sector};
-use crate::grid::{Cell, CellSet, Occupancy, OccupancyGrid, Run, visible_runs};
+use crate::grid::{Cell, CellSet, Occupancy, OccupancyGrid, Run, examine_runs};
 
 /// The data needed to estimate I(p) on one state of the map.
 #[derive(Debug)]
 pub struct InformationGain {
     /// Lattice cell of the map's cell (0, 0).
     offset: Cell,
+    /// The lattice cells that anything is known of.
+    low: Cell,
+    high: Cell,
     /// Range of the scanner in cells.
     range: i32,
     /// Area of a cell (m²).
@@ -43,7 +46,19 @@ impl InformationGain {
             obstacles | prior.map_or(0, |prior| !prior.free_word(x, y))
         });
         let cell_area = frame.resolution * frame.resolution;
-        Self { offset, range, cell_area, unknown, blocking }
+        Self { offset, low, high, range, cell_area, unknown, blocking }
+    }
+
+    /// Returns the lattice cells on which the gain depends that changed since the `earlier` state of the map.
+    pub(super) fn changes_since(&self, earlier: &Self) -> CellSet {
+        CellSet::of_words(self.low, self.high, |x, y| {
+            let changed = |now: &CellSet, then: &CellSet| match (now.word(x, y), then.word(x, y)) {
+                (Some(now), Some(then)) => now ^ then,
+                // Beyond what was visible from the map of then.
+                _ => 0,
+            };
+            changed(&self.unknown, &earlier.unknown) | changed(&self.blocking, &earlier.blocking)
+        })
     }
 
     /// Computes I(p) in m², from the map cell `p`, looking all round.
@@ -53,39 +68,42 @@ impl InformationGain {
     /// have the same lattice here, so both lines of sight are one line over both grids' obstacles.
     ///
     /// Without (Figure 2b), every unknown cell within range.
-    pub fn at(&self, p: Cell) -> f64 {
+    ///
+    /// Adds the runs of lattice cells to `examined` whose state decides that.
+    pub fn at(&self, p: Cell, examined: &mut Vec<Run>) -> f64 {
         let mut cells = 0;
-        self.see(p, |run| cells += self.unknown.count(run));
+        self.see(p, examined, |run| cells += self.unknown.count(run));
         self.area(cells)
     }
 
     /// Computes the same for the cells within `sector`.
     pub(super) fn within(&self, p: Cell, sector: Sector) -> f64 {
         let mut cells = 0;
-        self.each_unknown(p, |offset| cells += u32::from(sector.contains(offset)));
+        self.each_unknown(p, &mut Vec::new(), |offset| cells += u32::from(sector.contains(offset)));
         self.area(cells)
     }
 
     /// Computes the same for the cells seen with the best of all headings.
-    pub(super) fn best(&self, p: Cell, headings: &Headings) -> f64 {
+    pub(super) fn best(&self, p: Cell, headings: &Headings, examined: &mut Vec<Run>) -> f64 {
         let mut cells = vec![0; headings.count()];
         let mut here = 0;
-        self.each_unknown(p, |offset| match offset {
+        self.each_unknown(p, examined, |offset| match offset {
             Cell { x: 0, y: 0 } => here += 1,
             _ => cells[headings.direction(offset)] += 1,
         });
         self.area(here + headings.most(&cells))
     }
 
-    fn see(&self, p: Cell, see: impl FnMut(Run)) {
-        visible_runs(self.lattice(p), self.range, &self.blocking, see);
+    fn see(&self, p: Cell, examined: &mut Vec<Run>, see: impl FnMut(Run)) {
+        let examine = |run| examined.push(run);
+        examine_runs(self.lattice(p), self.range, &self.blocking, examine, see);
     }
 
     /// Passes to `count` every cell that counts, as its offset from `p`.
-    fn each_unknown(&self, p: Cell, mut count: impl FnMut(Cell)) {
+    fn each_unknown(&self, p: Cell, examined: &mut Vec<Run>, mut count: impl FnMut(Cell)) {
         let origin = self.lattice(p);
         let mut members = Vec::new();
-        self.see(p, |run| {
+        self.see(p, examined, |run| {
             members.clear();
             self.unknown.members(run, &mut members);
             for cell in members.iter().map(|&along| run.cell(along)) {
@@ -98,7 +116,8 @@ impl InformationGain {
         f64::from(cells) * self.cell_area
     }
 
-    fn lattice(&self, cell: Cell) -> Cell {
+    /// Returns the lattice cell of a cell of the map.
+    pub(super) fn lattice(&self, cell: Cell) -> Cell {
         Cell::new(cell.x + self.offset.x, cell.y + self.offset.y)
     }
 }
@@ -201,8 +220,8 @@ mod tests {
         let aligned = AlignedPrior::new(&prior(), Pose::default(), 0.1);
         let gain = |prior| InformationGain::new(&map, Cell::new(0, 0), prior, 8, true);
         let p = Cell::new(8, 20);
-        let without = gain(None).at(p);
-        let with = gain(Some(&aligned)).at(p);
+        let without = gain(None).at(p, &mut Vec::new());
+        let with = gain(Some(&aligned)).at(p, &mut Vec::new());
         let disc = (-8..=8_i32)
             .flat_map(|x| (-8..=8_i32).map(move |y| (x, y)))
             .filter(|(x, y)| x * x + y * y <= 64);
@@ -221,7 +240,8 @@ mod tests {
             map.set(Cell::new(9, y), Occupancy::Free);
         }
         let gain = |occlude| {
-            InformationGain::new(&map, Cell::new(0, 0), None, 3, occlude).at(Cell::new(9, 20))
+            let gain = InformationGain::new(&map, Cell::new(0, 0), None, 3, occlude);
+            gain.at(Cell::new(9, 20), &mut Vec::new())
         };
         let (hidden, open) = (gain(true), gain(false));
         // Columns 6, 7 and 8 of the disc are unknown: 1 + 5 + 5 cells; behind the wall as many less the wall's.
@@ -240,11 +260,11 @@ mod tests {
         let gain = InformationGain::new(&map, Cell::new(0, 0), None, 8, true);
         let p = Cell::new(20, 20);
         let view = FieldOfView { min_angle: -FRAC_PI_2, max_angle: FRAC_PI_2 };
-        let all = gain.at(p);
+        let all = gain.at(p, &mut Vec::new());
         assert_eq!(gain.within(p, view.facing(0.0)), all);
         assert_eq!(gain.within(p, view.facing(PI)), 0.0);
         assert!((gain.within(p, view.facing(FRAC_PI_2)) - all / 2.0).abs() <= 0.041);
-        assert_eq!(gain.best(p, &Headings::new(8, view.width())), all);
+        assert_eq!(gain.best(p, &Headings::new(8, view.width()), &mut Vec::new()), all);
     }
 
     proptest! {

@@ -11,6 +11,7 @@ pub mod effects;
 pub mod explorer;
 mod field_of_view;
 pub mod frontier;
+mod gain_memory;
 pub mod information_gain;
 pub mod measures;
 mod mission;
