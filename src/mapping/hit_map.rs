@@ -1,349 +1,364 @@
 //! A particle's own map, against which scans are matched: for each cell the mean of the beam ends in it (GMapping's
 //! `PointAccumulator`), and, for each quarter of each cell, the nearest of these means.
 //!
-//! The second makes scoring one look-up per beam instead of one per cell of the window. Lengths are whole units, 1/256
-//! of a cell
-//! (0.2 mm for cells of 5 cm), so that sums do not depend on their order; means are kept to 1/32 of a cell. Tiles are shared
-//! between particles until one writes (copy on write).
+//! The second makes scoring one look-up per beam instead of one per cell of the window. Tiles are shared between
+//! particles until one writes (copy on write), and so are blocks of tiles: a copy of a map costs little.
 
-use crate::geometry::Point;
+use super::tile::{
+    EMPTY, Mean, Offset, Open, Place, QUARTER_BITS, QUARTER_STEPS, SIDE_BITS, STEP_BITS, STEPS,
+    Seen, TILE_BITS, Tile, cell_in_tile, in_square, nearest_at, quarter_in_tile,
+};
 use std::sync::Arc;
 
-/// Units in a cell, as a power of two.
-pub(super) const CELL_BITS: u32 = 8;
-const CELL: i32 = 1 << CELL_BITS;
-/// Steps in a cell, as a power of two: means are rounded to these steps.
-const STEP_BITS: u32 = 5;
-const STEPS: i32 = 1 << STEP_BITS;
-/// Cells in a side of a tile, as a power of two.
-const TILE_BITS: u32 = 5;
-const TILE: i32 = 1 << TILE_BITS;
-const CELLS: usize = (TILE * TILE) as usize;
+/// Tiles in a side of a block, as a power of two.
+pub(super) const BLOCK_BITS: u32 = 3;
+const TILES: usize = 1 << (2 * BLOCK_BITS);
 /// The largest window reaches this many cells to either side: GMapping's reaches 1, and offsets have to fit a byte.
 pub(super) const MAX_KERNEL: u32 = 2;
-/// Stands for "no mean near": further away than any window's diagonal.
-const NONE: Offset = [i8::MIN; 2];
-/// A squared distance beyond any window.
-const FAR: u32 = u32::MAX;
+/// Cells whose means may be the nearest of some cell of the largest window.
+const AROUND: usize = (4 * MAX_KERNEL as usize + 1).pow(2);
 
-/// The position of a mean, in steps from a cell's corner.
-type Offset = [i8; 2];
-
-/// A place in units from the map frame's origin.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Place {
-    pub(super) x: i32,
-    pub(super) y: i32,
-}
-
-impl Place {
-    /// Returns the place nearest to `point` (m) where a metre has `scale` units.
-    #[expect(clippy::cast_possible_truncation, reason = "saturates, 400 km from the origin")]
-    pub(super) fn of(point: Point, scale: f64) -> Self {
-        let round = |v: f64| {
-            let units = v * scale + 0.5;
-            let cut = units as i32;
-            cut - i32::from(f64::from(cut) > units)
-        };
-        Self { x: round(point.x), y: round(point.y) }
-    }
-
-    /// Returns the place moved by `by`. Wraps around far outside of any building.
-    pub(super) fn plus(self, by: Self) -> Self {
-        Self { x: self.x.wrapping_add(by.x), y: self.y.wrapping_add(by.y) }
-    }
-}
-
-/// Beams that ended in a cell: their number, and the sums of their ends, in units from the cell's corner. At 255 the
-/// mean is settled.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-struct Hits {
-    x: u16,
-    y: u16,
-    count: u8,
-}
-
-impl Hits {
-    const NONE: Self = Self { x: 0, y: 0, count: 0 };
-
-    /// Returns the hits with one more, at `place`.
-    fn with(self, place: Place) -> Self {
-        if self.count == u8::MAX {
-            return self;
-        }
-        #[expect(clippy::cast_sign_loss, reason = "masked")]
-        let within = |v: i32| (v & (CELL - 1)) as u16;
-        Self { x: self.x + within(place.x), y: self.y + within(place.y), count: self.count + 1 }
-    }
-
-    /// Returns the step that holds the mean, from the cell's corner; `None` before the first hit.
-    fn mean(self) -> Option<[i32; 2]> {
-        let mean = |sum: u16| i32::from(sum / u16::from(self.count)) >> (CELL_BITS - STEP_BITS);
-        (self.count > 0).then(|| [mean(self.x), mean(self.y)])
-    }
-}
-
+/// A square of tiles, row by row.
 #[derive(Debug, Clone)]
-struct Tile {
-    hits: [Hits; CELLS],
-    /// The nearest mean as seen from the middle of each quarter of each cell.
-    nearest: [[Offset; 4]; CELLS],
+pub(super) struct Block {
+    pub(super) tiles: [Option<Arc<Tile>>; TILES],
 }
 
-const EMPTY: Tile = Tile { hits: [Hits::NONE; CELLS], nearest: [[NONE; 4]; CELLS] };
-
-/// The map. Cells and tiles are counted on an endless lattice.
+/// The map. Cells, tiles and blocks are counted on an endless lattice.
 #[derive(Debug, Clone)]
 pub(super) struct HitMap {
     /// Cells to either side of a beam's end in which a mean is sought (GMapping's `kernelSize`).
     kernel: i32,
-    /// The tile that comes first in `tiles`.
+    /// The block that comes first in `blocks`.
     low: [i32; 2],
     size: [i32; 2],
-    tiles: Vec<Option<Arc<Tile>>>,
+    blocks: Vec<Option<Arc<Block>>>,
 }
 
 impl HitMap {
     /// Creates an empty map.
     pub(super) fn new(kernel: u32) -> Self {
         let kernel = i32::try_from(kernel.min(MAX_KERNEL)).unwrap_or(0);
-        Self { kernel, low: [0, 0], size: [0, 0], tiles: Vec::new() }
+        Self { kernel, low: [0, 0], size: [0, 0], blocks: Vec::new() }
     }
 
     /// Returns the squared distance (units) from `place` to the mean nearest to its quarter of a cell, among those of
     /// the cells in the window around it; more than the window's diagonal where there is none.
     pub(super) fn squared_distance(&self, place: Place) -> u32 {
-        let tile_x = (place.x >> (CELL_BITS + TILE_BITS)).wrapping_sub(self.low[0]);
-        let tile_y = (place.y >> (CELL_BITS + TILE_BITS)).wrapping_sub(self.low[1]);
-        #[expect(clippy::cast_sign_loss, reason = "negative ones become too large")]
-        let (column, row) = (tile_x as u32, tile_y as u32);
-        #[expect(clippy::cast_sign_loss, reason = "sizes are not negative")]
-        if column >= self.size[0] as u32 || row >= self.size[1] as u32 {
-            return FAR;
-        }
-        #[expect(clippy::cast_sign_loss, reason = "sizes are not negative")]
-        let index = row as usize * self.size[0] as usize + column as usize;
-        let Some(Some(tile)) = self.tiles.get(index) else { return FAR };
-        let cell = in_tile([place.x >> CELL_BITS, place.y >> CELL_BITS]);
-        let half = |v: i32| usize::from(v & (CELL / 2) != 0);
-        let offset = tile.nearest[cell % CELLS][half(place.y) << 1 | half(place.x)];
-        let [x, y] =
-            offset.map(|step| (i32::from(step) << (CELL_BITS - STEP_BITS)) + CELL / STEPS / 2);
-        let (dx, dy) = ((place.x & (CELL - 1)) - x, (place.y & (CELL - 1)) - y);
-        #[expect(clippy::cast_sign_loss, reason = "a sum of squares")]
-        let squared = (dx * dx + dy * dy) as u32;
-        squared
+        let quarter = [place.x >> QUARTER_BITS, place.y >> QUARTER_BITS];
+        let tile = self.tile(quarter.map(|v| v >> SIDE_BITS)).unwrap_or(&EMPTY);
+        let offset = nearest_at(&tile.nearest, quarter_in_tile(quarter));
+        let within = |v: i32| v & ((1 << QUARTER_BITS) - 1);
+        let [x, y] = offset.steps().map(|step| (step << STEP_BITS) + (1 << STEP_BITS) / 2);
+        let (dx, dy) = (within(place.x) - x, within(place.y) - y);
+        (dx * dx + dy * dy).unsigned_abs()
     }
 
     /// Registers beams that ended at `places`.
-    pub(super) fn register(&mut self, places: impl IntoIterator<Item = Place>) {
-        for place in places {
-            let cell = [place.x >> CELL_BITS, place.y >> CELL_BITS];
-            let hits = &mut self.tile_mut(cell).hits[in_tile(cell)];
-            let before = hits.mean();
-            *hits = hits.with(place);
-            if let Some(mean) = hits.mean()
-                && before != Some(mean)
+    pub(super) fn register(&mut self, places: &[Place]) {
+        let mut moved = Vec::with_capacity(places.len());
+        // Neighbouring beams often end in one cell.
+        for places in places.chunk_by(|a, b| a.cell() == b.cell()) {
+            let cell = places[0].cell();
+            let (tile, index) = (tile_of(cell), cell_in_tile(cell));
+            // What is settled may stay shared.
+            if self.tile(tile).is_some_and(|tile| tile.hits[index].is_settled()) {
+                continue;
+            }
+            let tile = self.tile_mut(tile);
+            let hits = &mut tile.hits[index];
+            for &place in places {
+                hits.take(place);
+            }
+            let mean = hits.mean();
+            let before = std::mem::replace(&mut tile.means[index], mean);
+            if let Some(steps) = mean.steps()
+                && before != mean
             {
-                self.tell(cell, before, mean);
+                moved.push((cell, before.steps(), steps));
+            }
+        }
+        // In whatever order: in the end every quarter has the nearest of what is there now.
+        for (cell, before, mean) in moved {
+            match self.kernel {
+                0 => self.tell::<2, 8>(cell, before, mean),
+                1 => self.tell::<6, 8>(cell, before, mean),
+                _ => self.tell::<10, 16>(cell, before, mean),
             }
         }
     }
 
-    /// Updates the nearest means of the cells around `cell`, whose mean was `before` and is `mean` now.
-    fn tell(&mut self, [x, y]: [i32; 2], before: Option<[i32; 2]>, mean: [i32; 2]) {
+    /// Updates the nearest means of the cells around `cell`, whose mean was `before` and is `mean` now: of `SIDE` by `SIDE`
+    /// quarters, in rows that are held `WIDTH` wide.
+    fn tell<const SIDE: usize, const WIDTH: usize>(
+        &mut self,
+        cell: [i32; 2],
+        before: Option<[i32; 2]>,
+        mean: [i32; 2],
+    ) {
         let k = self.kernel;
-        for dy in -k..=k {
-            for dx in -k..=k {
-                let there = [x + dx, y + dy];
-                let seen = |[mx, my]: [i32; 2]| offset([mx - dx * STEPS, my - dy * STEPS]);
-                let (gone, new) = (before.map(seen), seen(mean));
-                let index = in_tile(there);
-                let held = self.tile(there).map_or([NONE; 4], |tile| tile.nearest[index]);
-                let mut nearest = held;
-                for (quarter, nearest) in nearest.iter_mut().enumerate() {
-                    if rank(quarter, new) <= rank(quarter, *nearest) {
-                        *nearest = new;
-                    } else if Some(*nearest) == gone {
-                        *nearest = self.nearest_to(there, quarter);
+        let first = cell.map(|v| v - k);
+        let corner = first.map(|v| 2 * v);
+        let patch = self.patch(first, cell.map(|v| v + k));
+        let mut rows = [[Offset::NONE; WIDTH]; SIDE];
+        patch.read(corner, &mut rows);
+        let held = rows;
+        // Steps are counted from the corner of the first quarter.
+        let from_corner = |mean: [i32; 2]| mean.map(|v| v + k * STEPS);
+        let ([x, y], gone) = (from_corner(mean), before.map(from_corner));
+        let y_gone = gone.map_or(y, |gone| gone[1]);
+        let seen = Seen::<WIDTH>::new(SIDE, x, gone.map(|gone| gone[0]));
+        let mut open = [Open::NONE; SIDE];
+        let corners = || (0..).step_by(QUARTER_STEPS as usize);
+        for ((row, open), at) in rows.iter_mut().zip(&mut open).zip(corners()) {
+            *open = seen.improve(row, y - at, y_gone - at);
+        }
+        if open.iter().any(|open| open.any) {
+            let (around, found) = self.around(cell);
+            let around = &around[..found];
+            for mean in around.iter().filter(|mean| !mean.is_middle(k)) {
+                let [x, y] = from_corner(mean.steps);
+                let seen = Seen::<WIDTH>::new(SIDE, x, None);
+                for (open, at) in open.iter_mut().zip(corners()).filter(|(open, _)| open.any) {
+                    seen.rival(open, y - at);
+                }
+            }
+            for ((row, open), j) in
+                rows.iter_mut().zip(&open).zip(0..).filter(|((_, open), _)| open.any)
+            {
+                for ((held, &afresh), i) in row.iter_mut().zip(&open.afresh).take(SIDE).zip(0..) {
+                    if afresh != 0 {
+                        *held = nearest_of(around, [i, j], k);
                     }
                 }
-                // Compared first, so that a tile that would not change stays shared.
-                if held != nearest {
-                    self.tile_mut(there).nearest[index] = nearest;
+            }
+        }
+        // Compared first, so that a tile that would not change stays shared.
+        if rows != held {
+            self.write(corner, &rows, &held);
+        }
+    }
+
+    /// Writes the `rows` of quarters from `corner` on where they differ from what is `held`.
+    fn write<const SIDE: usize, const WIDTH: usize>(
+        &mut self,
+        corner: [i32; 2],
+        rows: &[[Offset; WIDTH]; SIDE],
+        held: &[[Offset; WIDTH]; SIDE],
+    ) {
+        let side = i32::try_from(SIDE).unwrap_or(0);
+        let (first, last) =
+            (corner.map(|v| v >> SIDE_BITS), corner.map(|v| (v + side - 1) >> SIDE_BITS));
+        if first == last {
+            let start = quarter_in_tile(corner);
+            let tile = self.tile_mut(first);
+            for (row, into) in rows.iter().zip(tile.nearest[start..].chunks_mut(1 << SIDE_BITS)) {
+                into[..SIDE].copy_from_slice(&row[..SIDE]);
+            }
+            return;
+        }
+        for tile_y in first[1]..=last[1] {
+            for tile_x in first[0]..=last[0] {
+                let quarters = |tile: i32, corner: i32| {
+                    let low = corner.max(tile << SIDE_BITS) - corner;
+                    let high = ((tile + 1) << SIDE_BITS).min(corner + side) - corner;
+                    low as usize..high as usize
+                };
+                let (columns, lines) = (quarters(tile_x, corner[0]), quarters(tile_y, corner[1]));
+                let differs = |j: usize| rows[j][columns.clone()] != held[j][columns.clone()];
+                if lines.clone().any(differs) {
+                    let tile = self.tile_mut([tile_x, tile_y]);
+                    for j in lines {
+                        let start = quarter_in_tile([
+                            corner[0] + columns.start as i32,
+                            corner[1] + j as i32,
+                        ]);
+                        tile.nearest[start..][..columns.len()]
+                            .copy_from_slice(&rows[j][columns.clone()]);
+                    }
                 }
             }
         }
     }
 
-    /// Finds the nearest mean as seen from a quarter of `cell`, afresh.
-    fn nearest_to(&self, [x, y]: [i32; 2], quarter: usize) -> Offset {
-        let (k, mut nearest) = (self.kernel, NONE);
-        for dy in -k..=k {
-            for dx in -k..=k {
-                if let Some([mx, my]) = self.hits([x + dx, y + dy]).mean() {
-                    let seen = offset([mx + dx * STEPS, my + dy * STEPS]);
-                    if rank(quarter, seen) < rank(quarter, nearest) {
-                        nearest = seen;
-                    }
+    /// Returns the means of the cells up to twice the kernel around `cell`, and how many there are.
+    fn around(&self, cell: [i32; 2]) -> ([Neighbour; AROUND], usize) {
+        let reach = 2 * self.kernel;
+        let corner = cell.map(|v| v - reach);
+        let patch = self.patch(corner, cell.map(|v| v + reach));
+        let mut means = [Neighbour { column: 0, row: 0, steps: [0; 2] }; AROUND];
+        let mut found = 0;
+        for row in 0..=2 * reach {
+            let mut take = |column: i32, mean: Mean| {
+                if let Some([x, y]) = mean.steps() {
+                    let steps = [x + (column - reach) * STEPS, y + (row - reach) * STEPS];
+                    means[found] = Neighbour { column, row, steps };
+                    found += 1;
                 }
+            };
+            let first = [corner[0], corner[1] + row];
+            if patch.is_one {
+                let means = &patch.tiles[0][0].means[cell_in_tile(first)..];
+                (0..=2 * reach).zip(means).for_each(|(column, mean)| take(column, *mean));
+            } else {
+                (0..=2 * reach)
+                    .for_each(|column| take(column, patch.mean([first[0] + column, first[1]])));
             }
         }
-        nearest
+        (means, found)
     }
 
-    fn hits(&self, cell: [i32; 2]) -> Hits {
-        self.tile(cell).map_or(Hits::default(), |tile| tile.hits[in_tile(cell)])
+    /// Returns the tiles from the one of the cell `first` to that of `last`: less than a tile lies between them.
+    fn patch(&self, first: [i32; 2], last: [i32; 2]) -> Patch<'_> {
+        let (first, last) = (tile_of(first), tile_of(last));
+        let one = self.tile(first).unwrap_or(&EMPTY);
+        let is_one = first == last;
+        let tile = |x: i32, y: i32| if is_one { one } else { self.tile([x, y]).unwrap_or(&EMPTY) };
+        Patch {
+            first,
+            is_one,
+            tiles: [
+                [one, tile(last[0], first[1])],
+                [tile(first[0], last[1]), tile(last[0], last[1])],
+            ],
+        }
     }
 
-    fn index(&self, cell: [i32; 2]) -> Option<usize> {
-        let column = (cell[0] >> TILE_BITS).wrapping_sub(self.low[0]);
-        let row = (cell[1] >> TILE_BITS).wrapping_sub(self.low[1]);
+    /// Returns the block with these coordinates, where there is one.
+    pub(super) fn block(&self, block: [i32; 2]) -> Option<&Block> {
+        self.index(block).and_then(|index| self.blocks[index].as_deref())
+    }
+
+    fn index(&self, block: [i32; 2]) -> Option<usize> {
+        let column = block[0].wrapping_sub(self.low[0]);
+        let row = block[1].wrapping_sub(self.low[1]);
         let inside = (0..self.size[0]).contains(&column) && (0..self.size[1]).contains(&row);
         inside.then(|| usize::try_from(row * self.size[0] + column).unwrap_or(0))
     }
 
-    fn tile(&self, cell: [i32; 2]) -> Option<&Tile> {
-        self.index(cell).and_then(|index| self.tiles[index].as_deref())
+    /// Returns the tile with these coordinates, where there is one.
+    pub(super) fn tile(&self, tile: [i32; 2]) -> Option<&Tile> {
+        let block = self.block(tile.map(|v| v >> BLOCK_BITS))?;
+        block.tiles[in_square(tile, BLOCK_BITS)].as_deref()
     }
 
-    /// Returns the tile of `cell`, made where there is none, and copied where it was shared.
-    fn tile_mut(&mut self, cell: [i32; 2]) -> &mut Tile {
-        let index = self.index(cell).unwrap_or_else(|| {
-            self.grow_to([cell[0] >> TILE_BITS, cell[1] >> TILE_BITS]);
-            self.index(cell).unwrap_or(0)
+    /// Returns the tile with these coordinates, made where there is none, and copied where it was shared.
+    fn tile_mut(&mut self, tile: [i32; 2]) -> &mut Tile {
+        let block = tile.map(|v| v >> BLOCK_BITS);
+        let index = self.index(block).unwrap_or_else(|| {
+            self.grow_to(block);
+            self.index(block).unwrap_or(0)
         });
-        Arc::make_mut(self.tiles[index].get_or_insert_with(|| Arc::new(EMPTY)))
+        let block = self.blocks[index]
+            .get_or_insert_with(|| Arc::new(Block { tiles: [const { None }; TILES] }));
+        let tile = &mut Arc::make_mut(block).tiles[in_square(tile, BLOCK_BITS)];
+        Arc::make_mut(tile.get_or_insert_with(|| Arc::new(EMPTY.clone())))
     }
 
-    fn grow_to(&mut self, tile: [i32; 2]) {
-        /// Tiles added beyond what is needed, so that the map grows seldom.
-        const MARGIN: i32 = 8;
+    fn grow_to(&mut self, block: [i32; 2]) {
+        /// Blocks added beyond what is needed, so that the map grows seldom.
+        const MARGIN: i32 = 2;
         let axis = |i: usize| {
             let (low, high) = (self.low[i], self.low[i] + self.size[i] - 1);
-            let (low, high) = if self.tiles.is_empty() {
-                (tile[i] - MARGIN, tile[i] + MARGIN)
+            let (low, high) = if self.blocks.is_empty() {
+                (block[i] - MARGIN, block[i] + MARGIN)
             } else {
                 (
-                    if tile[i] < low { tile[i] - MARGIN } else { low },
-                    if tile[i] > high { tile[i] + MARGIN } else { high },
+                    if block[i] < low { block[i] - MARGIN } else { low },
+                    if block[i] > high { block[i] + MARGIN } else { high },
                 )
             };
             (low, high - low + 1)
         };
         let ((low_x, width), (low_y, height)) = (axis(0), axis(1));
-        let mut tiles = vec![None; usize::try_from(width * height).unwrap_or(0)];
-        for (old, tile) in (0..).zip(self.tiles.drain(..)) {
+        let mut blocks = vec![None; usize::try_from(width * height).unwrap_or(0)];
+        for (old, block) in (0..).zip(self.blocks.drain(..)) {
             let column = self.low[0] + old % self.size[0] - low_x;
             let row = self.low[1] + old / self.size[0] - low_y;
-            tiles[usize::try_from(row * width + column).unwrap_or(0)] = tile;
+            blocks[usize::try_from(row * width + column).unwrap_or(0)] = block;
         }
-        (self.tiles, self.low, self.size) = (tiles, [low_x, low_y], [width, height]);
+        (self.blocks, self.low, self.size) = (blocks, [low_x, low_y], [width, height]);
     }
 }
 
-/// Converts steps to an offset; they fit, being those of a mean within the largest window.
-#[expect(clippy::cast_possible_truncation, reason = "at most 3 cells of 32 steps")]
-fn offset(steps: [i32; 2]) -> Offset {
-    steps.map(|v| v as i8)
+/// Four tiles that meet, or fewer.
+#[derive(Debug)]
+struct Patch<'a> {
+    first: [i32; 2],
+    is_one: bool,
+    tiles: [[&'a Tile; 2]; 2],
 }
 
-/// Ranks a mean: lower is nearer to the middle of the quarter. The offset itself decides between equally
-/// near ones, so that the nearest does not depend on the order of arrival.
-fn rank(quarter: usize, offset: Offset) -> (i32, Offset) {
-    let middle = |is_far: bool| if is_far { 3 * STEPS / 4 } else { STEPS / 4 };
-    let dx = i32::from(offset[0]) - middle(quarter & 1 != 0);
-    let dy = i32::from(offset[1]) - middle(quarter & 2 != 0);
-    (dx * dx + dy * dy, offset)
+impl Patch<'_> {
+    fn tile(&self, tile: [i32; 2]) -> &Tile {
+        let is_second = |i: usize| usize::from(tile[i] != self.first[i]);
+        self.tiles[is_second(1)][is_second(0)]
+    }
+
+    fn mean(&self, cell: [i32; 2]) -> Mean {
+        self.tile(tile_of(cell)).means[cell_in_tile(cell)]
+    }
+
+    /// Reads the quarters from `corner` on into `rows`. What is beyond the first `SIDE` of a row is of no meaning.
+    fn read<const SIDE: usize, const WIDTH: usize>(
+        &self,
+        corner: [i32; 2],
+        rows: &mut [[Offset; WIDTH]; SIDE],
+    ) {
+        if self.is_one {
+            let start = quarter_in_tile(corner);
+            let nearest = &self.tiles[0][0].nearest;
+            for (j, row) in rows.iter_mut().enumerate() {
+                *row = *nearest[start + (j << SIDE_BITS)..].first_chunk().unwrap_or(row);
+            }
+            return;
+        }
+        for (row, y) in rows.iter_mut().zip(corner[1]..) {
+            for (held, x) in row.iter_mut().take(SIDE).zip(corner[0]..) {
+                let tile = self.tile([x >> SIDE_BITS, y >> SIDE_BITS]);
+                *held = nearest_at(&tile.nearest, quarter_in_tile([x, y]));
+            }
+        }
+    }
 }
 
-/// Returns the index of `cell` within its tile.
-fn in_tile(cell: [i32; 2]) -> usize {
-    #[expect(clippy::cast_sign_loss, reason = "masked")]
-    let [x, y] = cell.map(|v| (v & (TILE - 1)) as usize);
-    y << TILE_BITS | x
+/// Returns the tile that holds `cell`.
+fn tile_of(cell: [i32; 2]) -> [i32; 2] {
+    cell.map(|v| v >> TILE_BITS)
+}
+
+/// The mean of a cell near another one.
+#[derive(Debug, Clone, Copy)]
+struct Neighbour {
+    /// The cell, counted from the first one.
+    column: i32,
+    row: i32,
+    /// The mean in steps from the other cell's corner.
+    steps: [i32; 2],
+}
+
+impl Neighbour {
+    fn is_middle(&self, kernel: i32) -> bool {
+        [self.column, self.row] == [2 * kernel; 2]
+    }
+}
+
+/// Finds the nearest mean as seen from a quarter, afresh. `around` are the means around a cell, and quarters are counted from
+/// the first one of the cells within `kernel` of it.
+fn nearest_of(around: &[Neighbour], quarter: [i32; 2], kernel: i32) -> Offset {
+    let [column, row] = quarter.map(|v| v / 2 + kernel);
+    let corner = quarter.map(|v| QUARTER_STEPS * (v - 2 * kernel));
+    let mut nearest = Offset::NONE;
+    for mean in around {
+        if (mean.column - column).abs() <= kernel && (mean.row - row).abs() <= kernel {
+            let seen = Offset::new([mean.steps[0] - corner[0], mean.steps[1] - corner[1]]);
+            if seen.rank() < nearest.rank() {
+                nearest = seen;
+            }
+        }
+    }
+    nearest
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    fn place() -> impl Strategy<Value = Place> {
-        // About the corner where four tiles meet.
-        (-2000..2000, -2000..2000).prop_map(|(x, y)| Place { x, y })
-    }
-
-    /// Returns the squared distance (units) from `at` to the mean, rounded to steps, that is nearest to its quarter of
-    /// a cell, over all cells of the window.
-    fn by_definition(places: &[Place], at: Place, kernel: i32) -> Option<u32> {
-        let cell = |p: Place| [p.x >> CELL_BITS, p.y >> CELL_BITS];
-        let [x, y] = cell(at);
-        let half = |v: i32| (v >> 7) * 16 + 8;
-        let mut best: Option<((i32, i32, i32), i32)> = None;
-        for cy in y - kernel..=y + kernel {
-            for cx in x - kernel..=x + kernel {
-                let here: Vec<_> = places.iter().filter(|p| cell(**p) == [cx, cy]).collect();
-                let n = i32::try_from(here.len()).unwrap();
-                if n == 0 {
-                    continue;
-                }
-                let mean = |of: fn(&Place) -> i32, c: i32| {
-                    (c * CELL + here.iter().map(|p| of(p) - c * CELL).sum::<i32>() / n) >> 3
-                };
-                let (mx, my) = (mean(|p| p.x, cx), mean(|p| p.y, cy));
-                let to_quarter = (mx - half(at.x)).pow(2) + (my - half(at.y)).pow(2);
-                let squared = (mx * 8 + 4 - at.x).pow(2) + (my * 8 + 4 - at.y).pow(2);
-                if best.is_none_or(|(rank, _)| (to_quarter, mx, my) < rank) {
-                    best = Some(((to_quarter, mx, my), squared));
-                }
-            }
-        }
-        best.map(|(_, squared)| squared.unsigned_abs())
-    }
-
-    proptest! {
-        #[test]
-        fn one_look_up_tells_what_the_whole_window_would(
-            scans in prop::collection::vec(prop::collection::vec(place(), 1..12), 1..4),
-            asked in prop::collection::vec(place(), 50),
-            kernel in 0_u32..3,
-        ) {
-            let mut map = HitMap::new(kernel);
-            for scan in &scans {
-                map.register(scan.iter().copied());
-            }
-            let all = scans.concat();
-            let kernel = i32::try_from(kernel).unwrap();
-            let window = ((kernel + 1) * CELL).pow(2) * 2;
-            for at in asked.iter().chain(&all) {
-                let found = map.squared_distance(*at);
-                match by_definition(&all, *at, kernel) {
-                    Some(expected) => prop_assert_eq!(found, expected),
-                    None => prop_assert!(found > window.unsigned_abs()),
-                }
-            }
-        }
-
-        /// Checks copy on write: a change to one copy does not show in the other, and nothing is copied that is not
-        /// written.
-        #[test]
-        fn a_copy_keeps_what_it_had(
-            before in prop::collection::vec(place(), 1..20),
-            after in prop::collection::vec(place(), 1..20),
-        ) {
-            let mut map = HitMap::new(1);
-            map.register(before.iter().copied());
-            map.register([Place { x: 40_000, y: 0 }]);
-            let copy = map.clone();
-            map.register(after.iter().copied());
-            let mut alone = HitMap::new(1);
-            alone.register(before.iter().copied());
-            for at in before.iter().chain(&after) {
-                prop_assert_eq!(copy.squared_distance(*at), alone.squared_distance(*at));
-            }
-            let far = |map: &HitMap| Arc::as_ptr(map.tiles[map.index([40_000 >> 8, 0]).unwrap()].as_ref().unwrap());
-            prop_assert_eq!(far(&map), far(&copy));
-        }
-    }
-}
+mod tests;

@@ -6,6 +6,7 @@
 //! Rao-Blackwellised particle filter. The map's frame is the odometry frame at the beginning: the robot's first pose.
 
 mod beam_ends;
+mod beams;
 mod hit_map;
 mod keyframe;
 mod map;
@@ -16,7 +17,9 @@ mod resampling;
 #[cfg(test)]
 mod room;
 mod scan_matcher;
+mod tile;
 mod trajectories;
+mod window;
 
 pub use keyframe::KeyframeRule;
 pub use map::{Change, OccupancyMap, ScanRule};

@@ -6,15 +6,19 @@
 //! 2. Where matching is on, it climbs to the pose at which the scan fits its map best, and keeps that pose if the score
 //!    suffices.
 //! 3. Its weight takes in the likelihood of the scan there.
-//! 4. Particles are drawn anew where too few of them count (Grisetti et al. 2007, section 4.2).
-//! 5. Every particle takes the scan into its map, and the likeliest so far becomes the best.
+//! 4. It takes the scan into its map.
+//! 5. Particles are drawn anew where too few of them count (Grisetti et al. 2007, section 4.2), and the likeliest so far
+//!    becomes the best.
 
 use super::beam_ends::BeamEnds;
-use super::hit_map::{HitMap, Place};
+use super::beams::{Beams, Points};
+use super::hit_map::HitMap;
 use super::motion_model::MotionNoise;
 use super::resampling::{effective, normalised, systematic};
-use super::scan_matcher::{Beams, MatchRule, ScanMatcher};
+use super::scan_matcher::{MatchRule, ScanMatcher};
+use super::tile::Place;
 use super::trajectories::{NodeId, Trajectories};
+use super::window::Window;
 use crate::geometry::Pose;
 use crate::rng::Stream;
 
@@ -62,6 +66,9 @@ pub(super) struct ParticleFilter {
     scans: u64,
     stream: Stream,
     beams: Beams,
+    /// Memory for the ends of a scan's beams.
+    hits: Points,
+    places: Vec<Place>,
 }
 
 impl ParticleFilter {
@@ -83,20 +90,27 @@ impl ParticleFilter {
             scans: 0,
             stream,
             beams: Beams::default(),
+            hits: Points::default(),
+            places: Vec::new(),
         }
     }
 
     /// Takes in the first scan, taken at `pose`, where all particles start.
     pub(super) fn begin(&mut self, pose: Pose, scan: &BeamEnds) {
+        self.hits.take(scan.hits(1));
+        let mut map = HitMap::new(self.rule.matching.kernel);
+        self.hits.seen_from(pose, self.matcher.scale(), &mut self.places);
+        map.register(&self.places);
         for particle in &mut self.particles {
-            particle.pose = pose;
+            (particle.pose, particle.map) = (pose, map.clone());
         }
-        self.register(scan);
+        self.conclude();
     }
 
     /// Takes in a further scan, taken after the `increments` of odometry.
     pub(super) fn advance(&mut self, increments: &[Pose], scan: &BeamEnds) {
-        let Self { rule, matcher, beams, stream, scans, .. } = self;
+        let Self { rule, matcher, beams, hits, places, stream, scans, .. } = self;
+        hits.take(scan.hits(1));
         beams.take(scan.hits(rule.matching.skip as usize + 1));
         for (i, particle) in (0..).zip(&mut self.particles) {
             // 1. Odometry moves the particle.
@@ -109,21 +123,25 @@ impl ParticleFilter {
                 };
             }
             // 2. The scan corrects its pose.
+            let mut window = Window::over(&particle.map);
             if rule.matching.searches() {
-                let (pose, fits) = matcher.climb(&particle.map, beams, particle.pose);
+                let (pose, fits) = matcher.climb(&mut window, beams, particle.pose);
                 if fits {
                     particle.pose = pose;
                 }
             }
             // 3. The scan weighs it.
-            let log_likelihood = matcher.log_likelihood(&particle.map, beams, particle.pose);
+            let log_likelihood = matcher.log_likelihood(&mut window, beams, particle.pose);
             particle.log_weight += log_likelihood;
             particle.total += log_likelihood;
+            // 4. The scan enters its map: before particles are drawn anew, as those of one parent have one pose too. They go on
+            // sharing what the scan has changed.
+            hits.seen_from(particle.pose, matcher.scale(), places);
+            particle.map.register(places);
         }
-        // 4. Particles that count for little are replaced.
+        // 5. Particles that count for little are replaced.
         self.resample();
-        // 5. The scan enters the maps.
-        self.register(scan);
+        self.conclude();
     }
 
     /// Returns the pose of the best particle: the one whose scans were likeliest, all in all.
@@ -161,14 +179,10 @@ impl ParticleFilter {
         }
     }
 
-    /// Takes the scan into every particle's map, and determines which particle is best.
-    fn register(&mut self, scan: &BeamEnds) {
-        let scale = self.matcher.scale();
-        let hits: Vec<_> = scan.hits(1).collect();
+    /// Extends the trajectories, and determines which particle is best.
+    fn conclude(&mut self) {
         for particle in &mut self.particles {
-            let pose = particle.pose;
-            particle.map.register(hits.iter().map(|&hit| Place::of(pose.transform(hit), scale)));
-            particle.node = Some(self.trajectories.extend(particle.node, pose));
+            particle.node = Some(self.trajectories.extend(particle.node, particle.pose));
         }
         self.scans += 1;
         self.best = 0;

@@ -9,8 +9,11 @@
 //! 5. Repeat from 2 until a round brings no improvement after the last halving; then test the score against the
 //!    minimum.
 
-use super::hit_map::{CELL_BITS, HitMap, MAX_KERNEL, Place};
-use crate::geometry::{Point, Pose};
+use super::beams::{Beams, LANES, Turned};
+use super::hit_map::MAX_KERNEL;
+use super::tile::{CELL_BITS, Place};
+use super::window::Window;
+use crate::geometry::Pose;
 use crate::math;
 
 /// The parameters by which scans are matched to maps.
@@ -57,9 +60,9 @@ impl MatchRule {
 const NO_HIT: f64 = 0.5;
 /// The highest score of a beam.
 const FULL: u16 = u16::MAX;
-/// Beams between two tests of whether a pose can still win.
-const CHUNK: usize = 16;
-const TABLE: usize = 4096;
+/// Entries of the table that are looked at, and all of them: squared distances, shifted down, are below the second.
+const SCORED: usize = 4095;
+const TABLE: usize = 1 << 15;
 
 /// Scores and likelihoods of beams, as whole numbers.
 #[derive(Debug)]
@@ -72,30 +75,6 @@ pub(super) struct ScanMatcher {
     shift: u32,
     /// Squared distances (units) up to this are within the window.
     window: u32,
-}
-
-/// The beams of a scan as the search uses them, and memory that it needs.
-#[derive(Debug, Default)]
-pub(super) struct Beams {
-    /// Ends in the robot's frame (m).
-    ends: Vec<Point>,
-    /// ... turned to the current heading (units).
-    turned: Vec<Place>,
-    tried: Vec<Place>,
-    best: Vec<Place>,
-}
-
-impl Beams {
-    /// Replaces the beams by the `ends` of a scan, in the robot's frame (m).
-    pub(super) fn take(&mut self, ends: impl Iterator<Item = Point>) {
-        let ends: Vec<Point> = ends.collect();
-        self.ends.clear();
-        // Distant neighbours first, so that few beams show whether a pose can win. The sum is of whole numbers: no
-        // order changes it.
-        for first in 0..CHUNK {
-            self.ends.extend(ends.iter().skip(first).step_by(CHUNK));
-        }
-    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -124,8 +103,13 @@ impl Move {
         }
     }
 
-    fn turns(self) -> bool {
-        matches!(self, Self::TurnLeft | Self::TurnRight)
+    /// Returns the side to which it turns, if it does.
+    fn side(self) -> Option<usize> {
+        match self {
+            Self::TurnLeft => Some(0),
+            Self::TurnRight => Some(1),
+            _ => None,
+        }
     }
 
     /// Returns the pose after the move; x and y are the map's.
@@ -149,7 +133,7 @@ impl ScanMatcher {
         let scale = cell / resolution;
         let side = (rule.kernel.min(MAX_KERNEL) + 1) << CELL_BITS;
         let window = 2 * side * side;
-        let shift = (0..32).find(|shift| ((window >> shift) as usize) < TABLE - 1).unwrap_or(0);
+        let shift = (0..32).find(|shift| ((window >> shift) as usize) < SCORED).unwrap_or(0);
         let mut scores = Box::new([0; TABLE]);
         for (index, score) in (0_u32..).zip(scores.iter_mut()) {
             if index << shift <= window {
@@ -175,12 +159,16 @@ impl ScanMatcher {
 
     /// Finds the pose near `from` where the scan's score is highest, by hill climbing (steps in the module
     /// documentation), and whether the score there is high enough.
-    pub(super) fn climb(&self, map: &HitMap, beams: &mut Beams, from: Pose) -> (Pose, bool) {
-        let Beams { ends, turned, tried, best } = beams;
+    pub(super) fn climb(
+        &self,
+        window: &mut Window<'_>,
+        beams: &mut Beams,
+        from: Pose,
+    ) -> (Pose, bool) {
         // 1. The score at the start.
         let mut pose = from;
-        self.turn(ends, pose.heading, turned);
-        let mut score = self.score(map, turned, self.place(pose), None);
+        beams.turn(pose.heading, self.scale);
+        let mut score = self.score(window, &beams.here, self.place(pose), None);
         let (mut linear, mut angular) = (self.rule.linear_step, self.rule.angular_step);
         let (mut before, mut halved) = (None, 0);
         let mut came_by: Option<Move> = None;
@@ -201,23 +189,21 @@ impl ScanMatcher {
                     continue;
                 }
                 let there = step.from(start, linear, angular);
-                let rotated = if step.turns() {
-                    self.turn(ends, there.heading, tried);
-                    &*tried
-                } else {
-                    &*turned
+                let ends = match step.side() {
+                    Some(side) => {
+                        beams.turn_aside(side, there.heading, self.scale);
+                        &beams.aside[side]
+                    }
+                    None => &beams.here,
                 };
                 // 4. The best of the six so far becomes the pose.
-                let reached = self.score(map, rotated, self.place(there), Some(score));
+                let reached = self.score(window, ends, self.place(there), Some(score));
                 if reached > score {
                     (score, pose, found) = (reached, there, Some(step));
-                    if step.turns() {
-                        std::mem::swap(tried, best);
-                    }
                 }
             }
-            if found.is_some_and(Move::turns) {
-                std::mem::swap(turned, best);
+            if let Some(side) = found.and_then(Move::side) {
+                beams.adopt(side);
             }
             // 5. Go on until the finest steps bring no gain.
             came_by = found;
@@ -229,17 +215,25 @@ impl ScanMatcher {
     }
 
     /// Computes the log likelihood of the scan with the robot at `pose`.
-    pub(super) fn log_likelihood(&self, map: &HitMap, beams: &mut Beams, pose: Pose) -> f64 {
-        self.turn(&beams.ends, pose.heading, &mut beams.turned);
+    pub(super) fn log_likelihood(
+        &self,
+        window: &mut Window<'_>,
+        beams: &mut Beams,
+        pose: Pose,
+    ) -> f64 {
+        beams.turn(pose.heading, self.scale);
         let at = self.place(pose);
-        let (mut squares, mut missed) = (0_u64, 0_u32);
-        for end in &beams.turned {
-            let squared = map.squared_distance(end.plus(at));
-            if squared <= self.window {
-                squares += u64::from(squared);
-            } else {
-                missed += 1;
+        window.reach(&beams.here, at);
+        let (mut squares, mut missed, mut left) = (0_u64, 0_u32, beams.here.count());
+        for go in beams.here.goes() {
+            for squared in window.squared_distances(go, at).into_iter().take(left) {
+                if squared <= self.window {
+                    squares += u64::from(squared);
+                } else {
+                    missed += 1;
+                }
             }
+            left = left.saturating_sub(LANES);
         }
         #[expect(clippy::cast_precision_loss, reason = "far below 2^53")]
         let squared_metres = squares as f64 / (self.scale * self.scale);
@@ -250,31 +244,24 @@ impl ScanMatcher {
         Place::of(pose.position(), self.scale)
     }
 
-    /// Turns the `ends` to `heading`, in units.
-    fn turn(&self, ends: &[Point], heading: f64, turned: &mut Vec<Place>) {
-        let (sin, cos) = math::sin_cos(heading);
-        let turn = |end: &Point| {
-            let point = Point::new(cos * end.x - sin * end.y, sin * end.x + cos * end.y);
-            Place::of(point, self.scale)
-        };
-        turned.clear();
-        turned.extend(ends.iter().map(turn));
-    }
-
     /// Scores beams that end at `ends` from `at`. Where the score can no longer be above `floor`, returns something not
     /// above it.
-    fn score(&self, map: &HitMap, ends: &[Place], at: Place, floor: Option<u32>) -> u32 {
+    fn score(&self, window: &mut Window<'_>, ends: &Turned, at: Place, floor: Option<u32>) -> u32 {
+        window.reach(ends, at);
         let mut sum = 0;
-        let mut left =
-            u32::try_from(ends.len()).unwrap_or(u32::MAX).saturating_mul(u32::from(FULL));
-        for chunk in ends.chunks(CHUNK) {
-            for end in chunk {
-                let squared = map.squared_distance(end.plus(at));
-                let index = ((squared >> self.shift) as usize).min(TABLE - 1);
-                sum += u32::from(self.scores[index]);
+        let mut left = ends.count();
+        for go in ends.goes() {
+            let squares = window.squared_distances(go, at);
+            let score =
+                |squared: &u32| u32::from(self.scores[(squared >> self.shift) as usize % TABLE]);
+            if left >= LANES {
+                sum += squares.iter().map(score).sum::<u32>();
+            } else {
+                sum += squares[..left].iter().map(score).sum::<u32>();
             }
-            left -= u32::try_from(chunk.len()).unwrap_or(0) * u32::from(FULL);
-            if floor.is_some_and(|floor| sum + left <= floor) {
+            left = left.saturating_sub(LANES);
+            let most = u32::try_from(left).unwrap_or(u32::MAX).saturating_mul(FULL.into());
+            if floor.is_some_and(|floor| sum.saturating_add(most) <= floor) {
                 break;
             }
         }
@@ -285,6 +272,7 @@ impl ScanMatcher {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mapping::hit_map::HitMap;
     use crate::mapping::room;
     use proptest::prelude::*;
 
@@ -299,7 +287,9 @@ mod tests {
             let (x, y) = [(0.3, 0.1), (-1.0, 0.5), (1.0, -0.6)][i % 3];
             let place = Pose::new(x, y, [0.0, 1.6, 3.2, 4.8][i / 3]);
             let hits = room::ends(place);
-            map.register(hits.iter().map(|&hit| Place::of(place.transform(hit), matcher.scale())));
+            let places: Vec<_> =
+                hits.iter().map(|&hit| Place::of(place.transform(hit), matcher.scale())).collect();
+            map.register(&places);
         }
         let mut beams = Beams::default();
         beams.take(room::ends(pose).into_iter());
@@ -316,7 +306,7 @@ mod tests {
             let truth = Pose::new(x, y, heading);
             let (matcher, map, mut beams) = seen(truth);
             let from = Pose::new(x + dx, y + dy, heading + turn);
-            let (found, fits) = matcher.climb(&map, &mut beams, from);
+            let (found, fits) = matcher.climb(&mut Window::over(&map), &mut beams, from);
             prop_assert!(fits);
             // Within a cell: the map is of three scans that met the walls at different places.
             let off = found.position().distance(truth.position());
@@ -330,9 +320,10 @@ mod tests {
         ) {
             let (matcher, map, mut beams) = seen(Pose::default());
             let pose = Pose::new(dx, dy, turn);
-            matcher.turn(&beams.ends, pose.heading, &mut beams.turned);
-            let whole = matcher.score(&map, &beams.turned, matcher.place(pose), None);
-            let early = matcher.score(&map, &beams.turned, matcher.place(pose), Some(floor));
+            beams.turn(pose.heading, matcher.scale);
+            let window = &mut Window::over(&map);
+            let whole = matcher.score(window, &beams.here, matcher.place(pose), None);
+            let early = matcher.score(window, &beams.here, matcher.place(pose), Some(floor));
             let right = if whole > floor { early == whole } else { early <= floor };
             prop_assert!(right, "{early} of {whole}, floor {floor}");
         }
@@ -341,12 +332,13 @@ mod tests {
     #[test]
     fn the_score_is_the_sum_of_the_formula_and_a_poor_one_is_told() {
         let (matcher, map, mut beams) = seen(Pose::default());
-        matcher.turn(&beams.ends, 0.0, &mut beams.turned);
-        let score = matcher.score(&map, &beams.turned, matcher.place(Pose::default()), None);
-        let expected: f64 = beams
-            .turned
+        beams.turn(0.0, matcher.scale);
+        let window = &mut Window::over(&map);
+        let score = matcher.score(window, &beams.here, matcher.place(Pose::default()), None);
+        let ends = room::ends(Pose::default());
+        let expected: f64 = ends
             .iter()
-            .map(|&end| map.squared_distance(end))
+            .map(|&end| map.squared_distance(Place::of(end, matcher.scale)))
             .filter(|&squared| squared <= matcher.window)
             .map(|squared| {
                 math::exp(-f64::from(squared) / matcher.scale / matcher.scale / RULE.sigma)
@@ -356,8 +348,11 @@ mod tests {
         assert!((found / expected - 1.0).abs() < 1e-3, "{found}, expected {expected}");
         // No beam scores above 1: a bar of as many as there are is never passed.
         let strict = ScanMatcher::new(MatchRule { minimum_score: 180.0, ..RULE }, 0.05);
-        assert!(!strict.climb(&map, &mut beams, Pose::default()).1);
+        assert!(!strict.climb(&mut Window::over(&map), &mut beams, Pose::default()).1);
         let far = Pose::new(50.0, 0.0, 0.0);
-        assert_eq!(matcher.log_likelihood(&map, &mut beams, far), -(0.5 * 180.0) / 0.075);
+        assert_eq!(
+            matcher.log_likelihood(&mut Window::over(&map), &mut beams, far),
+            -(0.5 * 180.0) / 0.075
+        );
     }
 }
