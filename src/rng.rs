@@ -84,6 +84,27 @@ impl Stream {
         mantissa * (1.0 / 9_007_199_254_740_992.0)
     }
 
+    /// Draws for each of `events`, independent of one another, whether it happens: each does with `probability`, where
+    /// [`Stream::uniform`] would be below it.
+    pub fn events(&mut self, probability: f64, events: &mut [bool]) {
+        // A multiple of 2^-53 is below it exactly where the multiple is below this number, which has no fraction.
+        let limit = (probability * 9_007_199_254_740_992.0).ceil();
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "whole; what is below zero or no number is zero, and what is too large never reached"
+        )]
+        let limit = limit as u64;
+        let mut words = [0_u8; 256];
+        for events in events.chunks_mut(words.len() / 8) {
+            let words = &mut words[..8 * events.len()];
+            self.generator.fill_bytes(words);
+            for (event, word) in events.iter_mut().zip(words.as_chunks::<8>().0) {
+                *event = u64::from_le_bytes(*word) >> 11 < limit;
+            }
+        }
+    }
+
     /// Draws a number uniform in `low..high`.
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.uniform()
@@ -162,6 +183,25 @@ mod tests {
             eager.at(index).normal();
         }
         assert_eq!(lazy.at(7).normal().to_bits(), eager.at(7).normal().to_bits());
+    }
+
+    #[test]
+    fn events_are_those_that_uniform_numbers_are_below_of() {
+        let edge = seeds(0).stream("events").uniform();
+        let probabilities = [0.0, 1.0, 0.3, 1e-9, edge, edge.next_up(), edge.next_down()];
+        for probability in
+            probabilities.into_iter().chain([-1.0, 2.0, f64::NAN, 1.0f64.next_down()])
+        {
+            let (mut one, mut all) = (seeds(0).stream("events"), seeds(0).stream("events"));
+            // From within a block, and over the end of one.
+            for count in [1, 7, 40, 0, 300] {
+                let mut events = vec![true; count];
+                all.events(probability, &mut events);
+                let expected: Vec<bool> = (0..count).map(|_| one.uniform() < probability).collect();
+                assert_eq!(events, expected, "{count} of {probability}");
+            }
+            assert_eq!(one.bits(), all.bits());
+        }
     }
 
     /// Checks the pinned numbers: a change here changes every trial, so the engine version must be raised with it.

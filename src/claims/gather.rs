@@ -4,7 +4,7 @@ use super::cannot_test::CannotTest;
 use super::cells::Where;
 use super::context::Context;
 use super::metric::Metric;
-use super::observations::Observations;
+use super::observations::{Counted, Observations};
 use super::terms::{Censored, Sides, Terms};
 use super::verdict::{CellNumbers, EffectSize};
 use crate::rng::{Seeds, Stream};
@@ -59,11 +59,19 @@ pub(super) struct Evidence {
 #[derive(Debug, Clone)]
 pub(super) struct Group {
     pub(super) conditions: Vec<usize>,
-    /// One per run that counts; infinite for censored runs where they rank last.
+    /// Of measures, one per run that counts; infinite for censored runs where they rank last. Shares are counted instead.
     pub(super) values: Vec<f64>,
     /// For shares.
     pub(super) proportion: Option<Proportion>,
+    /// Of a share, number and mean alone.
     pub(super) summary: Summary,
+}
+
+impl Group {
+    /// Counts the runs that count.
+    pub(super) fn runs(&self) -> u64 {
+        self.proportion.map_or(self.values.len() as u64, |share| share.trials)
+    }
 }
 
 /// Cells gathered for one comparison.
@@ -134,32 +142,13 @@ impl Bench<'_> {
         metric: &Metric,
     ) -> (Group, CellNumbers, Option<CannotTest>) {
         let conditions = self.observations.select(cell);
-        let readings = self.observations.readings(&conditions, metric);
-        let trials = readings.values.len() as u64 + readings.failed;
-        let reached: Vec<f64> = readings.values.iter().flatten().copied().collect();
-        let summary = Summary::of(&reached);
-        let proportion = metric.is_share().then(|| {
-            let successes = reached.iter().filter(|&&x| x == 1.0).count() as u64;
-            Proportion::new(successes, reached.len() as u64)
-        });
-        let finite = |x: f64| x.is_finite().then_some(x);
-        let numbers = CellNumbers {
-            cell: cell.to_string(),
-            trials,
-            reached: reached.len() as u64,
-            successes: proportion.map(|p| p.successes),
-            mean: finite(summary.mean),
-            sd: finite(summary.sd).filter(|_| proportion.is_none()),
-            median: finite(median(&reached)).filter(|_| proportion.is_none()),
-            published: None,
-        };
-        let censored = readings.values.len() - reached.len();
-        let mut values = reached;
-        if self.terms.censored == Censored::Worst {
-            values.resize(values.len() + censored, f64::INFINITY);
-        }
-        let n = values.len() as u64;
-        let (failed, minimum, name) = (readings.failed, self.terms.minimum_runs, cell.to_string());
+        let (group, numbers, censored, failed) =
+            match self.observations.counted(&conditions, metric) {
+                Some(counted) => share(conditions, cell, counted),
+                None => self.measures(conditions, cell, metric),
+            };
+        let (trials, n) = (numbers.trials, group.runs());
+        let (minimum, name) = (self.terms.minimum_runs, numbers.cell.clone());
         let fault = if trials == 0 {
             Some(CannotTest::NoTrial(name))
         } else if failed > 0 {
@@ -172,7 +161,37 @@ impl Bench<'_> {
         } else {
             None
         };
-        (Group { conditions, values, proportion, summary }, numbers, fault)
+        (group, numbers, fault)
+    }
+
+    /// Returns the values of a measure in `conditions`, which are `cell`, with their numbers and how many runs are censored and
+    /// failed.
+    fn measures(
+        &self,
+        conditions: Vec<usize>,
+        cell: &Where,
+        metric: &Metric,
+    ) -> (Group, CellNumbers, usize, u64) {
+        let readings = self.observations.readings(&conditions, metric);
+        let reached: Vec<f64> = readings.values.iter().flatten().copied().collect();
+        let summary = Summary::of(&reached);
+        let numbers = CellNumbers {
+            cell: cell.to_string(),
+            trials: readings.values.len() as u64 + readings.failed,
+            reached: reached.len() as u64,
+            successes: None,
+            mean: finite(summary.mean),
+            sd: finite(summary.sd),
+            median: finite(median(&reached)),
+            published: None,
+        };
+        let censored = readings.values.len() - reached.len();
+        let mut values = reached;
+        if self.terms.censored == Censored::Worst {
+            values.resize(values.len() + censored, f64::INFINITY);
+        }
+        let group = Group { conditions, values, proportion: None, summary };
+        (group, numbers, censored, readings.failed)
     }
 
     /// Returns the confidence of the interval that says the same as the test.
@@ -188,6 +207,33 @@ impl Bench<'_> {
         let coordinates = vec![("claim".to_owned(), self.claim.to_owned())];
         Seeds::new(self.context.seed, coordinates).stream(&format!("claims/{about}"))
     }
+}
+
+/// Does what [`Bench::measures`] does for a share: it needs no list of zeros and ones.
+fn share(
+    conditions: Vec<usize>,
+    cell: &Where,
+    counted: Counted,
+) -> (Group, CellNumbers, usize, u64) {
+    let Counted { successes, reached, censored, failed } = counted;
+    let proportion = Proportion::new(successes, reached);
+    let numbers = CellNumbers {
+        cell: cell.to_string(),
+        trials: reached + censored + failed,
+        reached,
+        successes: Some(successes),
+        mean: finite(proportion.share()),
+        sd: None,
+        median: None,
+        published: None,
+    };
+    let summary = Summary { n: reached, mean: proportion.share(), sd: f64::NAN };
+    let group = Group { conditions, values: Vec::new(), proportion: Some(proportion), summary };
+    (group, numbers, usize::try_from(censored).unwrap_or(usize::MAX), failed)
+}
+
+fn finite(x: f64) -> Option<f64> {
+    x.is_finite().then_some(x)
 }
 
 /// Says where the share of runs that reached a measure differs between cells: the comparison is then one of

@@ -9,7 +9,7 @@ use super::claim::Claim;
 use super::context::Context;
 use super::judge::judge_observations;
 use super::metric::Metric;
-use super::observations::Observations;
+use super::observations::{MadeUp, Observations};
 use super::published::{PublishedCell, PublishedTableError, read, selection};
 use super::verdict::{Judgement, rounded};
 use crate::condition::Condition;
@@ -137,7 +137,7 @@ pub fn power(
     let planned = chance(trials);
     let mut ladder = Vec::new();
     for step in LADDER {
-        ladder.push(chance(step));
+        ladder.push(if step == trials { planned } else { chance(step) });
         if ladder.last().is_some_and(|c| c.decided() >= ENOUGH) {
             break;
         }
@@ -238,34 +238,26 @@ fn chance(
     replicates: u32,
 ) -> Chance {
     let factors: Vec<String> = conditions[0].iter().map(|(f, _)| f.clone()).collect();
+    let values =
+        truths.iter().map(|(i, _)| conditions[*i].iter().map(|(_, v)| v.clone()).collect());
+    // Made up anew for every study: only the readings differ.
+    let runs = usize::try_from(trials).unwrap_or(usize::MAX);
+    let mut study = Observations::simulated(factors, values, &claim.expect.metrics(), runs);
     let seeds = Seeds::new(context.seed, vec![("claim".to_owned(), claim.id.clone())]);
     let (mut supported, mut contradicted) = (0, 0);
     for replicate in 0..replicates {
         let mut stream = seeds.stream(&format!("claims/power/{trials}/{replicate}"));
-        let made_up = truths
-            .iter()
-            .map(|(i, truths)| {
-                let values = conditions[*i].iter().map(|(_, v)| v.clone()).collect();
-                let drawn = truths
-                    .iter()
-                    .map(|(name, truth)| {
-                        let share = Metric::named(name).is_share();
-                        let readings = (0..trials)
-                            .map(|_| {
-                                Some(if share {
-                                    f64::from(u8::from(stream.uniform() < truth.value))
-                                } else {
-                                    truth.value + truth.sd * stream.normal()
-                                })
-                            })
-                            .collect();
-                        (name.clone(), readings)
-                    })
-                    .collect();
-                (values, drawn)
-            })
-            .collect();
-        let study = Observations::simulated(factors.clone(), made_up, trials);
+        for (condition, (_, truths)) in study.conditions.iter_mut().zip(truths) {
+            for (name, truth) in truths {
+                match condition.made_up(name) {
+                    Some(MadeUp::Share(counts)) => stream.events(truth.value, counts),
+                    Some(MadeUp::Measure(values)) => {
+                        values.fill_with(|| Some(truth.value + truth.sd * stream.normal()))
+                    }
+                    None => {}
+                }
+            }
+        }
         match judge_observations(claim, &study, context).judgement {
             Judgement::Supported => supported += 1,
             Judgement::Contradicted => contradicted += 1,

@@ -1,7 +1,7 @@
 //! Proportions: k successes of n trials each.
 
 use super::distribution::{chi_square_sf, normal_quantile, normal_sf};
-use super::special::ln_choose;
+use super::special::{LnChoose, ln_choose};
 use super::{Interval, Tails, real};
 use crate::math::exp;
 
@@ -30,6 +30,9 @@ impl Proportion {
     }
 }
 
+/// A quarter of the distance from one to the next smaller number: added to one or more it is lost.
+const NOTHING: f64 = f64::EPSILON / 8.0;
+
 /// Computes Fisher's exact test of two proportions; "less" means that `a` has the lower share.
 ///
 /// The two-sided value sums all tables at most as probable as the one observed (Fisher 1935, as scipy and R do, with
@@ -38,11 +41,12 @@ pub fn fisher_exact(a: Proportion, b: Proportion) -> Tails {
     let successes = a.successes + b.successes;
     let all = a.trials + b.trials;
     let (first, last) = (successes.saturating_sub(b.trials), successes.min(a.trials));
-    let ln_probability = |k: u64| {
-        ln_choose(a.trials, k) + ln_choose(b.trials, successes - k) - ln_choose(all, successes)
-    };
+    let (mut of_a, mut of_b) = (LnChoose::of(a.trials), LnChoose::of(b.trials));
+    let of_all = ln_choose(all, successes);
+    let mut ln_probability = |k: u64| of_a.at(k) + of_b.at(successes - k) - of_all;
     let seen = ln_probability(a.successes);
     let (mut less, mut greater, mut two_sided) = (0.0, 0.0, 0.0);
+    let mut before = 0.0;
     for k in first..=last {
         // Relative to the table observed, so that far tails keep their digits.
         let ratio = if k == a.successes { 1.0 } else { exp(ln_probability(k) - seen) };
@@ -55,7 +59,15 @@ pub fn fisher_exact(a: Proportion, b: Proportion) -> Tails {
         if ratio <= 1.0 + 1e-7 {
             two_sided += ratio;
         }
+        // Beyond the most probable table each is less probable than the one before; both sums are one or more by now, and
+        // nothing so small changes them.
+        if k > a.successes && ratio < before && ratio < NOTHING {
+            break;
+        }
+        before = ratio;
     }
+    of_a.remember();
+    of_b.remember();
     let scale = exp(seen);
     Tails {
         less: (less * scale).min(1.0),

@@ -1,6 +1,7 @@
 //! Gamma and beta functions and their regularised incomplete forms.
 
 use crate::math::{exp, ln, ln_1p};
+use std::cell::RefCell;
 use std::f64::consts::PI;
 
 /// Coefficients B(2k) / (2k (2k - 1)) of Stirling's series (Abramowitz and Stegun 6.1.41).
@@ -78,6 +79,62 @@ pub fn ln_choose(n: u64, k: u64) -> f64 {
     }
     // C(n, k) = 1 / ((n + 1) B(k + 1, n - k + 1))
     -ln_beta(k + 1.0, n - k + 1.0) - ln_1p(n)
+}
+
+/// Most combinations of which the logarithms are remembered, and most rows of them: a few megabytes.
+const LONGEST_ROW: usize = 1 << 16;
+const MOST_ROWS: usize = 8;
+
+/// [`ln_choose`] of one `n` and every `k`, each computed when it is first asked for.
+///
+/// Sums over tables ask for the same logarithms for every table with the same margins, and studies that are made up have
+/// them in common by the hundred.
+#[derive(Debug)]
+pub(super) struct LnChoose {
+    n: u64,
+    /// By `k`; NaN where nobody asked yet. Empty where it would be too long.
+    known: Vec<f64>,
+}
+
+thread_local! {
+    /// Rows that were used, the last one at the end. What is in them depends on nothing but their `n`.
+    static ROWS: RefCell<Vec<LnChoose>> = const { RefCell::new(Vec::new()) };
+}
+
+impl LnChoose {
+    /// Returns the row of `n`, with what is remembered of it.
+    pub(super) fn of(n: u64) -> Self {
+        let remembered = ROWS.with_borrow_mut(|rows| {
+            rows.iter().position(|row| row.n == n).map(|place| rows.remove(place))
+        });
+        remembered.unwrap_or_else(|| {
+            let length = usize::try_from(n).ok().filter(|n| *n < LONGEST_ROW).map_or(0, |n| n + 1);
+            Self { n, known: vec![f64::NAN; length] }
+        })
+    }
+
+    /// Returns [`ln_choose`] of `k`, at most `n`.
+    pub(super) fn at(&mut self, k: u64) -> f64 {
+        let place = usize::try_from(k).ok().and_then(|k| self.known.get_mut(k));
+        let Some(known) = place else { return ln_choose(self.n, k) };
+        if known.is_nan() {
+            *known = ln_choose(self.n, k);
+        }
+        *known
+    }
+
+    /// Keeps it for whoever asks next.
+    pub(super) fn remember(self) {
+        if self.known.is_empty() {
+            return;
+        }
+        ROWS.with_borrow_mut(|rows| {
+            if rows.len() == MOST_ROWS {
+                rows.remove(0);
+            }
+            rows.push(self);
+        });
+    }
 }
 
 /// Computes the regularised lower and upper incomplete gamma functions (P, Q) for `a` > 0, `x` >= 0.
@@ -173,4 +230,28 @@ fn beta_fraction(a: f64, b: f64, x: f64, y: f64) -> f64 {
 /// Moves `x` away from zero: Lentz's method divides by its partial results, which may pass through it.
 fn away_from_zero(x: f64) -> f64 {
     if x.abs() < 1e-300 { 1e-300 } else { x }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn remembered_logarithms_are_those_that_are_computed() {
+        let long = LONGEST_ROW as u64;
+        for n in [0, 1, 7, 600, long - 1, long, 3 * long].into_iter().cycle().take(21) {
+            let mut row = LnChoose::of(n);
+            for k in [0, 1, n / 3, n / 2, n].into_iter().filter(|k| *k <= n) {
+                assert_eq!(row.at(k).to_bits(), ln_choose(n, k).to_bits(), "{k} of {n}");
+            }
+            row.remember();
+        }
+        // Two at a time, and more than are kept.
+        let (mut one, mut other) = (LnChoose::of(5), LnChoose::of(5));
+        assert_eq!(one.at(2), other.at(2));
+        one.remember();
+        other.remember();
+        (0..100).for_each(|n| LnChoose::of(n).remember());
+        assert_eq!(ROWS.with_borrow(Vec::len), MOST_ROWS);
+    }
 }

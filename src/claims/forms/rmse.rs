@@ -250,7 +250,7 @@ fn replicate_variance(pair: &Pair) -> Option<f64> {
     } else {
         pair.sd? * pair.sd?
     };
-    Some(variance * (1.0 / real(pair.n?) + 1.0 / length(&pair.ours.values)))
+    Some(variance * (1.0 / real(pair.n?) + 1.0 / real(pair.ours.runs())))
 }
 
 /// Returns whether our mean lies where the paper's spread and runs put 95 % of replicates.
