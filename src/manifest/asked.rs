@@ -8,7 +8,8 @@ use crate::condition::Condition;
 use crate::digest::MeaningDigest;
 use crate::studies::Expectations;
 use crate::studies::prior_map::{Parameters, SharedReference};
-use crate::studies::{ConditionAsWritten, Prior, Remark, Surroundings};
+use crate::studies::{ConditionAsWritten, Graph, Prior, Remark, Surroundings};
+use crate::world::topology::{TagScheme, Topology};
 use serde_json::{Value, json};
 use std::sync::Arc;
 
@@ -24,8 +25,8 @@ pub(super) struct Asked<'r, 'a> {
 
 impl ConditionAsWritten for Asked<'_, '_> {
     fn parameters(&self) -> Value {
-        let doc = self.resolver.doc;
-        doc.parameters.for_condition(doc.study, &|factor| self.condition.value(factor))
+        let Resolver { doc, groups, .. } = &*self.resolver;
+        doc.parameters.for_condition(groups, &|factor| self.condition.value(factor))
     }
 
     fn refuse_parameters(&mut self, reason: String) {
@@ -67,6 +68,17 @@ impl ConditionAsWritten for Asked<'_, '_> {
         let meanings: [&MeaningDigest; 2] = [robot_meaning, &world.meaning];
         let key = json!([meanings, start, parameters]).to_string();
         self.resolver.library.references.entry(key).or_default().clone()
+    }
+
+    fn graph(&mut self, scheme: &TagScheme) -> Option<Graph> {
+        let world = &self.parts.as_ref()?.world;
+        let key = format!("{} {scheme:?}", world.meaning);
+        let graphs = &mut self.resolver.library.graphs;
+        let read = || match Topology::read(&world.world.tags, scheme) {
+            Ok(graph) => Ok(Arc::new(graph)),
+            Err(faults) => Err(faults.into()),
+        };
+        Some(graphs.entry(key).or_insert_with(read).clone())
     }
 
     fn calibration(&mut self) -> Option<Expectations> {

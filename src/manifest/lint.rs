@@ -18,10 +18,12 @@ const ALIGNED_WITHIN: f64 = 0.3;
 /// The share of walls below which a prior is taken to lie elsewhere.
 const ALIGNED_SHARE: f64 = 0.5;
 
-/// Collects what is wrong or suspicious about one condition of whatever study.
-pub(super) fn check(setup: &Setup, faults: &mut Faults<'_>) {
+/// Collects what is wrong or suspicious about one condition of whatever study; about its start where that `is_new`.
+pub(super) fn check(setup: &Setup, is_new: bool, faults: &mut Faults<'_>) {
     scanner(setup.robot(), faults);
-    start(setup.world(), setup.robot(), setup.start(), faults);
+    if is_new {
+        start(setup.world(), setup.robot(), setup.start(), faults);
+    }
     units(&setup.parameters(), faults);
 }
 

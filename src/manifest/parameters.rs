@@ -59,15 +59,18 @@ impl ParametersDoc {
     /// Returns the parameters for one condition: wrapped values taken out by `value_of` (factor to its value).
     pub(super) fn for_condition<'c>(
         &self,
-        kind: StudyKind,
+        groups: &Groups,
         value_of: &dyn Fn(&str) -> Option<&'c str>,
     ) -> Value {
-        Value::Object(unwrap_all(&self.0, &groups(kind), value_of))
+        Value::Object(unwrap_all(&self.0, groups, value_of))
     }
 }
 
-/// Returns the parameters' tree of groups: what is an object in the defaults is a group, the rest are values.
-fn groups(kind: StudyKind) -> Map<String, Value> {
+/// The parameters' tree of groups: what is an object is a group, the rest are values.
+pub(super) type Groups = Map<String, Value>;
+
+/// Returns the groups of a study: its defaults.
+pub(super) fn groups(kind: StudyKind) -> Groups {
     match kind.defaults() {
         Value::Object(groups) => groups,
         _ => Map::new(),
@@ -92,7 +95,7 @@ fn wrap<'a>(value: &'a Value, pointer: &str) -> Option<Wrapped<'a>> {
 
 fn collect<'a>(
     written: &'a Map<String, Value>,
-    groups: &Map<String, Value>,
+    groups: &Groups,
     pointer: &str,
     found: &mut Vec<Wrapped<'a>>,
 ) {
@@ -109,7 +112,7 @@ fn collect<'a>(
 
 fn unwrap_all<'c>(
     written: &Map<String, Value>,
-    groups: &Map<String, Value>,
+    groups: &Groups,
     value_of: &dyn Fn(&str) -> Option<&'c str>,
 ) -> Map<String, Value> {
     let mut plain = Map::new();
@@ -240,7 +243,7 @@ mod tests {
         let pointers: Vec<_> = doc.wrapped(kind).iter().map(|w| w.pointer.clone()).collect();
         assert_eq!(pointers, ["/parameters/mapping/resolution-m", "/parameters/sensing/range-m"]);
         let level = |factor: &str| (factor == "environment").then_some("office");
-        let parameters = doc.for_condition(kind, &level);
+        let parameters = doc.for_condition(&groups(kind), &level);
         let parameters: Parameters = serde_json::from_value(parameters).unwrap();
         assert_eq!(parameters.sensing.range_m, Some(30.0));
         assert_eq!(parameters.sensing.range_noise_sd_m, Some(0.1));

@@ -9,7 +9,7 @@ use super::input::InputKind;
 use super::knowledge::Knowledge;
 use super::library::{Inputs, Library, normalised};
 use super::names::{is_kebab, kebab};
-use super::parameters::WrappedValue;
+use super::parameters::{WrappedValue, groups};
 use super::parts::Parts;
 use super::requests::{self, Requests};
 use super::resolver::Resolver;
@@ -69,6 +69,8 @@ pub fn resolve(
         library,
         factors: Vec::new(),
         aligned: BTreeSet::new(),
+        started: BTreeSet::new(),
+        groups: groups(doc.study),
         calibration_run: None,
     };
     let mut experiment = resolver.run(overrides);
@@ -227,7 +229,11 @@ impl Resolver<'_> {
         let setup = doc.study.setup(&mut asked)?;
         let Asked { parts, knowledge, .. } = asked;
         let Parts { robot_meaning, robot_file, world, .. } = parts?;
-        lint::check(&setup, &mut self.faults);
+        let start = setup.start();
+        let start = [start.x, start.y, start.heading].map(f64::to_bits);
+        // Conditions share starts; a look at one is enough.
+        let is_new = self.started.insert((robot_meaning, world.meaning, start));
+        lint::check(&setup, is_new, &mut self.faults);
         let meanings = Meanings {
             robot: robot_meaning,
             world: world.meaning,

@@ -6,6 +6,7 @@ use super::experiment::CalibrationRun;
 use super::faults::{Faults, step};
 use super::input::{InputKind, WrittenIn};
 use super::library::{Library, Made, Unread, joined, normalised, relative_to};
+use super::parameters::Groups;
 use crate::condition::Condition;
 use crate::digest::MeaningDigest;
 use crate::document::{Diagnostic, Source};
@@ -23,6 +24,10 @@ pub(super) struct Resolver<'a> {
     pub(super) factors: Vec<Factor>,
     /// Pairs of world and prior that have been held against each other.
     pub(super) aligned: BTreeSet<(MeaningDigest, MeaningDigest, String)>,
+    /// Robots, worlds and starts (bits of x, y and heading) that have been looked at.
+    pub(super) started: BTreeSet<(MeaningDigest, MeaningDigest, [u64; 3])>,
+    /// The groups that the study's parameters are in.
+    pub(super) groups: Groups,
     /// The experiment that measured what planners expect, once it was asked for.
     pub(super) calibration_run: Option<Arc<CalibrationRun>>,
 }

@@ -43,7 +43,8 @@ pub use record::{
 };
 pub use requests::{FigureLayout, FigureRequest, TableLayout, TableRequest, coverage_tables};
 pub use study::{
-    ConditionAsWritten, Prior, Remark, Setup, Stopwatch, Study, StudyKind, StudySetup, Surroundings,
+    ConditionAsWritten, Graph, Prior, Remark, Setup, Stopwatch, Study, StudyKind, StudySetup,
+    Surroundings,
 };
 
 use crate::condition::Condition;

@@ -12,6 +12,7 @@ use crate::grid::OccupancyGrid;
 use crate::robot::Robot;
 use crate::table::Column;
 use crate::world::World;
+use crate::world::topology::{TagFault, TagScheme, Topology};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{DeserializeOwned, Error};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -101,6 +102,9 @@ pub enum Prior {
     TopoMetric(Arc<TopoMetricMap>),
 }
 
+/// The graph of a world, or what is wrong with its tags.
+pub type Graph = Result<Arc<Topology>, Arc<[TagFault]>>;
+
 /// A condition as the manifest has it. What cannot be had is told by whoever is asked, and is then `None`.
 pub trait ConditionAsWritten {
     /// Returns what the manifest writes as the study's parameters, for this condition.
@@ -118,6 +122,9 @@ pub trait ConditionAsWritten {
     /// Returns what coverage is measured against together with every other condition of these `parameters`, robot, world and
     /// start.
     fn reference(&mut self, parameters: &Value) -> SharedReference;
+
+    /// Returns the graph that the world's tags make by `scheme`: the same for every condition in that world.
+    fn graph(&mut self, scheme: &TagScheme) -> Option<Graph>;
 
     /// Returns what follows from what the manifest's `calibration` measured.
     fn calibration(&mut self) -> Option<Expectations>;

@@ -6,7 +6,7 @@
 mod write;
 
 use super::{Body, Region, RegionKind, Solid, Tag, World};
-use crate::document::{self, Diagnostic, Parsed, Source, suggestion};
+use crate::document::{self, Diagnostic, Source, suggestion};
 use crate::geometry::{Outline, Point, Pose};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -182,9 +182,31 @@ const MAX_DISTANCE: f64 = 1e4;
 /// Every fault of the document, including layers asked for that it does not have.
 pub fn read(source: &Source, layers: Option<&[String]>) -> Result<World, Vec<Diagnostic>> {
     let parsed = document::parse::<WorldDoc>(source)?;
+    let doc = &parsed.value;
+    let unknown = |asked: &str| {
+        let known: Vec<&str> = doc.layers.keys().map(String::as_str).collect();
+        let fault = parsed
+            .key_fault("/layers", format!("world `{}` has no layer `{asked}`", doc.name))
+            .label(format!("the layers are {}", known.join(", ")));
+        match suggestion(asked, known) {
+            Some(near) => fault.help(format!("did you mean `{near}`?")),
+            None => fault,
+        }
+    };
     let mut reader =
         Reader { fault_at: &|at, message| parsed.fault(at, message), faults: Vec::new() };
-    let world = reader.world(&parsed, layers);
+    let world = reader.world(doc, layers, &unknown);
+    if reader.faults.is_empty() { Ok(world) } else { Err(reader.faults) }
+}
+
+/// Makes the world, with every layer, that `doc` describes: the one that is read where it is written.
+///
+/// # Errors
+/// Every fault of the document; none has a place.
+pub fn build(doc: &WorldDoc) -> Result<World, Vec<Diagnostic>> {
+    let placeless = |at: &str, message: &str| Diagnostic::placeless(format!("{at}: {message}"));
+    let mut reader = Reader { fault_at: &placeless, faults: Vec::new() };
+    let world = reader.world(doc, None, &|asked| placeless("/layers", asked));
     if reader.faults.is_empty() { Ok(world) } else { Err(reader.faults) }
 }
 
@@ -210,18 +232,15 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    fn world(&mut self, parsed: &Parsed<WorldDoc>, layers: Option<&[String]>) -> World {
-        let doc = &parsed.value;
+    fn world(
+        &mut self,
+        doc: &WorldDoc,
+        layers: Option<&[String]>,
+        unknown_layer: &dyn Fn(&str) -> Diagnostic,
+    ) -> World {
         self.expect(doc.reenact_world == 1, "/reenact-world", "unknown format version", "1");
         for asked in layers.unwrap_or(&[]).iter().filter(|name| !doc.layers.contains_key(*name)) {
-            let known: Vec<&str> = doc.layers.keys().map(String::as_str).collect();
-            let mut fault = parsed
-                .key_fault("/layers", format!("world `{}` has no layer `{asked}`", doc.name))
-                .label(format!("the layers are {}", known.join(", ")));
-            if let Some(near) = suggestion(asked, known) {
-                fault = fault.help(format!("did you mean `{near}`?"));
-            }
-            self.faults.push(fault);
+            self.faults.push(unknown_layer(asked));
         }
         let mut solids = Vec::new();
         for (name, layer) in &doc.layers {

@@ -263,6 +263,9 @@ impl Reader<'_> {
             let at = tag.pose.position();
             let least = 2.0 * self.scheme.grouping;
             for other in &self.vertices {
+                if !within(other.at - at, least) {
+                    continue;
+                }
                 let distance = other.at.distance(at);
                 if distance < least {
                     let tags = [other.tag.clone(), tag.id.clone()];
@@ -279,6 +282,7 @@ impl Reader<'_> {
         let at = tag.pose.position();
         let distance = |number: &usize| self.vertices[*number].at.distance(at);
         let nearest = (0..self.vertices.len())
+            .filter(|number| within(self.vertices[*number].at - at, self.scheme.grouping))
             .min_by(|a, b| distance(a).total_cmp(&distance(b)))
             .filter(|number| distance(number) <= self.scheme.grouping);
         if nearest.is_none() {
@@ -336,19 +340,23 @@ impl Reader<'_> {
             return;
         }
         self.ways.sort_by_key(|way| (way.vertex, way.direction));
-        for way in &self.ways {
+        // Each is asked for twice: from its own end and from the other.
+        let ends: Vec<Option<usize>> =
+            self.ways.iter().map(|way| self.other_end(way.vertex, way.direction)).collect();
+        for (way, end) in self.ways.iter().zip(&ends) {
             let (tag, direction) = (way.tag.clone(), way.direction);
-            let Some(to) = self.other_end(way.vertex, direction) else {
+            let Some(to) = *end else {
                 self.faults.push(TagFault::Nowhere { tag, direction });
                 continue;
             };
             let back = direction.opposite();
             let vertex = self.vertices[to].tag.clone();
-            let found = self.ways.iter().find(|w| w.vertex == to && w.direction == back);
-            let Some(found) = found.filter(|_| self.other_end(to, back) == Some(way.vertex)) else {
+            let found = self.ways.binary_search_by_key(&(to, back), |w| (w.vertex, w.direction));
+            let Some(found) = found.ok().filter(|found| ends[*found] == Some(way.vertex)) else {
                 self.faults.push(TagFault::NoWayBack { tag, vertex, direction, back });
                 continue;
             };
+            let found = &self.ways[found];
             if found.opening != way.opening {
                 // Reported once, by the exit east or north.
                 if matches!(direction, Cardinal::East | Cardinal::North) {
@@ -382,6 +390,11 @@ impl Reader<'_> {
             }
         }
     }
+}
+
+/// Returns whether `off` may be as short as `distance` (m): told without a root, for nearly nothing is near.
+fn within(off: Point, distance: f64) -> bool {
+    off.x.abs() <= distance && off.y.abs() <= distance
 }
 
 /// Returns the vector of one metre in `direction`.

@@ -17,8 +17,8 @@ use super::pinned::PinnedDoc;
 use crate::digest::{MeaningDigest, Sha256Digest};
 use crate::grid::OccupancyGrid;
 use crate::robot::Robot;
-use crate::studies::Expectations;
 use crate::studies::prior_map::SharedReference;
+use crate::studies::{Expectations, Graph};
 use crate::world::World;
 use files::InputFiles;
 use pins::Pins;
@@ -39,6 +39,8 @@ pub(super) struct Library<'a> {
     pub(super) worlds: Made<Known<World>>,
     /// Prior maps.
     pub(super) grids: Made<Known<OccupancyGrid>>,
+    /// Graphs of worlds.
+    pub(super) graphs: Made<Graph>,
     /// What coverage is measured against.
     pub(super) references: Made<SharedReference>,
     /// What planners expect; `None` where it could not be had, which has been told.
@@ -74,6 +76,7 @@ impl<'a> Library<'a> {
             robots: Made::new(),
             worlds: Made::new(),
             grids: Made::new(),
+            graphs: Made::new(),
             references: Made::new(),
             calibrations: Made::new(),
         }

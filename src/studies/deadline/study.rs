@@ -90,7 +90,8 @@ impl Study for Deadline {
             None => None,
         };
         let setup = Setup::new(around.world, around.robot, around.start, calibration, parameters);
-        for remark in lints::remarks(&setup) {
+        let graph = condition.graph(&mission::tag_scheme(&setup))?;
+        for remark in lints::remarks(&setup, graph.as_deref().map_err(|faults| &**faults)) {
             condition.tell(remark);
         }
         Some(AnySetup::new(setup))

@@ -1,4 +1,5 @@
 use super::*;
+use crate::document::Source;
 use crate::geometry::{Cardinal, Outline, Point};
 use crate::world::topology::Vertex;
 use std::collections::BTreeSet;
@@ -160,12 +161,14 @@ fn buildings_are_pinned() {
 
 #[test]
 fn a_building_is_written_and_read_again() {
-    let doc = document(Family::OfficeFloor, 7).unwrap();
-    let text = doc.to_yaml();
-    assert!(text.starts_with("reenact-world: 1\nname: office-floor-7\nsource: "), "{text}");
-    let world = document::read(&Source::new("b.yaml", text), None).unwrap();
-    assert_eq!(world, generate(Family::OfficeFloor, 7).unwrap());
-    assert_ne!(world.meaning(), generate(Family::OfficeFloor, 8).unwrap().meaning());
+    for seed in (0..8).chain([u64::MAX]) {
+        let text = document(Family::OfficeFloor, seed).unwrap().to_yaml();
+        let begin = format!("reenact-world: 1\nname: office-floor-{seed}\nsource: ");
+        assert!(text.starts_with(&begin), "{text}");
+        let world = document::read(&Source::new("b.yaml", text), None).unwrap();
+        assert_eq!(world, generate(Family::OfficeFloor, seed).unwrap());
+        assert_ne!(world.meaning(), generate(Family::OfficeFloor, seed ^ 8).unwrap().meaning());
+    }
 }
 
 #[test]

@@ -1,11 +1,14 @@
 //! Requirements of a condition of this study on its robot and world that these may not meet.
 
-use super::{Setup, tag_scheme};
+use super::Setup;
 use crate::studies::Remark;
-use crate::world::topology::Topology;
+use crate::world::topology::{TagFault, Topology};
 
-/// Returns the faults found.
-pub(in crate::studies::deadline) fn remarks(setup: &Setup) -> Vec<Remark> {
+/// Returns the faults found; `graph` is what the world's tags make by the setup's scheme, or the faults of these.
+pub(in crate::studies::deadline) fn remarks(
+    setup: &Setup,
+    graph: Result<&Topology, &[TagFault]>,
+) -> Vec<Remark> {
     let robot = &setup.robot;
     let mut remarks = Vec::new();
     for (there, what) in
@@ -20,8 +23,8 @@ pub(in crate::studies::deadline) fn remarks(setup: &Setup) -> Vec<Remark> {
             });
         }
     }
-    match Topology::read(&setup.world.tags, &tag_scheme(setup)) {
-        Err(problems) => remarks.extend(problems.into_iter().map(|problem| Remark {
+    match graph {
+        Err(problems) => remarks.extend(problems.iter().map(|problem| Remark {
             pointer: "/world",
             message: problem.to_string(),
             label: "the tags make no graph".to_owned(),
