@@ -8,7 +8,6 @@ use crate::math;
 pub(super) const LANES: usize = 16;
 /// Beams between two neighbours of a scan that are looked at one after the other.
 const SPREAD: usize = 16;
-/// Classes by which beams are put in order.
 
 /// Points (m), coordinate by coordinate.
 #[derive(Debug, Default)]

@@ -193,24 +193,27 @@ impl<const WIDTH: usize> Seen<WIDTH> {
 
     /// Returns the mean `now` and `before` (steps along x from the first quarter's corner) as seen from the first `side`
     /// quarters.
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "at most 3 cells of 32 steps, or its square"
-    )]
+    #[expect(clippy::cast_possible_truncation, clippy::cast_possible_wrap, reason = "few steps")]
+    #[inline]
     pub(super) fn new(side: usize, now: i32, before: Option<i32>) -> Self {
-        let byte = |v: i32| u16::from((v as i8).cast_unsigned());
         let mut seen = Self {
             x: [0; WIDTH],
             x_squared: [Self::BEYOND; WIDTH],
             x_before: [Self::NOWHERE; WIDTH],
         };
-        for (i, corner) in (0..side).zip((0..).step_by(QUARTER_STEPS as usize)) {
-            seen.x[i] = byte(now - corner);
+        // Computed for all quarters alike, and so for several at once.
+        let (now, had) = (now as i16, before.is_some());
+        let before = before.unwrap_or(0) as i16;
+        for i in 0..WIDTH {
+            let corner = i as i16 * QUARTER_STEPS as i16;
+            // Cut where the square is beyond all.
+            let across = (now - corner - QUARTER_STEPS as i16 / 2).clamp(-153, 153);
+            let is_told = i < side;
+            seen.x[i] = (now - corner).cast_unsigned() & 0xff;
             seen.x_squared[i] =
-                (now - corner - QUARTER_STEPS / 2).pow(2).min(Self::BEYOND.into()) as i16;
-            if let Some(before) = before {
-                seen.x_before[i] = byte(before - corner);
-            }
+                if is_told { (across * across).min(Self::BEYOND) } else { Self::BEYOND };
+            let byte = (before - corner).cast_unsigned() & 0xff;
+            seen.x_before[i] = if is_told & had { byte } else { Self::NOWHERE };
         }
         seen
     }
