@@ -169,7 +169,7 @@ fn simulator(
         camera: None,
         compass: None,
         start: place,
-        stepping: Stepping::Always,
+        stepping: Stepping::Near,
         drive_noise: DriveNoise::NONE,
         odometry_noise: OdometryNoise::NONE,
     };

@@ -62,7 +62,7 @@ fn selections(spec: &TrialSpec) -> (Vec<f64>, Vec<f64>) {
             camera: None,
             compass: None,
             start: setup.start,
-            stepping: Stepping::Always,
+            stepping: Stepping::Near,
             drive_noise: DriveNoise::NONE,
             odometry_noise: OdometryNoise::NONE,
         },

@@ -34,7 +34,7 @@ fn circle(bencher: divan::Bencher<'_, '_>, reads_scans: bool) {
             camera: None,
             compass: None,
             start: setup.start(),
-            stepping: Stepping::Always,
+            stepping: Stepping::Near,
             drive_noise: DriveNoise::NONE,
             odometry_noise: OdometryNoise { distance: 0.0, heading: 0.0 },
         };

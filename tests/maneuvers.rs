@@ -106,7 +106,7 @@ impl Drive {
         self.sim.read_detections(&mut self.detections);
         let compass = self.sim.read_compass().unwrap();
         // 2. What an IDS would make of the detections.
-        let seen = self.detections.iter().find(|detection| detection.id == target);
+        let seen = self.detections.iter().find(|detection| &*detection.id == target);
         let target = seen.map(|detection| detection.pose.position());
         if target.is_some_and(|target| target.x > 0.0 && target.norm() < 0.4) {
             return Some(End::Arrived);
@@ -323,7 +323,7 @@ fn looking_around_shows_every_tag_around_and_ends_where_it_began() {
     while !drive.pilot.is_standing() {
         assert!(drive.sim.now().seconds().get() < 30.0, "no end");
         assert_eq!(drive.step("none"), None);
-        seen.extend(drive.detections.iter().map(|detection| detection.id.clone()));
+        seen.extend(drive.detections.iter().map(|detection| detection.id.to_string()));
     }
     assert_eq!(seen.len(), place.tags.len(), "{seen:?}");
     let turned = drive.sim.turned() - 2.0 * PI;

@@ -15,10 +15,15 @@ impl Inputs for Files {
 
 /// All trials of the manifest `name`.
 pub(crate) fn plan(name: &str) -> Plan {
+    plan_with(name, &[])
+}
+
+/// All trials of the manifest `name` after `assignments`, as `--set` takes them.
+pub(crate) fn plan_with(name: &str, assignments: &[String]) -> Plan {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("manifests");
     let text = std::fs::read_to_string(folder.join(name)).expect("it is shipped");
     let source = reenact::document::Source::new(name, text);
-    let (experiment, _) = manifest::resolve(&source, &[], &Files(folder))
+    let (experiment, _) = manifest::resolve(&source, assignments, &Files(folder))
         .unwrap_or_else(|faults| panic!("{name} has {} faults", faults.len()));
     Plan::of(experiment)
 }

@@ -252,7 +252,7 @@ fn chance(
                 match condition.made_up(name) {
                     Some(MadeUp::Share(counts)) => stream.events(truth.value, counts),
                     Some(MadeUp::Measure(values)) => {
-                        values.fill_with(|| Some(truth.value + truth.sd * stream.normal()))
+                        values.fill_with(|| Some(truth.value + truth.sd * stream.normal()));
                     }
                     None => {}
                 }

@@ -1,8 +1,7 @@
 //! The ends of a scan's beams.
 
 use crate::geometry::{Point, Pose};
-use crate::math;
-use crate::robot::Scan;
+use crate::robot::{BeamDirections, Scan};
 
 /// The beams of one scan that carry information, cut to the usable range.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,17 +15,13 @@ pub(super) struct BeamEnds {
 impl BeamEnds {
     /// Returns the beams of `scan`, cut to `clip_range` m. Beams without a return are left out: they carry no
     /// information (prior-map facts, section 4).
-    pub(super) fn of(scan: &Scan, clip_range: f64) -> Self {
-        let end = |(i, &range): (usize, &f64)| {
-            if !range.is_finite() {
-                return None;
-            }
-            let cut = range.min(clip_range);
-            let angle = scan.angle(i);
-            let local = Point::new(cut * math::cos(angle), cut * math::sin(angle));
-            Some((local, range < clip_range))
+    pub(super) fn of(scan: &Scan, clip_range: f64, directions: &mut BeamDirections) -> Self {
+        let end = |(direction, &range): (&Point, &f64)| {
+            let local = *direction * range.min(clip_range);
+            range.is_finite().then_some((local, range < clip_range))
         };
-        Self { mount: scan.mount, ends: scan.ranges.iter().enumerate().filter_map(end).collect() }
+        let beams = directions.of(scan).iter().zip(&scan.ranges);
+        Self { mount: scan.mount, ends: beams.filter_map(end).collect() }
     }
 
     /// Returns the points where something was hit, in the robot's frame (m), every `every`th of them.

@@ -162,17 +162,22 @@ impl HitMap {
                 let quarters = |tile: i32, corner: i32| {
                     let low = corner.max(tile << SIDE_BITS) - corner;
                     let high = ((tile + 1) << SIDE_BITS).min(corner + side) - corner;
-                    low as usize..high as usize
+                    #[expect(clippy::cast_sign_loss, reason = "both are within the square")]
+                    let within = low as usize..high as usize;
+                    within
                 };
                 let (columns, lines) = (quarters(tile_x, corner[0]), quarters(tile_y, corner[1]));
                 let differs = |j: usize| rows[j][columns.clone()] != held[j][columns.clone()];
                 if lines.clone().any(differs) {
                     let tile = self.tile_mut([tile_x, tile_y]);
                     for j in lines {
-                        let start = quarter_in_tile([
-                            corner[0] + columns.start as i32,
-                            corner[1] + j as i32,
-                        ]);
+                        #[expect(
+                            clippy::cast_possible_truncation,
+                            clippy::cast_possible_wrap,
+                            reason = "few quarters"
+                        )]
+                        let (column, line) = (columns.start as i32, j as i32);
+                        let start = quarter_in_tile([corner[0] + column, corner[1] + line]);
                         tile.nearest[start..][..columns.len()]
                             .copy_from_slice(&rows[j][columns.clone()]);
                     }

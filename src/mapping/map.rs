@@ -3,7 +3,7 @@
 use super::beam_ends::BeamEnds;
 use crate::geometry::{Bounds, Point, Pose};
 use crate::grid::{Cell, Grid, GridFrame, Occupancy, OccupancyGrid, Walk};
-use crate::robot::Scan;
+use crate::robot::{BeamDirections, Scan};
 
 /// The rule by which a scan is taken into the map.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,16 +48,21 @@ pub struct OccupancyMap {
     /// Memory for the ends of a scan's beams.
     ends: Vec<(Point, bool)>,
     lines: Vec<Line>,
+    directions: BeamDirections,
 }
 
 /// The beams of a scan that end in one cell, in the same way: they cross the same cells.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy)]
 struct Line {
     /// The grid's index of the cell they end in.
     to: usize,
     is_hit: bool,
     beams: u16,
 }
+
+/// How many lines are remembered while others are sought that end in the same cell: with noise, neighbouring beams end in a
+/// handful of cells.
+const LATELY: usize = 64;
 
 /// Cells added beyond what is needed when the map grows, so that it grows seldom.
 const MARGIN: i32 = 32;
@@ -76,6 +81,7 @@ impl OccupancyMap {
             flipped: Vec::new(),
             ends: Vec::new(),
             lines: Vec::new(),
+            directions: BeamDirections::default(),
         }
     }
 
@@ -105,7 +111,8 @@ impl OccupancyMap {
     /// visited, and the end is hit unless the beam was cut (prior-map facts, section 4).
     pub fn integrate(&mut self, pose: Pose, scan: &Scan) -> &[Change] {
         self.changes.clear();
-        self.add(pose, &BeamEnds::of(scan, self.rule.clip_range));
+        let beams = BeamEnds::of(scan, self.rule.clip_range, &mut self.directions);
+        self.add(pose, &beams);
         self.tell()
     }
 
@@ -169,22 +176,25 @@ impl OccupancyMap {
         self.ends.iter().fold(start, |bounds, end| bounds.including(end.0))
     }
 
-    /// Returns the cell of the `sensor`, and the lines from there to the ends last placed: each once, since neighbouring
-    /// beams often end in one cell. Counts add up, so their order does not matter.
+    /// Returns the cell of the `sensor`, and the lines from there to the ends last placed: those of neighbouring beams that
+    /// end in one cell as one. Counts add up, so it does not matter which are found.
     fn lines(&mut self, sensor: Point) -> (Cell, Vec<Line>) {
         let frame = *self.grid.frame();
         let mut lines = std::mem::take(&mut self.lines);
         lines.clear();
-        let line = |&(end, is_hit): &(Point, bool)| {
-            Some(Line { to: frame.index(frame.cell_at(end))?, is_hit, beams: 1 })
-        };
-        lines.extend(self.ends.iter().filter_map(line));
-        lines.sort_unstable();
-        lines.dedup_by(|next, kept| {
-            let is_same = next.to == kept.to && next.is_hit == kept.is_hit;
-            kept.beams = kept.beams.saturating_add(if is_same { next.beams } else { 0 });
-            is_same
-        });
+        let mut lately = [usize::MAX; LATELY];
+        for &(end, is_hit) in &self.ends {
+            let Some(to) = frame.index(frame.cell_at(end)) else { continue };
+            // The line that ended in this cell, or in one that shares the place, last.
+            let place = &mut lately[(2 * to + usize::from(is_hit)) % LATELY];
+            match lines.get_mut(*place) {
+                Some(line) if (line.to, line.is_hit) == (to, is_hit) => line.beams += 1,
+                _ => {
+                    *place = lines.len();
+                    lines.push(Line { to, is_hit, beams: 1 });
+                }
+            }
+        }
         (frame.cell_at(sensor), lines)
     }
 
@@ -406,7 +416,7 @@ mod tests {
             back: bool,
         ) {
             let scan = scan(ranges);
-            let beams = BeamEnds::of(&scan, RULE.clip_range);
+            let beams = BeamEnds::of(&scan, RULE.clip_range, &mut BeamDirections::default());
             let mut map = OccupancyMap::new(RULE);
             for &(x, y, heading) in &poses {
                 map.add(Pose::new(x, y, heading), &beams);

@@ -7,7 +7,7 @@ use super::trajectories::NodeId;
 use super::{Change, OccupancyMap, ScanRule};
 use crate::geometry::Pose;
 use crate::rng::Stream;
-use crate::robot::Scan;
+use crate::robot::{BeamDirections, Scan};
 
 /// Builds a map from the scans at keyframes, with the poses of odometry where the filter's rule trusts it, and else with those
 /// of the best particle.
@@ -31,6 +31,7 @@ struct Slam {
     scans: Vec<BeamEnds>,
     /// The end of the trajectory that the map shows.
     shown: Option<NodeId>,
+    directions: BeamDirections,
 }
 
 impl Mapper {
@@ -47,6 +48,7 @@ impl Mapper {
             odometry: Pose::default(),
             scans: Vec::new(),
             shown: None,
+            directions: BeamDirections::default(),
         });
         let map = OccupancyMap::new(scan_rule);
         Self { keyframes: Keyframes::new(keyframes), rule: scan_rule, map, slam }
@@ -101,7 +103,7 @@ impl Mapper {
     pub fn integrate(&mut self, odometry: Pose, scan: &Scan) -> &[Change] {
         self.keyframes.taken(odometry);
         let Some(slam) = &mut self.slam else { return self.map.integrate(odometry, scan) };
-        let beams = BeamEnds::of(scan, self.rule.clip_range);
+        let beams = BeamEnds::of(scan, self.rule.clip_range, &mut slam.directions);
         if slam.shown.is_none() {
             slam.filter.begin(odometry, &beams);
         } else {
@@ -157,7 +159,7 @@ mod tests {
         (0..300)
             .map(|_| {
                 let step = Pose::new(0.05, 0.0, 0.05);
-                let (along, around) = drift.normal_pair();
+                let (along, around) = (drift.normal(), drift.normal());
                 truth = truth.compose(step);
                 odometry = odometry.compose(Pose::new(
                     step.x + 0.006 * along,

@@ -31,8 +31,7 @@ impl MotionNoise {
     /// Draws the pose of a particle at `pose` after odometry reads `increment` (in the robot's frame).
     pub(super) fn draw(&self, pose: Pose, increment: Pose, stream: &mut Stream) -> Pose {
         let (dx, dy, turn) = (increment.x.abs(), increment.y.abs(), increment.heading.abs());
-        let (along, across) = stream.normal_pair();
-        let around = stream.normal();
+        let (along, across, around) = (stream.normal(), stream.normal(), stream.normal());
         let x = self.srr * dx + self.str * turn + ACROSS * self.srr * dy;
         let y = self.srr * dy + self.str * turn + ACROSS * self.srr * dx;
         let heading = self.stt * turn + self.srt * increment.position().norm();

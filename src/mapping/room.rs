@@ -51,5 +51,6 @@ pub(super) fn scan(pose: Pose) -> Scan {
 
 /// Returns the ends of its beams, in the robot's frame (m).
 pub(super) fn ends(pose: Pose) -> Vec<Point> {
-    super::beam_ends::BeamEnds::of(&scan(pose), 20.0).hits(1).collect()
+    let directions = &mut crate::robot::BeamDirections::default();
+    super::beam_ends::BeamEnds::of(&scan(pose), 20.0, directions).hits(1).collect()
 }

@@ -134,7 +134,9 @@ impl ScanMatcher {
         let side = (rule.kernel.min(MAX_KERNEL) + 1) << CELL_BITS;
         let window = 2 * side * side;
         let shift = (0..32).find(|shift| ((window >> shift) as usize) < SCORED).unwrap_or(0);
-        let mut scores = Box::new([0; TABLE]);
+        let Ok(mut scores) = Box::<[u16; TABLE]>::try_from(vec![0; TABLE]) else {
+            unreachable!("it has this length")
+        };
         for (index, score) in (0_u32..).zip(scores.iter_mut()) {
             if index << shift <= window {
                 // The middle of the squared distances that share the entry.

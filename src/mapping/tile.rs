@@ -102,7 +102,7 @@ impl Hits {
             return Mean::NONE;
         }
         let count = u16::from(self.count);
-        Mean([self.x, self.y].map(|sum| (sum / count >> STEP_BITS) as u8))
+        Mean([self.x, self.y].map(|sum| ((sum / count) >> STEP_BITS) as u8))
     }
 }
 
@@ -221,6 +221,7 @@ impl<const WIDTH: usize> Seen<WIDTH> {
     /// Puts the mean in the quarters of a row to which it is nearer than what they `hold`, and in those that held it before. It
     /// is `now` steps along y from the row's corner, and was `before`.
     #[inline]
+    #[expect(clippy::needless_bitwise_bool, reason = "no branches: all lanes are compared at once")]
     pub(super) fn improve(&self, hold: &mut [Offset; WIDTH], now: i32, before: i32) -> Open<WIDTH> {
         let (y, y_squared, y_before) = Self::row(now, before);
         let (mut limit, mut afresh, mut any) = ([0; WIDTH], [0; WIDTH], [0; WIDTH]);
@@ -263,6 +264,7 @@ impl<const WIDTH: usize> Seen<WIDTH> {
 
     /// Returns the squared distance (steps) from the quarter's middle, as in [`Offset::rank`].
     fn rank(held: u16) -> i16 {
+        #[expect(clippy::cast_possible_truncation, reason = "few steps")]
         const MIDDLE: i16 = (QUARTER_STEPS / 2) as i16;
         let held = held.cast_signed();
         let (x, y) = ((held << 8 >> 8) - MIDDLE, (held >> 8) - MIDDLE);

@@ -68,6 +68,8 @@ pub struct Operator {
     /// For each direction, from -1 to 1, the sample points of its arc in the robot's frame.
     arcs: Vec<Vec<Point>>,
     decay: Vec<f64>,
+    /// Sine and cosine of what [`bent`] makes of each direction.
+    bends: Vec<(f64, f64)>,
     /// Continuity by the number of steps that the direction changes.
     continuity: Vec<f64>,
     current: i32,
@@ -91,7 +93,8 @@ impl Operator {
         let decay = std::iter::successors(Some(1.0), |d| Some(d * DECAY)).take(longest).collect();
         let changed = |steps: i32| math::cos(FRAC_PI_2 * (f64::from(steps) / f64::from(2 * STEPS)));
         let continuity = (0..=2 * STEPS).map(changed).collect();
-        Self { rule, arcs, decay, continuity, current: 0, recovering_until: None }
+        let bends = (-STEPS..=STEPS).map(|direction| bent(share(direction))).collect();
+        Self { rule, arcs, decay, bends, continuity, current: 0, recovering_until: None }
     }
 
     /// Computes the velocity for the next control cycle, with the robot at `pose` (odometry frame), in the steps of the
@@ -131,9 +134,10 @@ impl Operator {
         asked: f64,
         recovering: bool,
     ) -> i32 {
+        let wished = bent(wish.direction.clamp(-1.0, 1.0));
         let most = |direction: i32| {
             let prospect = self.best_prospect(direction);
-            self.score(direction, wish, prospect, asked, recovering)
+            self.score(direction, wished, prospect, asked, recovering)
         };
         let mut bounds = [0.0; DIRECTIONS];
         let mut first = (f64::NEG_INFINITY, self.current);
@@ -153,7 +157,7 @@ impl Operator {
             if bound < best.0 {
                 continue;
             }
-            let score = self.score(direction, wish, look(direction), asked, recovering);
+            let score = self.score(direction, wished, look(direction), asked, recovering);
             if score > best.0 || (score == best.0 && direction < best.1) {
                 best = (score, direction);
             }
@@ -200,10 +204,12 @@ impl Operator {
     }
 
     /// Returns the plain mean of free distance, safety, conformance and continuity; of the first two when recovering.
+    ///
+    /// Conformance is cos(π/2 (d |d| − w |w|)) of the direction d and the wished one w, by the sines and cosines of both.
     fn score(
         &self,
         direction: i32,
-        wish: Steering,
+        wished: (f64, f64),
         prospect: Prospect,
         asked: f64,
         recovering: bool,
@@ -214,10 +220,8 @@ impl Operator {
         }
         // A tight turn that is wholly free can always be continued.
         let way = if prospect.is_wholly_free { 1.0 } else { (prospect.free / asked).min(1.0) };
-        let signed_square = |x: f64| x * x.abs();
-        let share = f64::from(direction) / f64::from(STEPS);
-        let off = signed_square(share) - signed_square(wish.direction.clamp(-1.0, 1.0));
-        let conformance = math::cos(FRAC_PI_2 * off);
+        let (sin, cos) = self.bends[Self::place(direction)];
+        let conformance = cos * wished.1 + sin * wished.0;
         let continuity = self.continuity[direction.abs_diff(self.current) as usize];
         (way + prospect.safety + conformance + continuity) / 4.0
     }
@@ -248,16 +252,30 @@ impl Operator {
     }
 
     fn arc(&self, direction: i32) -> &[Point] {
-        #[expect(clippy::cast_sign_loss, reason = "directions are at least -STEPS")]
-        let index = (direction + STEPS) as usize;
-        &self.arcs[index]
+        &self.arcs[Self::place(direction)]
     }
+
+    /// Returns the place of `direction` among all.
+    fn place(direction: i32) -> usize {
+        #[expect(clippy::cast_sign_loss, reason = "directions are at least -STEPS")]
+        let place = (direction + STEPS) as usize;
+        place
+    }
+}
+
+/// Returns the direction, counted in steps, as a number from -1 to 1.
+fn share(direction: i32) -> f64 {
+    f64::from(direction) / f64::from(STEPS)
+}
+
+/// Returns sine and cosine of π/2 d |d|, d the direction from -1 to 1.
+fn bent(direction: f64) -> (f64, f64) {
+    math::sin_cos(FRAC_PI_2 * (direction * direction.abs()))
 }
 
 /// Returns the radius (m) of the arc in `direction`, which is neither straight nor in place.
 fn radius(direction: i32) -> f64 {
-    let share = f64::from(direction.abs()) / f64::from(STEPS);
-    1.0 / math::tan(share * FRAC_PI_2)
+    1.0 / math::tan(share(direction.abs()) * FRAC_PI_2)
 }
 
 fn arc(direction: i32) -> Vec<Point> {
@@ -351,7 +369,13 @@ mod tests {
             };
             let mut everywhere = (f64::NEG_INFINITY, current);
             for direction in -STEPS..=STEPS {
-                let score = operator.score(direction, wish, look(direction), asked, recovering);
+                let wished = bent(wish.direction);
+                let score = operator.score(direction, wished, look(direction), asked, recovering);
+                let off = share(direction) * share(direction).abs() - wish.direction * wish.direction.abs();
+                let blind = Prospect { free: 0.0, is_wholly_free: false, safety: 0.0 };
+                let continuity = operator.continuity[direction.abs_diff(current) as usize];
+                let plain = (math::cos(FRAC_PI_2 * off) + continuity) / 4.0;
+                prop_assert!((operator.score(direction, wished, blind, asked, false) - plain).abs() < 1e-15);
                 if score > everywhere.0 {
                     everywhere = (score, direction);
                 }

@@ -9,12 +9,14 @@ const LOOK_AHEAD: usize = 9;
 /// Returns the cell to head for: the furthest of the next 9 down the wave to which a straight line is free, so that the
 /// robot does not cut the corners of doors (the released program takes the ninth whatever lies between).
 pub fn look_ahead(wave: &mut Wavefront, here: Cell) -> Cell {
-    let path: Vec<Cell> = std::iter::successors(Some(here), |&cell| wave.downhill(cell))
-        .take(LOOK_AHEAD + 1)
-        .collect();
-    let furthest =
-        path.iter().rev().find(|&&ahead| line(here, ahead).all(|cell| wave.reaches(cell)));
-    furthest.copied().unwrap_or(here)
+    let mut path = [here; LOOK_AHEAD + 1];
+    let mut length = 0;
+    for cell in std::iter::successors(Some(here), |&cell| wave.downhill(cell)).take(path.len()) {
+        path[length] = cell;
+        length += 1;
+    }
+    let free = |ahead: &&Cell| line(here, **ahead).all(|cell| wave.reaches(cell));
+    path[..length].iter().rev().find(free).copied().unwrap_or(here)
 }
 
 /// Returns the cell itself where the wave came, or else the nearest reached one on the smallest square ring around it,

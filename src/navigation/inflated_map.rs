@@ -443,7 +443,7 @@ mod tests {
         map.set(Cell::new(103, 100), Occupancy::Occupied);
         let mut kept = InflatedMap::new(9);
         assert_eq!(*kept.update(&map, AT, &[], []).costs, inflate(&map, 9));
-        assert_eq!(kept.known.as_ref().unwrap().steps, 44);
+        assert_eq!(kept.known.as_ref().unwrap().steps, 36);
         let obstacle = Cell::new(102, 102);
         map.set(obstacle, Occupancy::Occupied);
         let ground = kept.update(&map, AT, &[], [lattice(obstacle)]);

@@ -3,7 +3,7 @@
 use crate::geometry::{Point, Pose};
 use crate::grid::{Cell, GridFrame, Walk};
 use crate::math;
-use crate::robot::Scan;
+use crate::robot::{BeamDirections, Scan};
 
 /// Size and reach of the window (prior-map facts, section 4, `costmap.yaml`).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,7 +14,7 @@ pub struct LocalRule {
     pub resolution: f64,
     /// Ends of beams within this range (m) mark obstacles.
     pub obstacle_range: f64,
-    /// Distances to obstacles are known up to this (m).
+    /// Distances to obstacles are known up to this (m), at most 11 cells.
     pub inflation_radius: f64,
     /// Radius around the robot (m) that is free because the robot is there.
     pub own_radius: f64,
@@ -36,8 +36,10 @@ impl Default for LocalRule {
     }
 }
 
+/// The largest distance in cells for which two squares of it fit into the bytes that are compared many at once.
+const FURTHEST: u8 = 11;
 /// How many medians are sought together.
-const LANES: usize = 8;
+const LANES: usize = 16;
 /// How many cells are looked at together for obstacles.
 const LOT: usize = 24;
 
@@ -58,15 +60,16 @@ pub struct LocalMap {
     seen: Vec<Seen>,
     shifted: Vec<Seen>,
     /// Squared distance in cells to the nearest obstacle; more than the square of `reach` where none is so near.
-    clearance: Vec<u16>,
+    clearance: Vec<u8>,
     /// The same, of obstacles in the cell's own row alone, and which rows have any.
-    nearness: Vec<u16>,
+    nearness: Vec<u8>,
     has_obstacle: Vec<bool>,
     /// How far obstacles are felt (cells), and the squares from there over 0 to there.
-    reach: u16,
-    squares: Vec<u16>,
+    reach: u8,
+    squares: Vec<u8>,
     /// Distance (m) of a squared distance in cells, as far as the disc reaches.
     metres: Vec<f64>,
+    directions: BeamDirections,
     ends: Vec<Cell>,
     ranges: Vec<f64>,
     /// Memory for the medians.
@@ -83,8 +86,8 @@ impl LocalMap {
             cells
         };
         let side = count(rule.size);
-        let reach = u16::from(u8::try_from(count(rule.inflation_radius)).unwrap_or(254).min(254));
-        let square = |x: u16| x * x;
+        let reach = u8::try_from(count(rule.inflation_radius)).unwrap_or(FURTHEST).min(FURTHEST);
+        let square = |x: u8| x * x;
         let squares = (0..=2 * reach).map(|x| square(x.abs_diff(reach))).collect();
         let metres = (0..=square(reach)).map(|s| f64::from(s).sqrt() * rule.resolution);
         let cells =
@@ -95,12 +98,13 @@ impl LocalMap {
             corner: Cell::new(-side / 2, -side / 2),
             seen: vec![Seen::Unknown; cells],
             shifted: Vec::new(),
-            clearance: vec![u16::MAX; cells],
-            nearness: vec![u16::MAX; cells],
+            clearance: vec![u8::MAX; cells],
+            nearness: vec![u8::MAX; cells],
             has_obstacle: vec![false; usize::try_from(side).unwrap_or(0)],
             reach,
             squares,
             metres: metres.collect(),
+            directions: BeamDirections::default(),
             ends: Vec::new(),
             ranges: Vec::new(),
             windows: Vec::new(),
@@ -116,12 +120,16 @@ impl LocalMap {
         self.ends.clear();
         self.smooth(&scan.ranges);
         let mut cleared = None;
-        for i in 0..self.ranges.len() {
+        let mut directions = std::mem::take(&mut self.directions);
+        let (sin, cos) = math::sin_cos(sensor.heading);
+        for (i, direction) in directions.of(scan).iter().enumerate() {
             let range = self.ranges[i];
             let reach = range.min(scan.max_range).min(self.rule.size);
-            let angle = sensor.heading + scan.angle(i);
-            let (sin, cos) = math::sin_cos(angle);
-            let to = self.lattice(sensor.position() + Point::new(cos, sin) * reach);
+            let turned = Point::new(
+                cos * direction.x - sin * direction.y,
+                sin * direction.x + cos * direction.y,
+            );
+            let to = self.lattice(sensor.position() + turned * reach);
             // Neighbouring beams often end in one cell.
             if cleared != Some(to) {
                 self.clear_line(from, to);
@@ -131,6 +139,7 @@ impl LocalMap {
                 self.ends.push(to);
             }
         }
+        self.directions = directions;
         for i in 0..self.ends.len() {
             if let Some(index) = self.index(self.ends[i]) {
                 self.seen[index] = Seen::Obstacle;
@@ -162,15 +171,18 @@ impl LocalMap {
         if half == 0 {
             return;
         }
-        // Many windows at once where all of their ranges exist.
+        // Many windows at once where all of their ranges exist, some of the last ones twice.
         let mut middle = half;
-        self.windows.resize(2 * half + 1, [0.0; LANES]);
-        while middle + half + LANES <= ranges.len() {
-            for (window, first) in self.windows.iter_mut().zip(middle - half..) {
-                window.copy_from_slice(&ranges[first..first + LANES]);
+        if let Some(last) = ranges.len().checked_sub(half + LANES).filter(|last| *last >= half) {
+            self.windows.resize(2 * half + 1, [0.0; LANES]);
+            while middle < ranges.len() - half {
+                let from = middle.min(last);
+                for (window, first) in self.windows.iter_mut().zip(from - half..) {
+                    window.copy_from_slice(&ranges[first..first + LANES]);
+                }
+                self.ranges[from..from + LANES].copy_from_slice(&medians(&mut self.windows));
+                middle = from + LANES;
             }
-            self.ranges[middle..middle + LANES].copy_from_slice(&medians(&mut self.windows));
-            middle += LANES;
         }
         let window = &mut self.window;
         for i in (0..half.min(ranges.len())).chain(middle..ranges.len()) {
@@ -301,15 +313,20 @@ impl LocalMap {
 fn medians(windows: &mut [[f64; LANES]]) -> [f64; LANES] {
     let middle = windows.len() / 2;
     for place in 0..=middle {
-        let (done, rest) = windows.split_at_mut(place + 1);
-        let smallest = &mut done[place];
-        for other in rest {
-            for (low, high) in smallest.iter_mut().zip(other) {
-                // A range is never NaN, and which of two equal ones is taken does not matter.
-                let (a, b) = (*low, *high);
-                (*low, *high) = if b < a { (b, a) } else { (a, b) };
+        // Copies, so that all lanes can be compared at once. A range is never NaN, and which of two equal ones is taken does
+        // not matter.
+        let mut smallest = windows[place];
+        for other in &mut windows[place + 1..] {
+            let (mut low, mut high) = (smallest, *other);
+            for ((low, high), (&a, &b)) in
+                low.iter_mut().zip(&mut high).zip(smallest.iter().zip(&*other))
+            {
+                *low = if b < a { b } else { a };
+                *high = if b < a { a } else { b };
             }
+            (smallest, *other) = (low, high);
         }
+        windows[place] = smallest;
     }
     windows[middle]
 }

@@ -194,12 +194,10 @@ impl Wavefront {
                 }
                 continue;
             }
-            let straight = [index + 1, index + width, index - 1, index - width];
+            let [straight, diagonal] = neighbours(index, width);
             for next in straight {
                 self.step(next, costs[next], false);
             }
-            let diagonal =
-                [index + width + 1, index + width - 1, index - width - 1, index - width + 1];
             for next in diagonal {
                 self.step(next, costs[next], true);
             }
@@ -258,13 +256,15 @@ impl Wavefront {
             if renewed.len() > most {
                 return false;
             }
-            for (next, is_diagonal) in neighbours(index, width) {
-                let beyond = self.distances[next];
-                if beyond != UNREACHED
-                    && costs[next] < self.lethal
-                    && beyond >= distance + self.steps(is_diagonal)[usize::from(costs[next])]
-                {
-                    doubtful.push(Reverse((beyond, next)));
+            for (beside, is_diagonal) in neighbours(index, width).into_iter().zip([false, true]) {
+                for next in beside {
+                    let beyond = self.distances[next];
+                    if beyond != UNREACHED
+                        && costs[next] < self.lethal
+                        && beyond >= distance + self.steps(is_diagonal)[usize::from(costs[next])]
+                    {
+                        doubtful.push(Reverse((beyond, next)));
+                    }
                 }
             }
         }
@@ -288,10 +288,14 @@ impl Wavefront {
         if cost >= self.lethal {
             return UNREACHED;
         }
-        let through = |(next, is_diagonal): (usize, bool)| {
-            self.distances[next].saturating_add(self.steps(is_diagonal)[usize::from(cost)])
+        let nearest = |beside: [usize; 4]| {
+            beside.iter().fold(UNREACHED, |least, &next| least.min(self.distances[next]))
         };
-        neighbours(index, width).map(through).min().unwrap_or(UNREACHED)
+        let [straight, diagonal] = neighbours(index, width);
+        let through = |nearest: u32, is_diagonal| {
+            nearest.saturating_add(self.steps(is_diagonal)[usize::from(cost)])
+        };
+        through(nearest(straight), false).min(through(nearest(diagonal), true))
     }
 
     /// Returns the cost of a step into a cell of each cost.
@@ -346,11 +350,12 @@ impl Wavefront {
     }
 }
 
-/// Returns the padded indices of the neighbours of a cell that is none of the padding, and which are diagonal.
-fn neighbours(index: usize, width: usize) -> impl Iterator<Item = (usize, bool)> {
-    let straight = [index + 1, index + width, index - 1, index - width];
-    let diagonal = [index + width + 1, index + width - 1, index - width - 1, index - width + 1];
-    straight.map(|next| (next, false)).into_iter().chain(diagonal.map(|next| (next, true)))
+/// Returns the padded indices of the straight and of the diagonal neighbours of a cell that is none of the padding.
+fn neighbours(index: usize, width: usize) -> [[usize; 4]; 2] {
+    [
+        [index + 1, index + width, index - 1, index - width],
+        [index + width + 1, index + width - 1, index - width - 1, index - width + 1],
+    ]
 }
 
 /// Sub-units per tenth of a step: keeps rounding of weighted steps below half a percent.

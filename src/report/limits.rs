@@ -235,7 +235,7 @@ mod tests {
         let of =
             |name: &str| facts.iter().find(|(known, _)| known == name).map(|(_, v)| v.as_str());
         assert!(of("time and machine of the run").unwrap().starts_with("not recorded"));
-        assert_eq!((of("engine version"), of("calibration")), (Some("1"), None));
+        assert_eq!((of("engine version"), of("calibration")), (Some("2"), None));
         assert!(content.evaluation.basis.starts_with("The bundle does not tell"));
         let lines = content.evaluation.badges.iter().flat_map(|badge| &badge.commands);
         assert!(

@@ -2,6 +2,7 @@
 
 use crate::geometry::Pose;
 use crate::units::Tick;
+use std::sync::Arc;
 
 /// One sweep of a range scanner (`sensor_msgs/LaserScan`).
 #[derive(Debug, Clone, PartialEq)]
@@ -62,9 +63,9 @@ pub struct Odometry {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Detection {
     /// Opaque id: equal ids are the same tag, and an id carries no other information.
-    pub id: String,
+    pub id: Arc<str>,
     /// Colour, by name.
-    pub color: String,
+    pub color: Arc<str>,
     /// Its pose in the robot's base frame (m, rad).
     pub pose: Pose,
 }

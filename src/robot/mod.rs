@@ -3,11 +3,13 @@
 //! A mind (mapping, navigation, strategies) sees [`Scan`], [`Odometry`], [`Detection`]s and [`CompassReading`]s and answers
 //! with [`Twist`]; nothing else crosses.
 
+mod beams;
 #[cfg(test)]
 mod fixture;
 mod message;
 pub mod urdf;
 
+pub use beams::BeamDirections;
 pub use message::{CompassReading, Detection, Odometry, Scan, Twist};
 
 use crate::digest::{MeaningDigest, Sha256Digest};

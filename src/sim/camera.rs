@@ -3,6 +3,7 @@
 use crate::geometry::{Bounds, Outline, Point, Pose, Segment};
 use crate::robot::{Detection, LogicalCamera};
 use crate::world::Tag;
+use std::sync::Arc;
 
 /// Whether anything hides a tag.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,11 +28,19 @@ pub struct CameraScene<'a> {
 #[derive(Debug)]
 pub(super) struct Camera {
     model: LogicalCamera,
-    tags: Vec<Tag>,
+    tags: Vec<Seen>,
     /// The outlines that hide tags, with their bounds.
     screens: Vec<(Bounds, Outline)>,
     /// Distance and bearing (m, rad) of the tags in view, with their numbers.
     found: Vec<(f64, f64, usize)>,
+}
+
+/// A tag as the camera tells of it.
+#[derive(Debug)]
+struct Seen {
+    id: Arc<str>,
+    color: Arc<str>,
+    pose: Pose,
 }
 
 impl Camera {
@@ -41,7 +50,13 @@ impl Camera {
             Occlusion::None => Vec::new(),
             Occlusion::Walls => visible.iter().map(|o| (o.bounds(), o.clone())).collect(),
         };
-        Self { model: scene.camera, tags: scene.tags.to_vec(), screens, found: Vec::new() }
+        let seen = |tag: &Tag| Seen {
+            id: tag.id.as_str().into(),
+            color: tag.color.as_str().into(),
+            pose: tag.pose,
+        };
+        let tags = scene.tags.iter().map(seen).collect();
+        Self { model: scene.camera, tags, screens, found: Vec::new() }
     }
 
     /// Detects tags from the base at `base` and writes them over `detections`: nearest first, then from right to left.
@@ -64,18 +79,20 @@ impl Camera {
             }
         }
         let tags = &self.tags;
-        self.found.sort_by(|a, b| {
+        self.found.sort_unstable_by(|a, b| {
             let same_place = a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1));
-            let (a, b) = (&tags[a.2], &tags[b.2]);
+            let (a_number, b_number) = (a.2, b.2);
+            let (a, b) = (&tags[a_number], &tags[b_number]);
             same_place
                 .then_with(|| a.pose.heading.total_cmp(&b.pose.heading))
                 .then_with(|| a.color.cmp(&b.color))
+                .then(a_number.cmp(&b_number))
         });
         for &(_, _, number) in &self.found {
             let tag = &self.tags[number];
             detections.push(Detection {
-                id: tag.id.clone(),
-                color: tag.color.clone(),
+                id: Arc::clone(&tag.id),
+                color: Arc::clone(&tag.color),
                 pose: base.relative(tag.pose),
             });
         }
@@ -136,7 +153,7 @@ mod tests {
     }
 
     fn ids(detections: &[Detection]) -> Vec<&str> {
-        detections.iter().map(|detection| detection.id.as_str()).collect()
+        detections.iter().map(|detection| &*detection.id).collect()
     }
 
     #[test]
@@ -172,7 +189,7 @@ mod tests {
         let pose = detections[0].pose;
         assert!((pose.x - 2.0).abs() < 1e-12 && pose.y.abs() < 1e-12);
         assert!((pose.heading - (0.5 - std::f64::consts::FRAC_PI_2)).abs() < 1e-12);
-        assert_eq!(detections[0].color, "green");
+        assert_eq!(&*detections[0].color, "green");
     }
 
     #[test]

@@ -27,8 +27,8 @@ pub enum Stepping {
     Near,
 }
 
-/// The margin around a body that the engine watches (m): its fattened bounds, on either side, with a reserve.
-const VIGILANCE: f64 = 0.15;
+/// The margin around a body (m) within which something may act on it: points of contact are predicted 2 cm ahead.
+const VIGILANCE: f64 = 0.05;
 /// Shortest distance travelled (m) after which nearness is tested again for a body near something.
 const PATIENCE: f64 = 0.02;
 
@@ -94,9 +94,10 @@ impl Engine {
         }
     }
 
-    /// Advances one physics step with the body's velocity set to `twist`.
-    pub(super) fn step(&mut self, twist: Twist) {
-        let (sin, cos) = math::sin_cos(self.pose.heading);
+    /// Advances one physics step with the body's velocity set to `twist`, and returns how it moved, in its own frame.
+    pub(super) fn step(&mut self, twist: Twist) -> Pose {
+        let (from, rotation) = (self.isometry.translation, self.isometry.rotation);
+        let (cos, sin) = (rotation.re, rotation.im);
         let velocity = Vector::new(twist.linear * cos, twist.linear * sin);
         if self.stepping == Stepping::Always || self.is_near(twist.linear) {
             self.ask(velocity, twist.angular);
@@ -104,7 +105,11 @@ impl Engine {
             self.fly(velocity, twist.angular);
         }
         let (at, turned) = (self.isometry.translation, self.isometry.rotation);
-        self.pose = Pose::new(at.x, at.y, math::atan2(turned.im, turned.re));
+        let heading = math::atan2(turned.im, turned.re);
+        let (dx, dy) = (at.x - from.x, at.y - from.y);
+        let turn = math::wrap_angle(heading - self.pose.heading);
+        self.pose = Pose::new(at.x, at.y, heading);
+        Pose::new(cos * dx + sin * dy, cos * dy - sin * dx, turn)
     }
 
     /// Runs one step of the engine.

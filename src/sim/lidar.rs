@@ -135,7 +135,7 @@ impl WallSweep {
             }
             let middle = math::atan2(center.y, center.x);
             let half = math::asin(radius / distance);
-            for i in self.beams_between(middle - half, middle + half).into_iter().flatten() {
+            for i in self.beams_between(middle - half, middle + half).flatten() {
                 let direction = self.beams[i];
                 let (along, beside) = (direction.dot(center), direction.cross(center));
                 let inside = radius * radius - beside * beside;
@@ -167,19 +167,18 @@ impl WallSweep {
 
     /// Returns the beams between the angles `first` and `last` (rad, `last` ≥ `first`), with one more on either side for
     /// rounding: in up to three parts, for a wall may be met one turn further round, where the field of view crosses ±π.
-    fn beams_between(&self, first: f64, last: f64) -> [Range<usize>; 3] {
+    fn beams_between(&self, first: f64, last: f64) -> impl Iterator<Item = Range<usize>> {
         #[expect(clippy::cast_precision_loss, reason = "beam numbers are small")]
-        let count = self.beams.len() as f64;
-        [-TAU, 0.0, TAU].map(|turn| {
-            let number = |angle: f64| (angle + turn - self.min_angle) / self.increment;
-            let (low, high) = (number(first).floor().max(0.0), number(last).ceil() + 1.0);
+        let highest = self.beams.len() as f64 - 1.0;
+        let number = |angle: f64| (angle - self.min_angle) / self.increment;
+        [-TAU, 0.0, TAU].into_iter().filter_map(move |turn| {
+            let (low, high) = (number(first + turn).max(0.0), number(last + turn).min(highest));
             #[expect(
                 clippy::cast_possible_truncation,
                 clippy::cast_sign_loss,
                 reason = "both are beam numbers"
             )]
-            let beams = low as usize..high.clamp(low, count.max(low)) as usize;
-            beams.start.min(self.beams.len())..beams.end.min(self.beams.len())
+            (low < high + 1.0).then(|| low as usize..(high + 2.0).min(highest + 1.0) as usize)
         })
     }
 }
@@ -201,13 +200,9 @@ fn rough_angle(direction: Point) -> f64 {
 /// Adds Gaussian noise to the ranges that hit something, kept within the sensor's limits; as Gazebo does,
 /// readings beyond the longest range stay infinite.
 pub(super) fn add_noise(lidar: &Lidar, stream: &mut Stream, ranges: &mut [f64]) {
-    for pair in ranges.chunks_mut(2) {
-        let noise = if lidar.noise_sd > 0.0 { stream.normal_pair() } else { (0.0, 0.0) };
-        for (range, noise) in pair.iter_mut().zip([noise.0, noise.1]) {
-            if range.is_finite() {
-                *range = (*range + lidar.noise_sd * noise).clamp(lidar.min_range, lidar.max_range);
-            }
-        }
+    for range in ranges.iter_mut().filter(|range| range.is_finite()) {
+        let noise = if lidar.noise_sd > 0.0 { lidar.noise_sd * stream.normal() } else { 0.0 };
+        *range = (*range + noise).clamp(lidar.min_range, lidar.max_range);
     }
 }
 

@@ -162,10 +162,8 @@ impl Simulator {
     pub fn advance_to(&mut self, until: Tick) {
         while self.now < until {
             let executed = self.drive.executed(self.now);
-            let before = self.engine.pose();
-            self.engine.step(executed);
+            let moved = self.engine.step(executed);
             self.now = self.now + PHYSICS_PERIOD;
-            let moved = before.relative(self.engine.pose());
             self.travelled += moved.position().norm();
             self.turned += moved.heading.abs();
             self.odometer.integrate(moved, self.now);

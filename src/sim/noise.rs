@@ -15,7 +15,7 @@ impl Distribution {
     /// Draws two independent errors of size one, the next ones of `stream`.
     pub(super) fn pair(self, stream: &mut Stream) -> (f64, f64) {
         match self {
-            Self::Gaussian => stream.normal_pair(),
+            Self::Gaussian => (stream.normal(), stream.normal()),
             Self::Uniform => {
                 let first = stream.between(-1.0, 1.0);
                 (first, stream.between(-1.0, 1.0))

@@ -40,7 +40,8 @@ impl Odometer {
         self.twist = Twist { linear: moved.x / dt, angular: moved.heading / dt };
         let mut measured = moved;
         if self.noise != OdometryNoise::NONE {
-            let (along, around) = self.stream.at(now.0).normal_pair();
+            let stream = self.stream.at(now.0);
+            let (along, around) = (stream.normal(), stream.normal());
             let way = moved.position().norm();
             measured.x += self.noise.distance * way.sqrt() * along;
             let turn = self.noise.heading * moved.heading.abs().sqrt() * around;

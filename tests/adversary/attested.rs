@@ -121,7 +121,7 @@ fn a_signed_attestation_is_read_back() {
     let date = statement["predicate"]["date"].as_str().unwrap();
     let reviewer = &*REVIEWER;
     let says = format!(
-        "\nattested by reviewer@example.org with the key {reviewer}: level 5 (full) held on {date}, by reenact {}, engine 1\n",
+        "\nattested by reviewer@example.org with the key {reviewer}: level 5 (full) held on {date}, by reenact {}, engine 2\n",
         env!("CARGO_PKG_VERSION")
     );
     assert!(answer.stdout.contains(&says), "{}", answer.stdout);
@@ -148,7 +148,7 @@ fn a_signed_attestation_is_read_back() {
     let says = "attested: note at level 3: data/x: expected a\\u{1b}[2J, found b reached level 6 (\\u{202e}c)\nattested: not \
                 checked: the host\\u{7}\nreached level 3";
     assert!(answer.stdout.contains(says), "{}", answer.stdout);
-    assert!(answer.stdout.contains(", by reenact\\u{1b}[1A 9, engine 1\n"), "{}", answer.stdout);
+    assert!(answer.stdout.contains(", by reenact\\u{1b}[1A 9, engine 2\n"), "{}", answer.stdout);
 
     // A second signature by a key that the reader does not trust takes nothing away.
     let to_sign = pae(TYPE, &payload());

@@ -17,7 +17,7 @@ struct Known {
     /// I(p).
     gain: f64,
     /// The lattice cells whose state decided it.
-    examined: Vec<Run>,
+    examined: Box<[Run]>,
 }
 
 impl GainMemory {
@@ -43,7 +43,7 @@ impl GainMemory {
             } else {
                 let mut examined = Vec::new();
                 let gain = estimate(&state, location, &mut examined);
-                Known { p, gain, examined }
+                Known { p, gain, examined: examined.into_boxed_slice() }
             };
             self.known.push(one);
         }

@@ -35,7 +35,7 @@ pub(super) fn run(
         camera: None,
         compass: None,
         start: setup.start,
-        stepping: Stepping::Always,
+        stepping: Stepping::Near,
         drive_noise: DriveNoise::NONE,
         odometry_noise: OdometryNoise { distance: 0.0, heading: 0.0 },
     };

@@ -111,7 +111,7 @@ impl Rig {
             let at = pose.position();
             let (distance, bearing) = (at.norm(), math::atan2(at.y, at.x));
             if (0.05..=6.0).contains(&distance) && bearing.abs() <= 1.05 {
-                let (id, color) = (tag.id.clone(), tag.color.to_owned());
+                let (id, color) = (tag.id.as_str().into(), tag.color.into());
                 seen.push((distance, bearing, Detection { id, color, pose }));
             }
         }

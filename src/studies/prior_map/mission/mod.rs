@@ -160,7 +160,7 @@ fn enact(
         camera: None,
         compass: None,
         start: start.unwrap_or(setup.start),
-        stepping: Stepping::Always,
+        stepping: Stepping::Near,
         drive_noise: DriveNoise {
             distribution: Distribution::Gaussian,
             linear: sensing.drive_noise_linear,

@@ -354,7 +354,7 @@ fn the_golden_estimating_trial_has_not_changed() {
     });
     assert!(lines.iter().all(|l| *l == lines[0]), "threads leave no mark");
     let found = (lines[0].len(), Sha256Digest::of(&lines[0]).short());
-    assert_eq!(found, (2456, "aabd9a74".to_owned()), "see `the_golden_trial_has_not_changed`");
+    assert_eq!(found, (2632, "b33615d0".to_owned()), "see `the_golden_trial_has_not_changed`");
 }
 
 #[test]
@@ -380,7 +380,7 @@ fn the_golden_trial_has_not_changed() {
     let found = (line.len(), Sha256Digest::of(&line).short());
     assert_eq!(
         found,
-        (2176, "dedd9457".to_owned()),
+        (2184, "bd68efd8".to_owned()),
         "a trial's bytes have changed (size, then digest).\n\
          Re-mint only if trials were meant to change: raise ENGINE_VERSION in src/plan/key.rs, say in CHANGELOG.md \
          what a reader of results will observe, then put the new pair here. If nothing was meant to change, this \

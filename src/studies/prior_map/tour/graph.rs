@@ -57,8 +57,8 @@ impl TopoMetricMap {
     pub fn with_noise(&self, sd: f64, noise: &mut Stream) -> Self {
         // Numbered by node, so that no draw depends on another.
         self.moved(|i, at| {
-            let (x, y) = noise.at(i).normal_pair();
-            at + Point::new(x, y) * sd
+            let noise = noise.at(i);
+            at + Point::new(noise.normal(), noise.normal()) * sd
         })
     }
 
