@@ -18,28 +18,46 @@ impl Sha256Digest {
 
     /// Returns the 64 lower-case hex digits.
     pub fn hex(&self) -> String {
-        use std::fmt::Write as _;
-        self.0.iter().fold(String::with_capacity(64), |mut text, byte| {
-            let _ = write!(text, "{byte:02x}");
-            text
-        })
+        digits(&self.0)
     }
 
     /// Returns the first 8 hex digits, for names and tables.
     pub fn short(&self) -> String {
-        self.hex()[..8].to_owned()
+        digits(&self.0[..4])
     }
 
     /// Reads 64 hex digits of either case, as other tools' manifests may carry them; `None` for anything else.
     pub fn from_hex(text: &str) -> Option<Self> {
-        if text.len() != 64 || !text.bytes().all(|b| b.is_ascii_hexdigit()) {
+        let (pairs, []) = text.as_bytes().as_chunks::<2>() else { return None };
+        if pairs.len() != 32 {
             return None;
         }
         let mut bytes = [0_u8; 32];
-        for (i, byte) in bytes.iter_mut().enumerate() {
-            *byte = u8::from_str_radix(&text[2 * i..2 * i + 2], 16).ok()?;
+        for (byte, [high, low]) in bytes.iter_mut().zip(pairs) {
+            *byte = nibble(*high)? << 4 | nibble(*low)?;
         }
         Some(Self(bytes))
+    }
+}
+
+/// Returns two lower-case hex digits a byte. By hand: tens of thousands of digests are written and read in a run.
+fn digits(bytes: &[u8]) -> String {
+    let mut text = String::with_capacity(2 * bytes.len());
+    for byte in bytes {
+        for nibble in [byte >> 4, byte & 0xf] {
+            text.push(char::from(b"0123456789abcdef"[usize::from(nibble)]));
+        }
+    }
+    text
+}
+
+/// Returns the value of a hex digit of either case.
+fn nibble(digit: u8) -> Option<u8> {
+    match digit {
+        b'0'..=b'9' => Some(digit - b'0'),
+        b'a'..=b'f' => Some(digit - b'a' + 10),
+        b'A'..=b'F' => Some(digit - b'A' + 10),
+        _ => None,
     }
 }
 
@@ -187,7 +205,14 @@ mod tests {
         let digest = Sha256Digest::of("x");
         assert_eq!(Sha256Digest::from_hex(&digest.hex()), Some(digest));
         assert_eq!(Sha256Digest::from_hex(&digest.hex().to_uppercase()), Some(digest));
-        for bad in ["", "ab", &"g".repeat(64), &"é".repeat(32)] {
+        let every = Sha256Digest(std::array::from_fn(|i| u8::try_from(i * 8 + i % 8).unwrap()));
+        assert_eq!(every.hex(), every.0.map(|byte| format!("{byte:02x}")).concat());
+        assert_eq!(Sha256Digest::from_hex(&every.hex()), Some(every));
+        assert_eq!(every.short(), every.hex()[..8]);
+        let wrong = ["/", ":", "@", "G", "`", "g", " "].map(|digit| digit.repeat(64));
+        for bad in
+            wrong.iter().map(String::as_str).chain(["", "ab", &"é".repeat(32), &"a".repeat(65)])
+        {
             assert_eq!(Sha256Digest::from_hex(bad), None);
         }
     }

@@ -119,15 +119,7 @@ impl Stream {
     /// Where `bound` is zero.
     pub fn below(&mut self, bound: u64) -> u64 {
         assert!(bound > 0, "an empty range has no number to draw");
-        let mut product = u128::from(self.bits()) * u128::from(bound);
-        #[expect(clippy::cast_possible_truncation, reason = "the low half is what is meant")]
-        if (product as u64) < bound {
-            let threshold = bound.wrapping_neg() % bound;
-            while (product as u64) < threshold {
-                product = u128::from(self.bits()) * u128::from(bound);
-            }
-        }
-        (product >> 64) as u64
+        below(bound, || self.bits())
     }
 
     /// Draws a standard normal number, by layers of the bell (Marsaglia and Tsang 2000, "The ziggurat method for generating
@@ -163,6 +155,18 @@ impl Stream {
             if -2.0 * math::ln(1.0 - self.uniform()) > beyond * beyond {
                 return TAIL + beyond;
             }
+        }
+    }
+
+    /// Puts `items` in a random order (Fisher and Yates 1938): each, from the last to the second, changes places with one that
+    /// [`Stream::below`] draws of those up to itself.
+    pub fn shuffle<T>(&mut self, items: &mut [T]) {
+        let mut words = Words::default();
+        for last in (1..items.len()).rev() {
+            let bound = last as u64 + 1;
+            #[expect(clippy::cast_possible_truncation, reason = "an index below the length")]
+            let other = below(bound, || words.next(&mut self.generator, last)) as usize;
+            items.swap(last, other);
         }
     }
 
@@ -218,6 +222,40 @@ fn bell(x: f64) -> f64 {
     math::exp(-0.5 * x * x)
 }
 
+/// Draws a number uniform in `0..bound` from random `bits`.
+fn below(bound: u64, mut bits: impl FnMut() -> u64) -> u64 {
+    let mut product = u128::from(bits()) * u128::from(bound);
+    #[expect(clippy::cast_possible_truncation, reason = "the low half is what is meant")]
+    if (product as u64) < bound {
+        let threshold = bound.wrapping_neg() % bound;
+        while (product as u64) < threshold {
+            product = u128::from(bits()) * u128::from(bound);
+        }
+    }
+    (product >> 64) as u64
+}
+
+/// Random bits that are fetched many at once, and never more than will be wanted.
+#[derive(Default)]
+struct Words {
+    bytes: [[u8; 8]; 32],
+    left: usize,
+}
+
+impl Words {
+    /// Returns the next 64 bits, where so many more are `wanted` at least.
+    fn next(&mut self, generator: &mut ChaCha8Rng, wanted: usize) -> u64 {
+        if self.left == 0 {
+            self.left = wanted.clamp(1, self.bytes.len());
+            let begin = self.bytes.len() - self.left;
+            generator.fill_bytes(self.bytes[begin..].as_flattened_mut());
+        }
+        let word = self.bytes[self.bytes.len() - self.left];
+        self.left -= 1;
+        u64::from_le_bytes(word)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -264,6 +302,29 @@ mod tests {
             }
             assert_eq!(one.bits(), all.bits());
         }
+    }
+
+    #[test]
+    fn a_shuffle_swaps_with_what_is_drawn_one_by_one() {
+        let (mut one, mut all) = (seeds(0).stream("shuffle"), seeds(0).stream("shuffle"));
+        for count in [0_u64, 1, 2, 31, 33, 34, 500] {
+            let mut items: Vec<u64> = (0..count).collect();
+            let mut expected = items.clone();
+            all.shuffle(&mut items);
+            for last in (1..expected.len()).rev() {
+                expected.swap(last, usize::try_from(one.below(last as u64 + 1)).unwrap());
+            }
+            assert_eq!(items, expected);
+        }
+        assert_eq!(one.bits(), all.bits());
+    }
+
+    #[test]
+    fn a_bound_that_does_not_divide_asks_for_other_bits() {
+        let mut asked = [0, 1, u64::MAX].into_iter();
+        // Of the 2^64 numbers one is too many for three even parts: the lowest product.
+        assert_eq!(below(3, || asked.next().unwrap()), 0);
+        assert_eq!(asked.next(), Some(u64::MAX));
     }
 
     /// Checks the pinned numbers: a change here changes every trial, so the engine version must be raised with it.

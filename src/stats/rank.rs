@@ -136,7 +136,7 @@ const EXACT_PAIRS: usize = 8;
 pub fn spearman_permutation(x: &[f64], y: &[f64], permutations: u32, stream: &mut Stream) -> Tails {
     let (rx, mut ry) = (midranks(x), midranks(y));
     // Only the cross product changes with the order.
-    let product = |ry: &[f64]| rx.iter().zip(ry).map(|(a, b)| a * b).sum::<f64>();
+    let product = |ry: &[f64]| product_of_ranks(&rx, ry);
     let n = length(x);
     let centre = n * (n + 1.0) * (n + 1.0) / 4.0;
     let seen = product(&ry) - centre;
@@ -154,15 +154,33 @@ pub fn spearman_permutation(x: &[f64], y: &[f64], permutations: u32, stream: &mu
     } else {
         count(&ry);
         for _ in 0..permutations {
-            for i in (1..ry.len()).rev() {
-                #[expect(clippy::cast_possible_truncation, reason = "an index below the length")]
-                ry.swap(i, stream.below(i as u64 + 1) as usize);
-            }
+            stream.shuffle(&mut ry);
             count(&ry);
         }
     }
     let share = |k: u64| real(k) / real(all);
     Tails { less: share(at_most), greater: share(at_least), two_sided: share(as_far) }
+}
+
+/// Up to so many ranks their products, multiples of one quarter, add up without rounding, in whatever order.
+const EXACT_SUM: usize = 1 << 17;
+
+/// Computes the cross product of two lists of midranks.
+fn product_of_ranks(x: &[f64], y: &[f64]) -> f64 {
+    const LANES: usize = 8;
+    if x.len() > EXACT_SUM {
+        return x.iter().zip(y).map(|(a, b)| a * b).sum();
+    }
+    // Several sums at once: one would wait for each addition.
+    let ((x, x_rest), (y, y_rest)) = (x.as_chunks::<LANES>(), y.as_chunks::<LANES>());
+    let mut sums = [0.0; LANES];
+    for (x, y) in x.iter().zip(y) {
+        for ((sum, a), b) in sums.iter_mut().zip(x).zip(y) {
+            *sum += a * b;
+        }
+    }
+    let rest: f64 = x_rest.iter().zip(y_rest).map(|(a, b)| a * b).sum();
+    sums.iter().sum::<f64>() + rest
 }
 
 /// Visits every order of `values` by Heap's algorithm (1963), without recursion.
@@ -203,4 +221,34 @@ pub fn spearman_interval(r: f64, n: u64, confidence: f64) -> super::Interval {
         }
     };
     super::Interval { low: back(z - half), high: back(z + half), confidence }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng::Seeds;
+
+    #[test]
+    fn products_of_ranks_have_no_rounding_in_whatever_order() {
+        let mut stream = Seeds::new(5, Vec::new()).stream("ranks");
+        for n in [0, 1, 7, 8, 9, 1001, EXACT_SUM, EXACT_SUM + 1] {
+            let mut ranks = || {
+                // Half of them tied with others.
+                let bound = (n as u64).max(1);
+                let values: Vec<f64> = (0..n).map(|_| real(stream.below(bound))).collect();
+                midranks(&values)
+            };
+            let (x, y) = (ranks(), ranks());
+            let plain: f64 = x.iter().zip(&y).map(|(a, b)| a * b).sum();
+            assert_eq!(product_of_ranks(&x, &y), plain, "{n}");
+            // The largest there is: every quarter of it is a number.
+            let ranks: Vec<f64> = (1..=n as u64).map(real).collect();
+            let n = n as u128;
+            let exact = n * (n + 1) * (2 * n + 1) / 6;
+            assert!(exact < 1 << 51, "{exact}");
+            #[expect(clippy::cast_precision_loss, reason = "below 2^51")]
+            let exact = exact as f64;
+            assert_eq!(product_of_ranks(&ranks, &ranks), exact);
+        }
+    }
 }

@@ -87,7 +87,7 @@ fn office_floor(seed: u64, attempt: u32) -> Option<WorldDoc> {
 
     let scheme = TagScheme::default();
     let mut ids: Vec<String> = (1..=layout.tag_count()).map(|i| format!("t{i:03}")).collect();
-    shuffle(&mut ids, &mut seeds.stream("tags"));
+    seeds.stream("tags").shuffle(&mut ids);
     let tags = layout.tags(&ids, &scheme);
     let topology = Topology::read(&tags, &scheme).ok()?;
     let large: Vec<usize> = drawn
@@ -145,14 +145,6 @@ fn choose_starts(
         starts.insert(name.to_owned(), pose);
     }
     Some(starts)
-}
-
-/// Puts `items` in a random order (Fisher and Yates 1938).
-fn shuffle<T>(items: &mut [T], stream: &mut Stream) {
-    for last in (1..items.len()).rev() {
-        let other = stream.below(last as u64 + 1);
-        items.swap(last, usize::try_from(other).unwrap_or(last));
-    }
 }
 
 #[cfg(test)]

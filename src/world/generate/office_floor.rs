@@ -280,7 +280,7 @@ impl Pen<'_> {
 
     fn shuffled_sites(&mut self) -> Vec<Site> {
         let mut sites = self.floor.free_sites();
-        super::shuffle(&mut sites, self.stream);
+        self.stream.shuffle(&mut sites);
         sites
     }
 
