@@ -4,7 +4,7 @@ mod directory;
 mod partial;
 mod segments;
 
-pub use directory::DirectoryStore;
+pub use directory::{DirectoryStore, Looked};
 pub use partial::abandon;
 
 use crate::bundle::{Archive, Fault, archive};

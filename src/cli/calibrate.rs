@@ -93,7 +93,7 @@ impl Calibrator<'_> {
 }
 
 fn stored(plan: &Plan, store: &DirectoryStore) -> Result<Vec<TrialRecord>, Unmeasured> {
-    let mut records = Vec::new();
+    let (store, mut records) = (store.look()?, Vec::new());
     for spec in &plan.trials {
         records.extend(store.get(&spec.key)?);
     }

@@ -6,6 +6,7 @@ use crate::digest::TrialKey;
 use crate::runner::{StoreError, TrialStore};
 use crate::studies::{Outcome, TrialRecord};
 use fs_err as fs;
+use std::collections::BTreeSet;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -83,6 +84,27 @@ impl DirectoryStore {
         Ok((records, bytes))
     }
 
+    /// Returns what is there now, for many questions at once: a question to the store itself looks for what other processes
+    /// finished meanwhile.
+    ///
+    /// # Errors
+    /// Where the store cannot be read; an absent one is empty.
+    pub fn look(&self) -> Result<Looked<'_>, StoreError> {
+        let unread = |e: io::Error| self.refusal("read", &e);
+        self.segments.look().map_err(unread)?;
+        let mut folders = BTreeSet::new();
+        match fs::read_dir(&self.root) {
+            Ok(entries) => {
+                for entry in entries {
+                    folders.extend(entry.map_err(unread)?.file_name().into_string());
+                }
+            }
+            Err(e) if e.kind() == io::ErrorKind::NotFound => {}
+            Err(e) => return Err(unread(e)),
+        }
+        Ok(Looked { store: self, folders })
+    }
+
     fn refusal(&self, doing: &str, error: &io::Error) -> StoreError {
         StoreError::Io(format!("cannot {doing} `{}`: {}", self.root.display(), reason(error)))
     }
@@ -106,6 +128,44 @@ impl DirectoryStore {
     }
 }
 
+/// A store as it was when it was looked at.
+#[derive(Debug)]
+pub struct Looked<'a> {
+    store: &'a DirectoryStore,
+    /// What is in it by name: the folders of earlier versions among them.
+    folders: BTreeSet<String>,
+}
+
+impl Looked<'_> {
+    /// Returns the record of a trial; `None` where it was not there.
+    ///
+    /// # Errors
+    /// Where the store cannot be read, or holds two different ones.
+    pub fn get(&self, key: &TrialKey) -> Result<Option<TrialRecord>, StoreError> {
+        let unread = |e: io::Error| self.store.refusal("read", &e);
+        let mut records = self.store.segments.seen(key).map_err(unread)?;
+        if records.is_empty() && self.folders.contains(&key.hex()[..2]) {
+            records.extend(self.store.alone(key).map_err(unread)?);
+        }
+        the_one(key, records)
+    }
+}
+
+/// Returns what all `records` under one key are.
+fn the_one(
+    key: &TrialKey,
+    mut records: Vec<TrialRecord>,
+) -> Result<Option<TrialRecord>, StoreError> {
+    records.retain(|record| record.key == *key);
+    let mut records = records.into_iter();
+    let Some(first) = records.next() else { return Ok(None) };
+    // Two processes may have finished the same trial at once.
+    match records.find(|other| other.to_line() != first.to_line()) {
+        Some(other) => Err(StoreError::conflict(&first, &other)),
+        None => Ok(Some(first)),
+    }
+}
+
 impl TrialStore for DirectoryStore {
     fn get(&self, key: &TrialKey) -> Result<Option<TrialRecord>, StoreError> {
         let unread = |e: io::Error| self.refusal("read", &e);
@@ -113,14 +173,7 @@ impl TrialStore for DirectoryStore {
         if records.is_empty() {
             records.extend(self.alone(key).map_err(unread)?);
         }
-        records.retain(|record| record.key == *key);
-        let mut records = records.into_iter();
-        let Some(first) = records.next() else { return Ok(None) };
-        // Two processes may have finished the same trial at once.
-        match records.find(|other| other.to_line() != first.to_line()) {
-            Some(other) => Err(StoreError::conflict(&first, &other)),
-            None => Ok(Some(first)),
-        }
+        the_one(key, records)
     }
 
     fn put(&self, record: &TrialRecord) -> Result<(), StoreError> {
@@ -160,11 +213,14 @@ mod tests {
         let store = opened();
         let record = sample::record(7, "none", 0);
         assert_eq!(store.size().unwrap(), (0, 0));
+        let empty = store.look().unwrap();
         assert_eq!(store.get(&record.key).unwrap(), None);
+        assert_eq!(empty.get(&record.key).unwrap(), None);
         store.put(&record).unwrap();
         store.put(&record).unwrap();
         assert_eq!(store.get(&record.key).unwrap().as_ref(), Some(&record));
         assert_eq!(opened().get(&record.key).unwrap().as_ref(), Some(&record));
+        assert_eq!(opened().look().unwrap().get(&record.key).unwrap().as_ref(), Some(&record));
         let path = segment(&store);
         let whole = fs::read(&path).unwrap();
         assert_eq!(store.size().unwrap(), (1, whole.len() as u64));
@@ -209,6 +265,8 @@ mod tests {
         other.segments.append(&encode(&fresh)).unwrap();
         let opened = DirectoryStore::new(directory.path());
         let differ = opened.get(&stored.key).unwrap_err().to_string();
+        let looked = opened.look().unwrap().get(&stored.key);
+        assert_eq!(looked.unwrap_err().to_string(), differ);
         assert!(differ.starts_with(&format!("trial {}: expected the record", stored.key)));
         fresh.outcome = Outcome::PANICKED;
         fresh.cause = "index out of bounds".into();
@@ -258,6 +316,9 @@ mod tests {
         let text = format!("{{\"sha256\":\"{}\",\"record\":{line}}}\n", Sha256Digest::of(&line));
         fs::write(folder.join(format!("{hex}.json")), &text).unwrap();
         assert_eq!(store.get(&record.key).unwrap().as_ref(), Some(&record));
+        let looked = store.look().unwrap();
+        assert_eq!(looked.get(&record.key).unwrap().as_ref(), Some(&record));
+        assert_eq!(looked.get(&sample::record(7, "none", 1).key).unwrap(), None);
         assert_eq!(store.size().unwrap(), (1, text.len() as u64));
         store.put(&record).unwrap();
         assert!(!directory.path().join("segments").exists(), "it is there already");

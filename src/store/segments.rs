@@ -74,16 +74,24 @@ impl Segments {
         Self { folder, state: Mutex::default() }
     }
 
+    /// Takes note of what was appended to any segment so far.
+    pub(super) fn look(&self) -> io::Result<()> {
+        self.lock().read_on(&self.folder)
+    }
+
     /// Returns every whole record that stands under `key`.
     pub(super) fn get(&self, key: &TrialKey) -> io::Result<Vec<TrialRecord>> {
-        let places = {
-            let mut state = self.lock();
-            if !state.places.contains_key(key) {
-                // Another process may have finished it since.
-                state.read_on(&self.folder)?;
-            }
-            state.places.get(key).cloned().unwrap_or_default()
-        };
+        let known = self.lock().places.contains_key(key);
+        if !known {
+            // Another process may have finished it since.
+            self.look()?;
+        }
+        self.seen(key)
+    }
+
+    /// Returns every whole record that stood under `key` at the last look.
+    pub(super) fn seen(&self, key: &TrialKey) -> io::Result<Vec<TrialRecord>> {
+        let places = self.lock().places.get(key).cloned().unwrap_or_default();
         let mut records = Vec::new();
         for place in places {
             records.extend(decode(&place.read()?));

@@ -8,7 +8,6 @@ use crate::cli::exit::{Exit, Failure};
 use crate::cli::load;
 use crate::cli::terminal::{Terminal, counted};
 use crate::provenance::{Environment, processors};
-use crate::runner::TrialStore as _;
 use crate::store::DirectoryStore;
 use std::cell::RefCell;
 
@@ -37,12 +36,16 @@ pub(in crate::cli) fn run(
         return Ok(Exit::Yes);
     }
     let missing = missing.into_inner();
+    let store = match &missing {
+        Some(_) => None,
+        None => Some(store.look().map_err(Failure::failed)?),
+    };
     let mut text = String::new();
     let (mut done, mut known_seconds) = (0, 0.0);
     for spec in &plan.trials {
-        let record = match &missing {
-            Some(_) => None,
-            None => store.get(&spec.key).map_err(Failure::failed)?,
+        let record = match &store {
+            Some(store) => store.get(&spec.key).map_err(Failure::failed)?,
+            None => None,
         };
         let state = match &record {
             Some(record) => {
