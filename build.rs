@@ -1,9 +1,13 @@
 //! Lists the program's own source, so that `run --capsule` can seal it into a bundle (`src/bundle/capsule.rs`).
 //!
-//! Writes `capsule.rs` to `OUT_DIR`: an array of (path, bytes) that the compiler reads from the files themselves.
+//! Writes `capsule.deflate` to `OUT_DIR`: the number of bytes of what follows unpacked, then deflated for each file the lengths
+//! of its path and of its content, its path and its content. Numbers are of eight bytes, the lowest first.
 
+use flate2::Compression;
+use flate2::write::DeflateEncoder;
 use std::ffi::OsString;
 use std::fs;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 /// Folders taken whole.
@@ -39,14 +43,20 @@ fn main() {
         println!("cargo::rerun-if-changed={file}");
     }
     files.sort();
-    let mut text = String::from("&[\n");
+    let number = |length: usize| (length as u64).to_le_bytes();
+    let mut plain = Vec::new();
     for (name, path) in &files {
-        let path = path.to_str().expect("the source lies under a path in UTF-8");
-        text.push_str(&format!("    ({name:?}, include_bytes!({path:?}) as &[u8]),\n"));
+        let bytes = fs::read(path).expect("the source can be read");
+        plain.extend(number(name.len()));
+        plain.extend(number(bytes.len()));
+        plain.extend(name.as_bytes());
+        plain.extend(bytes);
     }
-    text.push_str("]\n");
+    let mut packed = DeflateEncoder::new(number(plain.len()).to_vec(), Compression::new(6));
+    packed.write_all(&plain).expect("a vector takes every byte");
+    let packed = packed.finish().expect("a vector takes every byte");
     let out = from_cargo("OUT_DIR");
-    fs::write(Path::new(&out).join("capsule.rs"), text).expect("OUT_DIR can be written");
+    fs::write(Path::new(&out).join("capsule.deflate"), packed).expect("OUT_DIR can be written");
 }
 
 /// What cargo tells a build script by the variable `name` of its environment.

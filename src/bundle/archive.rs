@@ -12,6 +12,7 @@ mod unpack;
 use self::layout::Directory;
 use self::told::Faults;
 pub use self::told::told;
+pub(super) use self::unpack::inflate;
 use self::unpack::unpack;
 use super::path::PAYLOAD;
 use super::{BundlePath, Fault, Tree, format, in_payload, names};

@@ -5,8 +5,8 @@
 
 use super::{Tree, archive, format};
 
-/// The source this program was built from, as paths and bytes.
-const FILES: &[(&str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/capsule.rs"));
+/// The source this program was built from, as `build.rs` packs it.
+const PACKED: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/capsule.deflate"));
 
 /// A sealed source.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -17,10 +17,30 @@ pub struct Capsule {
     pub bytes: Vec<u8>,
 }
 
+/// Returns the source this program was built from.
+fn source() -> Tree {
+    const OURS: &str = "the build script packs it so";
+    fn number(bytes: &[u8]) -> (usize, &[u8]) {
+        let (number, rest) = bytes.split_first_chunk().expect(OURS);
+        (usize::try_from(u64::from_le_bytes(*number)).expect(OURS), rest)
+    }
+    let (length, packed) = number(PACKED);
+    let plain = archive::inflate(packed, length as u64).expect(OURS);
+    let (mut files, mut rest) = (Tree::new(), &plain[..]);
+    while !rest.is_empty() {
+        let (path, behind) = number(rest);
+        let (length, behind) = number(behind);
+        let (path, behind) = behind.split_at(path);
+        let (bytes, behind) = behind.split_at(length);
+        files.insert(String::from_utf8(path.to_vec()).expect(OURS), bytes.to_vec());
+        rest = behind;
+    }
+    files
+}
+
 /// Returns this program's own capsule: the same bytes from every build of the same source.
 pub fn own() -> Capsule {
-    let tree: Tree =
-        FILES.iter().map(|(path, bytes)| ((*path).to_owned(), bytes.to_vec())).collect();
+    let tree = source();
     let version = format::VERSION;
     Capsule {
         path: format!("{}reenact-{version}-source.zip", format::ENGINE),
@@ -60,7 +80,8 @@ mod tests {
     fn whatever_the_source_includes_is_in_it() {
         let mut checked = 0;
         let is_rust = |path: &str| Path::new(path).extension().is_some_and(|e| e == "rs");
-        for (path, bytes) in FILES.iter().filter(|(path, _)| is_rust(path)) {
+        let files = source();
+        for (path, bytes) in files.iter().filter(|(path, _)| is_rust(path)) {
             let text = std::str::from_utf8(bytes).unwrap();
             let included =
                 ["include_str!(\"", "include_bytes!(\""].into_iter().flat_map(|macro_| {
@@ -80,7 +101,7 @@ mod tests {
                 checked += 1;
                 let is_for_tests = path.contains("tests") || wanted.starts_with("docs/");
                 assert!(
-                    is_for_tests || FILES.iter().any(|(path, _)| *path == wanted),
+                    is_for_tests || files.contains_key(&wanted),
                     "src includes {wanted}, which the capsule lacks: add it to FILES in build.rs"
                 );
             }

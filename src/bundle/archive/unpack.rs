@@ -6,7 +6,7 @@ use std::num::TryFromIntError;
 
 /// What was found where an entry's declared size and checksum should be, and no byte behind its stream.
 #[derive(Debug, thiserror::Error)]
-pub(super) enum UnpackError {
+pub(in crate::bundle) enum UnpackError {
     #[error("{found} bytes where {declared} are declared")]
     Length { found: usize, declared: u64 },
     #[error("CRC-32 {found:08x} where {declared:08x} is declared")]
@@ -43,7 +43,11 @@ pub(super) fn unpack(entry: &Central<'_>, packed: &[u8]) -> Result<Vec<u8>, Unpa
 /// Bytes that are asked for at least.
 const STEP: u64 = 64 << 10;
 
-fn inflate(packed: &[u8], declared: u64) -> Result<Vec<u8>, UnpackError> {
+/// Returns what the deflate stream `packed` holds, which is `declared` bytes at most.
+///
+/// # Errors
+/// Where it holds more, or is damaged, without an end or not the end.
+pub(in crate::bundle) fn inflate(packed: &[u8], declared: u64) -> Result<Vec<u8>, UnpackError> {
     let (mut stream, mut content, mut rest) = (Decompress::new(false), Vec::new(), packed);
     loop {
         let have = content.len() as u64;
