@@ -88,13 +88,13 @@ impl Cumulative {
         let (ln_p, ln_q) = (ln(p), ln(1.0 - p));
         let mut ln_probability = |k: u64| choose.at(k) + real(k) * ln_p + real(n - k) * ln_q;
         // Up to the number seen, the most probable one, they rise.
-        let (mut first, mut seen_from) = (0, seen.successes);
-        while first < seen_from {
-            let middle = u64::midpoint(first, seen_from);
+        let (mut first, mut last) = (0, seen.successes);
+        while first < last {
+            let middle = u64::midpoint(first, last);
             if ln_probability(middle) < VANISHES {
                 first = middle + 1;
             } else {
-                seen_from = middle;
+                last = middle;
             }
         }
         let (mut sum, mut sums) = (0.0, Vec::new());
