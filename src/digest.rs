@@ -1,6 +1,6 @@
 //! SHA-256 and one type per kind of digest, so that a trial's key can never stand where a bundle's id belongs.
 //!
-//! The only file that names the hash crate.
+//! The only file that names the crates for hashes and for hex digits.
 
 use serde::de::Visitor;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -18,46 +18,22 @@ impl Sha256Digest {
 
     /// Returns the 64 lower-case hex digits.
     pub fn hex(&self) -> String {
-        digits(&self.0)
+        base16ct::lower::encode_string(&self.0)
     }
 
     /// Returns the first 8 hex digits, for names and tables.
     pub fn short(&self) -> String {
-        digits(&self.0[..4])
+        base16ct::lower::encode_string(&self.0[..4])
     }
 
     /// Reads 64 hex digits of either case, as other tools' manifests may carry them; `None` for anything else.
     pub fn from_hex(text: &str) -> Option<Self> {
-        let (pairs, []) = text.as_bytes().as_chunks::<2>() else { return None };
-        if pairs.len() != 32 {
+        if text.len() != 64 {
             return None;
         }
         let mut bytes = [0_u8; 32];
-        for (byte, [high, low]) in bytes.iter_mut().zip(pairs) {
-            *byte = nibble(*high)? << 4 | nibble(*low)?;
-        }
+        base16ct::mixed::decode(text, &mut bytes).ok()?;
         Some(Self(bytes))
-    }
-}
-
-/// Returns two lower-case hex digits a byte. By hand: tens of thousands of digests are written and read in a run.
-fn digits(bytes: &[u8]) -> String {
-    let mut text = String::with_capacity(2 * bytes.len());
-    for byte in bytes {
-        for nibble in [byte >> 4, byte & 0xf] {
-            text.push(char::from(b"0123456789abcdef"[usize::from(nibble)]));
-        }
-    }
-    text
-}
-
-/// Returns the value of a hex digit of either case.
-fn nibble(digit: u8) -> Option<u8> {
-    match digit {
-        b'0'..=b'9' => Some(digit - b'0'),
-        b'a'..=b'f' => Some(digit - b'a' + 10),
-        b'A'..=b'F' => Some(digit - b'A' + 10),
-        _ => None,
     }
 }
 

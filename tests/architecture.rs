@@ -47,6 +47,7 @@ const SHELL: &[&str] = &["provenance", "store", "cli"];
 /// One crate, one door: who may name a crate (a file, or a folder with everything below it).
 const DOORS: &[(&str, &[&str])] = &[
     ("annotate_snippets", &["document/diagnostic.rs"]),
+    ("base16ct", &["digest.rs"]),
     ("base64ct", &["verify/attestation/dsse.rs", "verify/signature/minisign.rs"]),
     ("byteorder", &["report/bag/writer.rs"]),
     ("cdr_encoding", &["report/bag/writer.rs"]),
