@@ -11,7 +11,7 @@ use reenact::mapping::{OccupancyMap, ScanRule};
 use reenact::navigation::{CostGrid, Wavefront, inflate};
 use reenact::rng::Seeds;
 use reenact::robot::{Lidar, Robot, urdf};
-use reenact::sim::{DriveNoise, OdometryNoise, Scene, Simulator, Stepping};
+use reenact::sim::{DriveNoise, OdometryNoise, Scene, Simulator};
 use reenact::studies::prior_map::choice::{Choice, Chooser, Sight};
 use reenact::studies::prior_map::information_gain::AlignedPrior;
 use reenact::studies::prior_map::utility::ranked;
@@ -169,7 +169,6 @@ fn simulator(
         camera: None,
         compass: None,
         start: place,
-        stepping: Stepping::Near,
         drive_noise: DriveNoise::NONE,
         odometry_noise: OdometryNoise::NONE,
     };

@@ -3,19 +3,21 @@
 //!
 //! `cargo bench --bench ratios` ends with an error where one is missed. `.ci/full` runs it.
 
+#[expect(dead_code, reason = "each benchmark looks at what it is about")]
+mod driving;
 mod shipped;
 
+use driving::Drive;
 use reenact::geometry::{Outline, Point, Pose};
 use reenact::grid::Cell;
 use reenact::mapping::OccupancyMap;
 use reenact::navigation::{InflatedMap, Wavefront, inflate};
 use reenact::robot::Lidar;
-use reenact::sim::{DriveNoise, OdometryNoise, Scene, Simulator, Stepping, WallSweep};
+use reenact::sim::WallSweep;
 use reenact::stats::summary::median;
+use reenact::studies::TrialSpec;
+use reenact::studies::prior_map::Setup;
 use reenact::studies::prior_map::choice::{Chooser, Sight};
-use reenact::studies::prior_map::explorer::{CONTROL_PERIOD, Explorer};
-use reenact::studies::prior_map::information_gain::AlignedPrior;
-use reenact::studies::{TrialSpec, prior_map};
 use reenact::units::Tick;
 use std::hint::black_box;
 use std::process::ExitCode;
@@ -29,7 +31,8 @@ const INFLATED: u32 = 9;
 
 /// A part of a trial: what a mind knew at each of its keyframes on one frame of the map.
 struct Passage<'a> {
-    setup: &'a prior_map::Setup,
+    spec: &'a TrialSpec,
+    setup: &'a Setup,
     lidar: Lidar,
     walls: Vec<Outline>,
     states: Vec<State>,
@@ -80,37 +83,19 @@ fn ratio(mut plain: impl FnMut(), mut quick: impl FnMut()) -> f64 {
 impl<'a> Passage<'a> {
     /// Lets a mind explore for five minutes, and keeps the keyframes since its map grew last.
     fn of(spec: &'a TrialSpec) -> Self {
-        let setup = spec.setup.of::<prior_map::Setup>().expect("it is of this study");
-        let mut lidar = setup.robot.lidar.clone().expect("it has a scanner");
-        lidar.noise_sd = setup.parameters.sensing.range_noise_sd_m.unwrap_or(lidar.noise_sd);
-        let walls = setup.world.slice(lidar.height);
-        let mut sim = simulator(setup, &walls, &lidar, spec);
-        let [delays, particles] = ["decision-delay", "slam"].map(|name| spec.seeds.stream(name));
-        let mut mind = Explorer::new(&setup.parameters, &lidar, None, delays, particles);
-        let mut scan = sim.blank_scan();
-        let (mut states, mut next_control) = (Vec::<State>::new(), Tick(0));
-        while mind.ending().is_none() && sim.now() < Tick(300 * 3000) {
-            let odometry = sim.odometry_at_scan();
-            if sim.now() == odometry.stamp && mind.wants_scan(odometry) {
-                sim.read_scan(&mut scan);
-                let changes = mind.take_scan(odometry, &scan);
-                if let Some(changes) = changes.map(|all| all.iter().map(|c| c.cell).collect()) {
-                    let map = mind.map().clone();
-                    if states.last().is_some_and(|s| s.map.grid().frame() != map.grid().frame()) {
-                        states.clear();
-                    }
-                    states.push(State { map, changes, pose: odometry.pose });
-                }
+        let mut drive = Drive::new(spec);
+        let mut states = Vec::<State>::new();
+        while drive.mind.ending().is_none() && drive.sim.now() < Tick(300 * 3000) {
+            let Some(changes) = drive.step().changes else { continue };
+            let map = drive.mind.map().clone();
+            if states.last().is_some_and(|last| last.map.grid().frame() != map.grid().frame()) {
+                states.clear();
             }
-            if sim.now() >= next_control {
-                next_control = next_control + CONTROL_PERIOD;
-                let twist = mind.control(sim.odometry());
-                sim.command(twist);
-            }
-            sim.advance_to(next_control.min(sim.next_scan()));
+            states.push(State { map, changes, pose: drive.sim.odometry_at_scan().pose });
         }
         assert!(states.len() > 10, "{} keyframes are too few to mean anything", states.len());
-        Self { setup, lidar, walls, states }
+        let Drive { setup, lidar, .. } = drive;
+        Self { spec, setup, walls: setup.world.slice(lidar.height), lidar, states }
     }
 
     fn sensors(&self) -> impl Iterator<Item = Pose> {
@@ -186,9 +171,7 @@ impl<'a> Passage<'a> {
 
     fn gains(&self) -> f64 {
         let Self { setup, lidar, states, .. } = self;
-        let resolution = setup.parameters.mapping.resolution_m;
-        let prior =
-            setup.prior.as_ref().map(|prior| AlignedPrior::new(prior, setup.start, resolution));
+        let prior = driving::prior(setup);
         let chooser = || Chooser::new(&setup.parameters, lidar, prior.clone());
         let costs: Vec<_> =
             states.iter().map(|state| inflate(state.map.grid(), INFLATED)).collect();
@@ -214,35 +197,12 @@ impl<'a> Passage<'a> {
     }
 
     fn noise(&self) -> f64 {
-        let plan = shipped::plan("prior-tables-1-6.yaml");
-        let spec = plan.find("office_false_none/0").expect("the manifest has this trial");
         let scan_with = |noise_sd: f64| {
             let lidar = Lidar { noise_sd, ..self.lidar.clone() };
-            let mut sim = simulator(self.setup, &self.walls, &lidar, spec);
+            let mut sim = driving::simulator(self.spec, &lidar);
             let mut scan = sim.blank_scan();
             move || (0..200).for_each(|_| sim.read_scan(black_box(&mut scan)))
         };
         ratio(scan_with(0.0), scan_with(0.1))
     }
-}
-
-fn simulator(
-    setup: &prior_map::Setup,
-    walls: &[Outline],
-    lidar: &Lidar,
-    spec: &TrialSpec,
-) -> Simulator {
-    let scene = Scene {
-        visible: walls,
-        solid: walls,
-        robot: &setup.robot,
-        lidar: lidar.clone(),
-        camera: None,
-        compass: None,
-        start: setup.start,
-        stepping: Stepping::Near,
-        drive_noise: DriveNoise::NONE,
-        odometry_noise: OdometryNoise::NONE,
-    };
-    Simulator::new(scene, &spec.seeds)
 }

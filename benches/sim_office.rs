@@ -6,14 +6,15 @@
 
 #![expect(clippy::print_stdout, reason = "a benchmark prints")]
 
+#[expect(dead_code, reason = "each benchmark looks at what it is about")]
+mod driving;
 mod processor;
 mod shipped;
 
-use reenact::geometry::Outline;
+use driving::Drive;
 use reenact::robot::{Lidar, Twist};
-use reenact::sim::{DriveNoise, OdometryNoise, Scene, Simulator, Stepping};
-use reenact::studies::prior_map::explorer::{CONTROL_PERIOD, Explorer};
-use reenact::studies::{TrialSpec, prior_map};
+use reenact::studies::TrialSpec;
+use reenact::studies::prior_map::explorer::CONTROL_PERIOD;
 use reenact::units::Tick;
 use std::hint::black_box;
 
@@ -38,15 +39,13 @@ const ROWS: [Row; 4] = [
 fn main() {
     let plan = shipped::plan("prior-tables-1-6.yaml");
     let spec = plan.find("office_false_none/0").expect("the manifest has this trial");
-    let setup = spec.setup.of::<prior_map::Setup>().expect("it is of this study");
-    let own = setup.robot.lidar.clone().expect("it has a scanner");
-    let walls = setup.world.slice(own.height);
-    let commands = explore(spec, setup, &walls, &own);
+    let own = driving::lidar(driving::setup(spec));
+    let commands = explore(spec);
     println!("rays  per second  noise m  simulated s/s  million rays/s  Stage 2026-11-28  times");
     for Row { beams, rate_hz, noise_sd, stage } in ROWS {
         let lidar = Lidar { beams, rate_hz, noise_sd, ..own.clone() };
         let begun = processor::seconds();
-        let scans = drive(spec, setup, &walls, &lidar, &commands);
+        let scans = drive(spec, &lidar, &commands);
         let took = processor::seconds() - begun;
         let simulated = END.seconds().get() / took;
         let rays = f64::from(beams) * f64::from(scans) / took / 1e6;
@@ -57,66 +56,21 @@ fn main() {
     }
 }
 
-fn simulator(
-    spec: &TrialSpec,
-    setup: &prior_map::Setup,
-    walls: &[Outline],
-    lidar: &Lidar,
-) -> Simulator {
-    let scene = Scene {
-        visible: walls,
-        solid: walls,
-        robot: &setup.robot,
-        lidar: lidar.clone(),
-        camera: None,
-        compass: None,
-        start: setup.start,
-        stepping: Stepping::Near,
-        drive_noise: DriveNoise::NONE,
-        odometry_noise: OdometryNoise::NONE,
-    };
-    Simulator::new(scene, &spec.seeds)
-}
-
 /// Returns the commands of a mind that explores, one each control cycle; it stands when it is done.
-fn explore(
-    spec: &TrialSpec,
-    setup: &prior_map::Setup,
-    walls: &[Outline],
-    lidar: &Lidar,
-) -> Vec<Twist> {
-    let mut sim = simulator(spec, setup, walls, lidar);
-    let [delays, particles] = ["decision-delay", "slam"].map(|name| spec.seeds.stream(name));
-    let mut mind = Explorer::new(&setup.parameters, lidar, None, delays, particles);
-    let mut scan = sim.blank_scan();
-    let (mut commands, mut next_control) = (Vec::new(), Tick(0));
-    while sim.now() < END {
-        let odometry = sim.odometry_at_scan();
-        if sim.now() == odometry.stamp && mind.wants_scan(odometry) {
-            sim.read_scan(&mut scan);
-            mind.take_scan(odometry, &scan);
-        }
-        if sim.now() >= next_control {
-            next_control = next_control + CONTROL_PERIOD;
-            let twist = mind.control(sim.odometry());
-            commands.push(twist);
-            sim.command(twist);
-        }
-        sim.advance_to(next_control.min(sim.next_scan()));
+fn explore(spec: &TrialSpec) -> Vec<Twist> {
+    let mut drive = Drive::new(spec);
+    let mut commands = Vec::new();
+    while drive.sim.now() < END {
+        commands.extend(drive.step().twist);
     }
-    assert!(sim.travelled() > 300.0, "{} m are too few to mean anything", sim.travelled());
+    let travelled = drive.sim.travelled();
+    assert!(travelled > 300.0, "{travelled} m are too few to mean anything");
     commands
 }
 
 /// Drives by `commands`, reads every scan, and returns how many there were.
-fn drive(
-    spec: &TrialSpec,
-    setup: &prior_map::Setup,
-    walls: &[Outline],
-    lidar: &Lidar,
-    commands: &[Twist],
-) -> u32 {
-    let mut sim = simulator(spec, setup, walls, lidar);
+fn drive(spec: &TrialSpec, lidar: &Lidar, commands: &[Twist]) -> u32 {
+    let mut sim = driving::simulator(spec, lidar);
     let mut scan = sim.blank_scan();
     let (mut scans, mut next_control) = (0, Tick(0));
     let mut commands = commands.iter();

@@ -7,7 +7,7 @@ mod shipped;
 
 use reenact::rng::Seeds;
 use reenact::robot::Twist;
-use reenact::sim::{DriveNoise, OdometryNoise, Scene, Simulator, Stepping};
+use reenact::sim::{DriveNoise, OdometryNoise, Scene, Simulator};
 use reenact::units::{Seconds, Tick};
 
 const SIMULATED: u32 = 20;
@@ -34,7 +34,6 @@ fn circle(bencher: divan::Bencher<'_, '_>, reads_scans: bool) {
             camera: None,
             compass: None,
             start: setup.start(),
-            stepping: Stepping::Near,
             drive_noise: DriveNoise::NONE,
             odometry_noise: OdometryNoise { distance: 0.0, heading: 0.0 },
         };

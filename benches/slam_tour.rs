@@ -20,7 +20,7 @@ use reenact::geometry::{Outline, Point, Pose};
 use reenact::mapping::{FilterRule, KeyframeRule, Mapper, MatchRule, MotionNoise, ScanRule};
 use reenact::rng::Seeds;
 use reenact::robot::{Lidar, Robot, Twist};
-use reenact::sim::{DriveNoise, OdometryNoise, Scene, Simulator, Stepping};
+use reenact::sim::{DriveNoise, OdometryNoise, Scene, Simulator};
 use reenact::studies::{self, prior_map};
 use reenact::units::Tick;
 
@@ -88,7 +88,6 @@ impl Tour {
             camera: None,
             compass: None,
             start: self.way[0],
-            stepping: Stepping::Always,
             drive_noise: DriveNoise::NONE,
             odometry_noise: ODOMETRY,
         };

@@ -8,7 +8,7 @@ use reenact::document::{Source, reports};
 use reenact::geometry::Pose;
 use reenact::rng::Seeds;
 use reenact::robot::{Scan, Twist, urdf};
-use reenact::sim::{DriveNoise, OdometryNoise, Scene, Simulator, Stepping};
+use reenact::sim::{DriveNoise, OdometryNoise, Scene, Simulator};
 use reenact::units::{Seconds, Tick};
 use reenact::world;
 use std::error::Error;
@@ -42,7 +42,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         camera: None,
         compass: None,
         start: Pose::new(3.0, 2.0, 0.0),
-        stepping: Stepping::Always,
         drive_noise: DriveNoise::NONE,
         odometry_noise: OdometryNoise { distance: 0.0, heading: 0.0 },
     };

@@ -1,6 +1,9 @@
 //! The step loop asks for no memory: physics, sensors and control cycles work in what they were given at the start, once it has
 //! grown to the size that they need. A binary of its own, because it counts every allocation.
 
+#[expect(dead_code, reason = "benchmarks drive on")]
+#[path = "../benches/driving/mod.rs"]
+mod driving;
 #[path = "../benches/shipped/mod.rs"]
 mod shipped;
 
@@ -10,11 +13,9 @@ use reenact::geometry::{Outline, Point, Pose};
 use reenact::rng::Seeds;
 use reenact::robot::{Robot, Twist, urdf};
 use reenact::sim::{
-    CameraScene, CompassNoise, Distribution, DriveNoise, Occlusion, OdometryNoise, Scene,
-    Simulator, Stepping,
+    CameraScene, CompassNoise, Distribution, DriveNoise, Occlusion, OdometryNoise, Scene, Simulator,
 };
-use reenact::studies::prior_map;
-use reenact::studies::prior_map::explorer::{CONTROL_PERIOD, Explorer};
+use reenact::studies::prior_map::explorer::CONTROL_PERIOD;
 use reenact::units::Tick;
 use reenact::world::Tag;
 
@@ -60,7 +61,6 @@ fn a_simulated_second_with_all_sensors_read_asks_for_no_memory() {
         }),
         compass: robot.compass.clone().map(|compass| (compass, noise)),
         start: Pose::default(),
-        stepping: Stepping::Near,
         drive_noise: DriveNoise {
             distribution: Distribution::Gaussian,
             linear: 0.1,
@@ -95,24 +95,9 @@ fn a_simulated_second_with_all_sensors_read_asks_for_no_memory() {
 fn a_mind_asks_for_no_memory_between_keyframes() {
     let plan = shipped::plan("quickstart.yaml");
     let spec = plan.find("floor-plan/0").expect("the manifest has this trial");
-    let setup = spec.setup.of::<prior_map::Setup>().expect("it is of this study");
-    let lidar = setup.robot.lidar.clone().expect("it has one");
-    let walls = setup.world.slice(lidar.height);
-    let scene = Scene {
-        visible: &walls,
-        solid: &walls,
-        robot: &setup.robot,
-        lidar: lidar.clone(),
-        camera: None,
-        compass: None,
-        start: setup.start,
-        stepping: Stepping::Near,
-        drive_noise: DriveNoise::NONE,
-        odometry_noise: OdometryNoise::NONE,
-    };
-    let mut sim = Simulator::new(scene, &spec.seeds);
-    let [delays, particles] = ["decision-delay", "slam"].map(|name| spec.seeds.stream(name));
-    let mut mind = Explorer::new(&setup.parameters, &lidar, None, delays, particles);
+    let lidar = driving::lidar(driving::setup(spec));
+    let mut sim = driving::simulator(spec, &lidar);
+    let mut mind = driving::mind(spec, &lidar);
     let mut scan = sim.blank_scan();
     let (mut quiet, mut asking, mut next_control) = (0, 0, Tick(0));
     let mut took_keyframe = false;

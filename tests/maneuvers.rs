@@ -12,7 +12,7 @@ use reenact::rng::{Seeds, Stream};
 use reenact::robot::{Detection, Robot, Scan, urdf};
 use reenact::sim::{
     CameraScene, CompassNoise, Distribution, DriveNoise, Occlusion, OdometryNoise, PHYSICS_PERIOD,
-    Scene, Simulator, Stepping,
+    Scene, Simulator,
 };
 use reenact::units::Seconds;
 use reenact::world::Tag;
@@ -89,7 +89,6 @@ impl Drive {
             }),
             compass: Some((robot.compass.clone().unwrap(), COMPASS)),
             start,
-            stepping: Stepping::Near,
             drive_noise: noise,
             odometry_noise: OdometryNoise::NONE,
         };

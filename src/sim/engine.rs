@@ -3,9 +3,10 @@
 //! rapier2d, 64 bit, enhanced determinism. The body is dynamic with its velocity set every step: kinematic
 //! bodies go straight through walls.
 //!
-//! Where nothing is near, the engine moves a body freely: it integrates the velocity in substeps. With
-//! [`Stepping::Near`] that is done here, in the engine's own arithmetic and to the same bits, and the engine runs only
-//! where something is near.
+//! Where nothing is near, the engine moves a body freely: it integrates the velocity in substeps. That is done here, in the
+//! engine's own arithmetic and to the same bits, and the engine runs only where something is near, which is an order of
+//! magnitude cheaper in a building. In a contact the state that the engine keeps of the pair differs by a fraction of a
+//! millimetre from what it would be had the engine run all the way.
 
 use super::PHYSICS_PERIOD;
 use crate::geometry::{Bounds, Outline, Point, Pose};
@@ -15,17 +16,6 @@ use rapier2d::math::{Pose as Isometry, Rotation};
 use rapier2d::prelude::{
     ColliderBuilder, ColliderHandle, PhysicsWorld, RigidBodyBuilder, RigidBodyHandle, Vector,
 };
-
-/// When the engine runs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stepping {
-    /// At every step.
-    Always,
-    /// Where the bounds of something solid are near: an order of magnitude cheaper in a building. Free motion has the
-    /// same bits; in a contact the state that the engine keeps of the pair differs by a fraction of a millimetre, so a
-    /// study keeps to one of the two.
-    Near,
-}
 
 /// The margin around a body (m) within which something may act on it: points of contact are predicted 2 cm ahead.
 const VIGILANCE: f64 = 0.05;
@@ -41,7 +31,8 @@ pub(super) struct Engine {
     pose: Pose,
     /// The position as the engine keeps it.
     isometry: Isometry,
-    stepping: Stepping,
+    /// The engine runs where the bounds of something are this near (m): [`VIGILANCE`], but in tests.
+    vigilance: f64,
     /// Bounds of what is solid, and how far the body reaches around its origin (m).
     bounds: Vec<Bounds>,
     reach: f64,
@@ -58,7 +49,11 @@ impl std::fmt::Debug for Engine {
 
 impl Engine {
     /// Places `robot` at rest at `start` among the fixed `solid` outlines.
-    pub(super) fn new(solid: &[Outline], robot: &Robot, start: Pose, stepping: Stepping) -> Self {
+    pub(super) fn new(solid: &[Outline], robot: &Robot, start: Pose) -> Self {
+        Self::watching(solid, robot, start, VIGILANCE)
+    }
+
+    fn watching(solid: &[Outline], robot: &Robot, start: Pose, vigilance: f64) -> Self {
         let mut world = PhysicsWorld::new();
         // Seen from above: nothing falls.
         world.gravity = Vector::ZERO;
@@ -86,7 +81,7 @@ impl Engine {
             shell,
             pose: start,
             isometry,
-            stepping,
+            vigilance,
             bounds: solid.iter().map(Outline::bounds).collect(),
             reach: robot.circumscribed_radius(),
             near: true,
@@ -99,7 +94,7 @@ impl Engine {
         let (from, rotation) = (self.isometry.translation, self.isometry.rotation);
         let (cos, sin) = (rotation.re, rotation.im);
         let velocity = Vector::new(twist.linear * cos, twist.linear * sin);
-        if self.stepping == Stepping::Always || self.is_near(twist.linear) {
+        if self.is_near(twist.linear) {
             self.ask(velocity, twist.angular);
         } else {
             self.fly(velocity, twist.angular);
@@ -156,7 +151,7 @@ impl Engine {
             let apart =
                 |b: &Bounds| (b.min.x - x).max(x - b.max.x).max(b.min.y - y).max(y - b.max.y);
             let nearest = self.bounds.iter().map(apart).fold(f64::INFINITY, f64::min);
-            let spare = nearest - self.reach - VIGILANCE - way;
+            let spare = nearest - self.reach - self.vigilance - way;
             self.near = spare <= 0.0;
             self.holds_for = if self.near { (-spare).max(PATIENCE) } else { spare };
         }
@@ -171,7 +166,7 @@ impl Engine {
     /// Returns whether the body touches something: a contact point at zero distance or under pressure, not merely a
     /// near one (the engine tracks points up to 2 cm away, and measures them before the step).
     pub(super) fn is_touching(&self) -> bool {
-        if self.stepping == Stepping::Near && !self.near {
+        if !self.near {
             return false;
         }
         self.world
@@ -220,6 +215,9 @@ mod tests {
     use super::*;
     use crate::rng::Seeds;
 
+    /// Further than anything is away: the engine runs at every step.
+    const ALWAYS: f64 = 1e6;
+
     fn disc() -> Robot {
         Robot::disc(0.2)
     }
@@ -232,7 +230,7 @@ mod tests {
 
     #[test]
     fn a_free_body_goes_where_it_is_driven() {
-        let mut engine = Engine::new(&[], &disc(), Pose::new(1.0, 2.0, 0.0), Stepping::Always);
+        let mut engine = Engine::new(&[], &disc(), Pose::new(1.0, 2.0, 0.0));
         run(&mut engine, Twist { linear: 1.0, angular: 0.0 }, 100);
         assert!((engine.pose().x - 2.0).abs() < 1e-9 && (engine.pose().y - 2.0).abs() < 1e-9);
         run(&mut engine, Twist { linear: 0.0, angular: 1.0 }, 100);
@@ -241,7 +239,7 @@ mod tests {
 
     #[test]
     fn a_quarter_circle_ends_where_geometry_says() {
-        let mut engine = Engine::new(&[], &disc(), Pose::default(), Stepping::Always);
+        let mut engine = Engine::new(&[], &disc(), Pose::default());
         run(&mut engine, Twist { linear: 1.0, angular: 1.0 }, 157);
         let end = engine.pose();
         assert!((end.x - 1.0).abs() < 0.01 && (end.y - 1.0).abs() < 0.01, "{end:?}");
@@ -250,12 +248,12 @@ mod tests {
     #[test]
     fn a_wall_stops_the_body_head_on_and_lets_it_slide_along() {
         let wall = [Outline::rectangle(Point::new(2.0, 0.0), 0.2, 20.0, 0.0)];
-        let mut engine = Engine::new(&wall, &disc(), Pose::default(), Stepping::Always);
+        let mut engine = Engine::new(&wall, &disc(), Pose::default());
         run(&mut engine, Twist { linear: 1.0, angular: 0.0 }, 500);
         assert!(engine.pose().x < 1.71 && engine.pose().x > 1.68, "{}", engine.pose().x);
         assert!(engine.is_touching());
 
-        let mut engine = Engine::new(&wall, &disc(), Pose::new(1.6, 0.0, 1.2), Stepping::Always);
+        let mut engine = Engine::new(&wall, &disc(), Pose::new(1.6, 0.0, 1.2));
         run(&mut engine, Twist { linear: 1.0, angular: 0.0 }, 300);
         assert!(engine.pose().x < 1.72 && engine.pose().y > 2.0, "{:?}", engine.pose());
     }
@@ -263,7 +261,7 @@ mod tests {
     #[test]
     fn nearness_is_not_contact() {
         let wall = [Outline::rectangle(Point::new(0.31, 0.0), 0.2, 2.0, 0.0)];
-        let mut engine = Engine::new(&wall, &disc(), Pose::default(), Stepping::Always);
+        let mut engine = Engine::new(&wall, &disc(), Pose::default());
         engine.step(Twist::STOP);
         assert!(!engine.is_touching(), "1 cm away");
     }
@@ -295,8 +293,8 @@ mod tests {
                 Robot { footprint: footprint.clone(), ..disc() }
             };
             let start = Pose::new(0.0, 0.0, 0.7);
-            let mut always = Engine::new(&solid, &robot, start, Stepping::Always);
-            let mut near = Engine::new(&solid, &robot, start, Stepping::Near);
+            let mut always = Engine::watching(&solid, &robot, start, ALWAYS);
+            let mut near = Engine::new(&solid, &robot, start);
             let mut stream = Seeds::new(9, vec![]).stream("twists");
             let mut twist = Twist::STOP;
             for step in 0..4000_u64 {

@@ -14,7 +14,6 @@ mod odometry;
 pub use camera::{CameraScene, Occlusion};
 pub use compass::CompassNoise;
 pub use drive::DriveNoise;
-pub use engine::Stepping;
 pub use lidar::WallSweep;
 pub use noise::Distribution;
 pub use odometry::OdometryNoise;
@@ -49,8 +48,6 @@ pub struct Scene<'a> {
     pub compass: Option<(robot::Compass, CompassNoise)>,
     /// Its first pose, in the world's frame.
     pub start: Pose,
-    /// When the physics engine runs.
-    pub stepping: Stepping,
     /// Errors of the drive.
     pub drive_noise: DriveNoise,
     /// Errors of odometry.
@@ -120,7 +117,7 @@ impl Simulator {
         let scan_period = Tick::period_of(scene.lidar.rate_hz).unwrap_or(PHYSICS_PERIOD);
         let odometer = Odometer::new(scene.odometry_noise, seeds);
         Self {
-            engine: Engine::new(scene.solid, scene.robot, scene.start, scene.stepping),
+            engine: Engine::new(scene.solid, scene.robot, scene.start),
             drive: Drive::new(scene.drive_noise, &scene.robot.drive, seeds),
             sweep: WallSweep::new(scene.visible, &scene.lidar),
             lidar_noise: seeds.stream("lidar-noise"),
@@ -291,7 +288,6 @@ mod tests {
             camera: Some(CameraScene { camera, tags, occlusion: Occlusion::None }),
             compass: robot.compass.clone().map(|compass| (compass, noise)),
             start: Pose::default(),
-            stepping: Stepping::Near,
             drive_noise: DriveNoise {
                 distribution: Distribution::Uniform,
                 linear: 0.25,

@@ -10,7 +10,7 @@ use super::Setup;
 use super::mind::Mind;
 use crate::geometry::{Bounds, Point};
 use crate::grid::{Cell, Grid, GridFrame};
-use crate::sim::{DriveNoise, OdometryNoise, Scene, Simulator, Stepping};
+use crate::sim::{DriveNoise, OdometryNoise, Scene, Simulator};
 use crate::studies::recording::{Frame, Recording};
 use crate::studies::state_chain::StateChain;
 use crate::studies::{Outcome, TrialRecord, TrialSpec};
@@ -35,7 +35,6 @@ pub(super) fn run(
         camera: None,
         compass: None,
         start: setup.start,
-        stepping: Stepping::Near,
         drive_noise: DriveNoise::NONE,
         odometry_noise: OdometryNoise { distance: 0.0, heading: 0.0 },
     };

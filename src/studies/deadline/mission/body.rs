@@ -7,8 +7,7 @@ use crate::navigation::maneuver::{self, CONTROL_PERIOD, Leg, Pilot, Sense, Speed
 use crate::rng::Seeds;
 use crate::robot::{CompassReading, Detection, Scan, Twist};
 use crate::sim::{
-    CameraScene, CompassNoise, Distribution, DriveNoise, Occlusion, OdometryNoise, Scene,
-    Simulator, Stepping,
+    CameraScene, CompassNoise, Distribution, DriveNoise, Occlusion, OdometryNoise, Scene, Simulator,
 };
 use crate::studies::deadline::build_cmdp::Speed;
 use crate::studies::deadline::intersection::{Intersection, Opening};
@@ -87,7 +86,6 @@ impl<'a> Body<'a> {
                 angular: sensing.drive_noise_angular,
                 correlation: Seconds(sensing.drive_noise_correlation_s),
             },
-            stepping: Stepping::Near,
             // Nothing reads odometry in this study: the paper's robot has compass, laser and camera only.
             odometry_noise: OdometryNoise { distance: 0.0, heading: 0.0 },
         };

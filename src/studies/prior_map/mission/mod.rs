@@ -33,7 +33,7 @@ use super::{Parameters, Setup};
 use crate::geometry::{Outline, Point, Pose};
 use crate::grid::{Cell, GridFrame, Occupancy, OccupancyGrid};
 use crate::robot::{Lidar, Odometry, Scan};
-use crate::sim::{Distribution, DriveNoise, OdometryNoise, Scene, Simulator, Stepping};
+use crate::sim::{Distribution, DriveNoise, OdometryNoise, Scene, Simulator};
 use crate::studies::recording::Recording;
 use crate::studies::{CannotBegin, Outcome, Stopwatch, TrialRecord, TrialSpec};
 use crate::units::{Seconds, Tick};
@@ -160,7 +160,6 @@ fn enact(
         camera: None,
         compass: None,
         start: start.unwrap_or(setup.start),
-        stepping: Stepping::Near,
         drive_noise: DriveNoise {
             distribution: Distribution::Gaussian,
             linear: sensing.drive_noise_linear,
