@@ -156,7 +156,8 @@ type Results = (Vec<(String, Vec<u8>)>, Vec<DescribedTable>);
 fn results(plan: &Plan, records: &[TrialRecord], verdicts: &[ClaimVerdict]) -> Results {
     let experiment = &plan.experiment;
     let findings = findings(plan, records);
-    let dictionary = Dictionary { kind: experiment.kind, factors: &experiment.factors };
+    let further_outcomes = further_outcomes(plan);
+    let dictionary = dictionary(plan, &further_outcomes);
     let in_results = |path: &str| format!("{}{path}", format::RESULTS);
     let trials = findings.trials();
     let words = ("Trials", "one trial, in plan order");
@@ -205,6 +206,24 @@ fn results(plan: &Plan, records: &[TrialRecord], verdicts: &[ClaimVerdict]) -> R
     (files, described)
 }
 
+/// Returns how trials of `plan` can end besides the study's own ways.
+fn further_outcomes(plan: &Plan) -> Vec<Outcome> {
+    let mut found = Vec::new();
+    for condition in &plan.experiment.conditions {
+        for outcome in condition.setup.further_outcomes() {
+            if !found.contains(outcome) {
+                found.push(*outcome);
+            }
+        }
+    }
+    found
+}
+
+fn dictionary<'a>(plan: &'a Plan, further_outcomes: &'a [Outcome]) -> Dictionary<'a> {
+    let experiment = &plan.experiment;
+    Dictionary { kind: experiment.kind, factors: &experiment.factors, further_outcomes }
+}
+
 /// Returns what the data dictionary says of `exhibit`, whose tidy form lies at `path`.
 pub(crate) fn described_table(exhibit: &Exhibit, path: String) -> DescribedTable {
     DescribedTable {
@@ -218,7 +237,9 @@ pub(crate) fn described_table(exhibit: &Exhibit, path: String) -> DescribedTable
 
 /// Returns `exhibit` as a document: its lines, and below them what they leave out and what the marks beside the paper's numbers mean.
 pub(crate) fn in_markdown(exhibit: &Exhibit) -> String {
-    let mut text = format!("# {}\n\n{}", exhibit.title, exhibit.print().to_markdown());
+    let answer = exhibit.answer.iter().map(|answer| format!("{answer}\n\n"));
+    let answer: String = answer.collect();
+    let mut text = format!("# {}\n\n{answer}{}", exhibit.title, exhibit.print().to_markdown());
     if exhibit.set.more > 0 {
         text.push_str(&format!("\n{} more in {}.csv\n", exhibit.set.more, exhibit.id));
     }
@@ -236,7 +257,8 @@ fn measures_the_machine(plan: &Plan) -> bool {
 /// Describes the columns of the inputs in CSV: the paper's own numbers, the calibration of maneuvers, and what became
 /// of the claims at other values of the assumptions.
 fn described_inputs(plan: &Plan) -> Vec<DescribedTable> {
-    let dictionary = Dictionary { kind: plan.experiment.kind, factors: &plan.experiment.factors };
+    let further_outcomes = further_outcomes(plan);
+    let dictionary = dictionary(plan, &further_outcomes);
     let mut described: Vec<DescribedTable> = Vec::new();
     for input in &plan.experiment.inputs {
         let path = format!("{}{}", format::INPUTS, input.name);

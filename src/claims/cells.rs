@@ -123,6 +123,11 @@ impl Where {
         all
     }
 
+    /// Returns whether every condition is selected.
+    pub fn is_all(&self) -> bool {
+        self.0.is_empty()
+    }
+
     /// Counts the combinations without making them.
     pub fn count(&self) -> usize {
         self.0.values().map(|values| values.0.len()).fold(1, usize::saturating_mul)

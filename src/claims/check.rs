@@ -41,6 +41,7 @@ impl Claim {
         check_terms(form, &mut faults);
         form.check(&mut faults);
         faults.base = String::new();
+        faults.selection("/only", &self.only);
         check_assumption(self.power.as_ref(), &mut faults);
         faults.found
     }

@@ -1,6 +1,7 @@
 //! A claim as a manifest states it.
 
 use super::assume::Assume;
+use super::cells::{Values, Where};
 use super::forms::Expect;
 use super::words::{PaperTable, Words};
 use schemars::JsonSchema;
@@ -33,6 +34,9 @@ pub struct Claim {
     pub circumstance: bool,
     /// What `plan --power` takes for the truth.
     pub power: Option<Assume>,
+    /// Only trials of conditions with these factor values: the claim is judged as if no others had been run.
+    #[serde(default, skip_serializing_if = "Where::is_all")]
+    pub only: Where,
     /// Why this form, these cells or this margin, where the paper leaves it open.
     pub why: Option<String>,
 }
@@ -44,6 +48,15 @@ impl Claim {
             (Some(says), _) => Words::Says(says.clone()),
             (None, ours) => Words::Ours(ours.clone().unwrap_or_default()),
         }
+    }
+
+    /// Returns the same claim judged in the conditions alone in which `factor` has the value `level`.
+    #[must_use]
+    pub fn within(&self, factor: &str, level: &str) -> Self {
+        let mut claim = self.clone();
+        claim.id = format!("{}-{level}", self.id);
+        claim.only.0.insert(factor.to_owned(), Values::one(level));
+        claim
     }
 
     /// Returns what the paper's own table shows of it.

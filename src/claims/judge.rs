@@ -38,6 +38,8 @@ pub fn judge_observations(
     observations: &Observations,
     context: &Context<'_>,
 ) -> ClaimVerdict {
+    let of_these = (!claim.only.is_all()).then(|| observations.only(&claim.only));
+    let observations = of_these.as_ref().unwrap_or(observations);
     let bench =
         Bench { claim: &claim.id, observations, context, terms: claim.expect.as_form().terms() };
     let machine = claim.expect.metrics().into_iter().find(|m| m.starts_with(WALL_TIME));
@@ -176,6 +178,9 @@ fn sum_up(
     let reason = match (judgement, total) {
         (Judgement::CannotBeTested, _) => {
             first_reason.unwrap_or_else(|| "the claim compares nothing".to_owned())
+        }
+        (_, 1) if comparisons[0].test == COUNT && comparisons[0].effect.is_some() => {
+            "one number of all trials, held against the bounds".to_owned()
         }
         (_, 1) if comparisons[0].test == COUNT => {
             let counted = comparisons[0].cells.first();

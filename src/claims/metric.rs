@@ -5,8 +5,9 @@ use crate::math::ln;
 use crate::stats::summary::mean;
 use std::fmt;
 
-/// The outcomes that count as success: the goal reached (deadline study), the map explored (prior-map study).
-pub const SUCCESS: [&str; 2] = ["reached", "explored"];
+/// The outcomes that count as success: the goal reached (deadline study), the map explored or as much of it as was asked for
+/// (prior-map study).
+pub const SUCCESS: [&str; 3] = ["reached", "explored", "covered"];
 
 /// The outcome of a trial that the engine failed to run: no result of any kind.
 pub const FAILED: &str = "panicked";

@@ -248,6 +248,15 @@ impl Observations {
         kept
     }
 
+    /// Returns the trials of the conditions that `cell` selects.
+    pub(crate) fn only(&self, cell: &Where) -> Self {
+        let selected = self.select(cell);
+        let conditions: Vec<_> = selected.iter().map(|&i| self.conditions[i].clone()).collect();
+        let levels = Levels::of(self.factors.len(), &conditions);
+        let (factors, measures) = (self.factors.clone(), self.measures.clone());
+        Self { factors, conditions, measures, levels }
+    }
+
     /// Returns the conditions that `cell` selects.
     pub(crate) fn select(&self, cell: &Where) -> Vec<usize> {
         let mut selected: Vec<usize> = (0..self.conditions.len()).collect();

@@ -235,13 +235,40 @@ impl Tree {
         key: &str,
         is_value: &dyn Fn(&Node) -> bool,
     ) -> Result<(), Vec<Diagnostic>> {
+        let base = self.take_in(source, key)?;
+        merge(&mut self.root, base.into_iter().collect(), is_value);
+        Ok(())
+    }
+
+    /// Does what [`Tree::underlay`] does with one source for each value of `factor`: what they have becomes
+    /// `{by: factor, values: {LEVEL: ...}}`, value by value.
+    ///
+    /// # Errors
+    /// Where a source is no YAML.
+    pub fn underlay_by(
+        &mut self,
+        factor: &str,
+        sources: &[(String, Source)],
+        key: &str,
+        is_value: &dyn Fn(&Node) -> bool,
+    ) -> Result<(), Vec<Diagnostic>> {
+        let mut levels = Vec::new();
+        for (level, source) in sources {
+            let entry = self.take_in(source, key)?;
+            levels.extend(entry.map(|entry| (level.as_str(), entry)));
+        }
+        let base = side_by_side(factor, levels, is_value);
+        merge(&mut self.root, base.into_iter().collect(), is_value);
+        Ok(())
+    }
+
+    /// Adds `source` to those of this tree and returns its entry `key`.
+    fn take_in(&mut self, source: &Source, key: &str) -> Result<Option<Entry>, Vec<Diagnostic>> {
         let number = u16::try_from(self.sources.len()).unwrap_or(u16::MAX);
         let base = read_node(source, number, 0)?;
         self.sources.push(source.clone());
-        let Content::Map(base) = base.content else { return Ok(()) };
-        let base = base.into_iter().filter(|entry| entry.key == key).collect();
-        merge(&mut self.root, base, is_value);
-        Ok(())
+        let Content::Map(base) = base.content else { return Ok(None) };
+        Ok(base.into_iter().find(|entry| entry.key == key))
     }
 
     /// Finds the deepest node towards `pointer`, its key's place, and whether it is what the pointer names.
@@ -280,6 +307,48 @@ fn merge(node: &mut Node, base: Vec<Entry>, is_value: &dyn Fn(&Node) -> bool) {
             merge(&mut ours.value, base, is_value);
         }
     }
+}
+
+/// Makes one entry of what several levels of `factor` have under the same key: mappings are gone through, and what is a
+/// value is written by the factor. `None` where there is none.
+fn side_by_side(
+    factor: &str,
+    levels: Vec<(&str, Entry)>,
+    is_value: &dyn Fn(&Node) -> bool,
+) -> Option<Entry> {
+    let (_, Entry { key, key_place, value: Node { place, .. } }) = levels.first()?;
+    let (key, key_place, place) = (key.clone(), *key_place, *place);
+    let is_group =
+        |entry: &Entry| matches!(entry.value.content, Content::Map(_)) && !is_value(&entry.value);
+    let entry = |key: &str, value: Content| Entry {
+        key: key.to_owned(),
+        key_place,
+        value: Node { place, content: value },
+    };
+    let content = if levels.iter().all(|(_, entry)| is_group(entry)) {
+        let mut keys: Vec<String> = Vec::new();
+        for (_, group) in &levels {
+            for inner in group.value.entries() {
+                if !keys.contains(&inner.key) {
+                    keys.push(inner.key.clone());
+                }
+            }
+        }
+        let of = |key: &str| {
+            let having = levels.iter().filter_map(|(level, group)| {
+                group.value.entry(key).map(|inner| (*level, inner.clone()))
+            });
+            side_by_side(factor, having.collect(), is_value)
+        };
+        Content::Map(keys.iter().filter_map(|key| of(key)).collect())
+    } else {
+        let values = levels.into_iter().map(|(level, own)| Entry { key: level.to_owned(), ..own });
+        Content::Map(vec![
+            entry("by", Content::Text(factor.to_owned())),
+            entry("values", Content::Map(values.collect())),
+        ])
+    };
+    Some(Entry { key, key_place, value: Node { place, content } })
 }
 
 /// Returns the place of a node as a whole: its first key, where it is a mapping.

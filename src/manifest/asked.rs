@@ -7,7 +7,7 @@ use super::resolver::Resolver;
 use crate::condition::Condition;
 use crate::digest::MeaningDigest;
 use crate::studies::Expectations;
-use crate::studies::prior_map::{Parameters, SharedReference};
+use crate::studies::prior_map::{CoverageMap, Parameters, SharedReference};
 use crate::studies::{ConditionAsWritten, Graph, Prior, Remark, Surroundings};
 use crate::world::topology::{TagScheme, Topology};
 use serde_json::{Value, json};
@@ -21,6 +21,8 @@ pub(super) struct Asked<'r, 'a> {
     pub(super) parts: Option<Parts>,
     /// The prior knowledge that was asked for.
     pub(super) knowledge: Option<Knowledge>,
+    /// What the map means that coverage is counted against.
+    pub(super) coverage_map: Option<MeaningDigest>,
 }
 
 impl ConditionAsWritten for Asked<'_, '_> {
@@ -61,11 +63,20 @@ impl ConditionAsWritten for Asked<'_, '_> {
         }))
     }
 
+    fn coverage_map(&mut self, own: &Parameters) -> Option<Option<CoverageMap>> {
+        let Some(path) = &own.measurement.coverage_map else { return Some(None) };
+        let start = self.parts.as_ref()?.start;
+        let frame = own.measurement.coverage_map_frame;
+        let (map, meaning) = self.resolver.coverage_map(path, frame, start)?;
+        self.coverage_map = Some(meaning);
+        Some(Some(CoverageMap { map, meaning }))
+    }
+
     fn reference(&mut self, parameters: &Value) -> SharedReference {
         let Some(Parts { robot_meaning, world, start, .. }) = &self.parts else {
             return SharedReference::default();
         };
-        let meanings: [&MeaningDigest; 2] = [robot_meaning, &world.meaning];
+        let meanings = [Some(robot_meaning), Some(&world.meaning), self.coverage_map.as_ref()];
         let key = json!([meanings, start, parameters]).to_string();
         self.resolver.library.references.entry(key).or_default().clone()
     }

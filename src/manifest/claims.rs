@@ -3,13 +3,26 @@
 use super::experiment::ResolvedCondition;
 use super::resolver::Resolver;
 use crate::claims::metric::WALL_TIME_COLUMNS;
-use crate::claims::{self, Known};
+use crate::claims::{self, Claim, Known};
 use crate::document::{Content, Diagnostic, Tree, quoted};
 use crate::studies::StudyKind;
+
+/// Returns the claims as they are judged: as written, or each once for every value of the factor that `claims-by` names.
+pub(super) fn as_judged(resolver: &Resolver<'_>) -> Vec<Claim> {
+    let doc = resolver.doc;
+    let Some(factor) = &doc.claims_by else { return doc.claims.clone() };
+    let known = resolver.factors.iter().find(|known| known.name == *factor);
+    let levels = known.map_or(&[][..], |known| known.values.as_slice());
+    let each = |claim| levels.iter().map(move |level| Claim::within(claim, factor, level));
+    doc.claims.iter().flat_map(each).collect()
+}
 
 /// Collects every fault of the claims.
 pub(super) fn check(resolver: &mut Resolver<'_>, conditions: &[ResolvedCondition]) {
     let doc = resolver.doc;
+    if let Some(factor) = &doc.claims_by {
+        resolver.faults.check_factor(&resolver.factors, factor, "/claims-by", false);
+    }
     // Faults of those that cannot be read have been collected.
     let published: Vec<String> = doc.published.keys().cloned().collect();
     let mut metrics = measures(doc.study);
@@ -58,7 +71,8 @@ fn as_written(tree: &Tree, pointer: &str) -> String {
 
 /// Returns what a claim or table of a study may speak of: success, outcomes and the columns of `results/trials.csv`.
 pub(super) fn measures(kind: StudyKind) -> Vec<String> {
-    let outcomes = kind.outcomes().iter().map(|outcome| format!("outcome:{}", outcome.name()));
+    let outcomes = kind.outcomes().iter().chain(kind.further_outcomes());
+    let outcomes = outcomes.map(|outcome| format!("outcome:{}", outcome.name()));
     let mut names: Vec<String> = std::iter::once("success".to_owned()).chain(outcomes).collect();
     names.extend(kind.measures());
     if kind.times_choices() {

@@ -88,9 +88,10 @@ pub struct ManifestDoc {
     /// trials are not in the store, and what they showed is sealed as an input.
     #[serde(default)]
     pub calibration: Option<String>,
-    /// A file with parameters that several manifests share; those written here go before them.
+    /// A file with parameters that several manifests share, or one for every value of a factor; those written here go
+    /// before them.
     #[serde(default)]
-    pub settings: Option<String>,
+    pub settings: Option<SettingsRef>,
     /// Everything else a trial needs; every value may be plain, `{value, why, range}`, `{factor, why}` or
     /// `{by, values, otherwise, why}`.
     #[serde(default)]
@@ -110,6 +111,30 @@ pub struct ManifestDoc {
     /// Claims to judge.
     #[serde(default)]
     pub claims: Vec<Claim>,
+    /// A factor for each of whose values every claim is judged by itself, under its id and that value.
+    #[serde(default)]
+    pub claims_by: Option<String>,
+}
+
+/// Where settings are: in one file, or in one for every value of a factor.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum SettingsRef {
+    /// The same for all conditions.
+    File(String),
+    /// One for every value of a factor: each sets what the others set, so that each is whole.
+    By(SettingsBy),
+}
+
+/// A file of settings for every value of a factor.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SettingsBy {
+    /// The factor that decides.
+    pub by: String,
+    /// The file for each of its values.
+    #[schemars(extend("minProperties" = 1))]
+    pub values: BTreeMap<String, String>,
 }
 
 /// The publication that is re-enacted.

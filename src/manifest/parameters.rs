@@ -1,5 +1,6 @@
 //! A study's parameters as written: every value plain, with a reason, or by a factor.
 
+use super::faults::step;
 use crate::document::Node;
 use crate::studies::StudyKind;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
@@ -39,7 +40,7 @@ pub(super) enum WrappedValue<'a> {
     By {
         /// The factor.
         factor: &'a str,
-        /// Value of the factor to value of the parameter.
+        /// Value of the factor to value of the parameter, which may be wrapped itself.
         values: &'a Map<String, Value>,
         /// For the values of the factor that are not named, if there is one.
         otherwise: Option<&'a Value>,
@@ -105,8 +106,21 @@ fn collect<'a>(
             (Value::Object(inner), Some(Value::Object(group))) => {
                 collect(inner, group, &pointer, found);
             }
-            _ => found.extend(wrap(value, &pointer)),
+            _ => collect_wrapped(value, &pointer, found),
         }
+    }
+}
+
+/// Collects `value`, where it is wrapped, and what is wrapped in it.
+fn collect_wrapped<'a>(value: &'a Value, pointer: &str, found: &mut Vec<Wrapped<'a>>) {
+    let Some(wrapped) = wrap(value, pointer) else { return };
+    let inner = match &wrapped.value {
+        WrappedValue::By { values, .. } => Some(*values),
+        WrappedValue::Plain(_) | WrappedValue::Factor(_) => None,
+    };
+    found.push(wrapped);
+    for (level, value) in inner.into_iter().flatten() {
+        collect_wrapped(value, &step(&format!("{pointer}/values"), level), found);
     }
 }
 
@@ -121,18 +135,24 @@ fn unwrap_all<'c>(
             (Value::Object(inner), Some(Value::Object(group))) => {
                 Some(Value::Object(unwrap_all(inner, group, value_of)))
             }
-            _ => match wrap(value, "").map(|wrapped| wrapped.value) {
-                None => Some(value.clone()),
-                Some(WrappedValue::Plain(value)) => Some(value.clone()),
-                Some(WrappedValue::By { factor, values, otherwise }) => {
-                    value_of(factor).and_then(|level| values.get(level)).or(otherwise).cloned()
-                }
-                Some(WrappedValue::Factor(factor)) => value_of(factor).map(level_as_written),
-            },
+            _ => unwrap(value, value_of),
         };
         plain.extend(value.map(|value| (key.clone(), value)));
     }
     plain
+}
+
+/// Returns what is wrapped in `value`, itself where nothing is; `None` where no value of a factor has one.
+fn unwrap<'c>(value: &Value, value_of: &dyn Fn(&str) -> Option<&'c str>) -> Option<Value> {
+    match wrap(value, "").map(|wrapped| wrapped.value) {
+        None => Some(value.clone()),
+        Some(WrappedValue::Plain(value)) => Some(value.clone()),
+        Some(WrappedValue::By { factor, values, otherwise }) => {
+            let chosen = value_of(factor).and_then(|level| values.get(level)).or(otherwise);
+            chosen.and_then(|chosen| unwrap(chosen, value_of))
+        }
+        Some(WrappedValue::Factor(factor)) => value_of(factor).map(level_as_written),
+    }
 }
 
 /// Reads a factor's value as a parameter takes it: a number, `true` or `false` where it reads as one, else text.
@@ -170,6 +190,9 @@ pub(super) fn schema_of(kind: StudyKind) -> Value {
     schema.to_value()
 }
 
+/// How deep values by one factor may lie in those by another.
+const NESTED: usize = 3;
+
 /// Lets every value below `schema` be plain, `{value, why, range}`, `{factor, why}` or `{by, values, otherwise, why}`.
 fn wrap_values(schema: &mut Map<String, Value>) {
     let Some(Value::Object(properties)) = schema.get_mut("properties") else { return };
@@ -189,38 +212,38 @@ fn wrap_values(schema: &mut Map<String, Value>) {
             "minItems": 1,
             "description": "Other values that could as well have been chosen: `reenact vary` tries the claims at each.",
         });
-        *property = json!({
-            "description": description,
-            "anyOf": [
-                plain,
-                {
-                    "type": "object",
-                    "properties": { "value": plain, "why": why, "range": range },
-                    "required": ["value", "why"],
-                    "additionalProperties": false,
-                },
-                {
-                    "type": "object",
-                    "properties": {
-                        "factor": { "type": "string", "description": "The factor whose own value this is." },
-                        "why": why,
-                    },
-                    "required": ["factor"],
-                    "additionalProperties": false,
-                },
-                {
-                    "type": "object",
-                    "properties": {
-                        "by": { "type": "string", "description": "The factor that decides." },
-                        "values": { "type": "object", "additionalProperties": plain },
-                        "otherwise": plain,
-                        "why": why,
-                    },
-                    "required": ["by", "values"],
-                    "additionalProperties": false,
-                },
-            ],
+        let valued = json!({
+            "type": "object",
+            "properties": { "value": plain, "why": why, "range": range },
+            "required": ["value", "why"],
+            "additionalProperties": false,
         });
+        let of_a_factor = json!({
+            "type": "object",
+            "properties": {
+                "factor": { "type": "string", "description": "The factor whose own value this is." },
+                "why": why,
+            },
+            "required": ["factor"],
+            "additionalProperties": false,
+        });
+        let mut forms = vec![plain.clone(), valued, of_a_factor];
+        for _ in 0..NESTED {
+            let mut outer = forms[..3].to_vec();
+            outer.push(json!({
+                "type": "object",
+                "properties": {
+                    "by": { "type": "string", "description": "The factor that decides." },
+                    "values": { "type": "object", "additionalProperties": { "anyOf": forms } },
+                    "otherwise": plain,
+                    "why": why,
+                },
+                "required": ["by", "values"],
+                "additionalProperties": false,
+            }));
+            forms = outer;
+        }
+        *property = json!({ "description": description, "anyOf": forms });
     }
 }
 
@@ -248,5 +271,37 @@ mod tests {
         assert_eq!(parameters.sensing.range_m, Some(30.0));
         assert_eq!(parameters.sensing.range_noise_sd_m, Some(0.1));
         assert_eq!(parameters.mapping.resolution_m, 0.05);
+    }
+
+    #[test]
+    fn values_by_one_factor_may_lie_in_those_by_another() {
+        let doc: ParametersDoc = serde_json::from_value(json!({"mapping": {"clip-range-m": {
+            "by": "reading",
+            "values": {
+                "described": null,
+                "released": {"by": "environment", "values": {
+                    "basic": null,
+                    "office": {"value": 25, "why": "as released"},
+                }},
+            },
+        }}}))
+        .unwrap();
+        let kind = StudyKind::named("prior-map").unwrap();
+        let whys: Vec<_> = doc
+            .wrapped(kind)
+            .iter()
+            .filter_map(|w| Some((w.pointer.clone(), w.why?.to_owned())))
+            .collect();
+        let place = "/parameters/mapping/clip-range-m/values/released/values/office";
+        assert_eq!(whys, [(place.to_owned(), "as released".to_owned())]);
+        let clip = |reading: &'static str, environment: &'static str| {
+            let level =
+                |factor: &str| Some(if factor == "reading" { reading } else { environment });
+            let parameters = doc.for_condition(&groups(kind), &level);
+            serde_json::from_value::<Parameters>(parameters).unwrap().mapping.clip_range_m
+        };
+        assert_eq!(clip("described", "office"), None);
+        assert_eq!(clip("released", "basic"), None);
+        assert_eq!(clip("released", "office"), Some(25.0));
     }
 }

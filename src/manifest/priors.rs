@@ -1,7 +1,9 @@
 //! Prior knowledge PK_E: a map file aligned to the world, what is derived from a world, or a graph of places in it.
 
 use super::choice::Choice;
-use super::document::{DerivedFrom, MapPrior, OwnWorld, PriorDoc, PriorFrame, TopoMetricPrior};
+use super::document::{
+    Alpha, DerivedFrom, MapPrior, OwnWorld, PriorDoc, PriorFrame, TopoMetricPrior, UnknownAs,
+};
 use super::faults::step;
 use super::input::InputKind;
 use super::knowledge::{Exploration, Knowledge, Told, UsedPrior, meaning, read_as};
@@ -15,9 +17,9 @@ use crate::document::suggestion;
 use crate::geometry::{Point, Pose};
 use crate::grid::{GridFrame, OccupancyGrid};
 use crate::robot::Robot;
-use crate::studies::prior_map::Parameters;
+use crate::studies::prior_map::{MapFrame, Parameters};
 use crate::world::{floor_plan::FloorPlanSettings, map_server};
-use serde_json::json;
+use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -178,33 +180,58 @@ impl<'a> Resolver<'a> {
     }
 
     fn map(&mut self, doc: &MapPrior, pointer: &str, start: Pose) -> Option<UsedPrior> {
-        let place = format!("{pointer}/map");
-        let described = json!({
-            "map": normalised(&doc.map),
-            "frame": doc.frame,
-            "origin": doc.origin.map(|o| json!({ "x-m": o.x_m, "y-m": o.y_m })),
-            "alpha": doc.alpha,
-            "unknown": doc.unknown,
-        });
+        let places = [format!("{pointer}/map"), format!("{pointer}/frame")];
+        let described = described(doc);
+        let (grid, meaning) = self.map_in_world(doc, &places, start)?;
+        let pointer = pointer.to_owned();
+        Some(UsedPrior { grid, meaning, described, pointer, own: false })
+    }
+
+    /// Returns the map at `path`, as the parameters of a condition name it, in the world's frame.
+    pub(super) fn coverage_map(
+        &mut self,
+        path: &str,
+        frame: MapFrame,
+        start: Pose,
+    ) -> Known<OccupancyGrid> {
+        let places = ["coverage-map", "coverage-map-frame"]
+            .map(|key| format!("/parameters/measurement/{key}"));
+        let frame = match frame {
+            MapFrame::Start => PriorFrame::Start,
+            MapFrame::World => PriorFrame::World,
+        };
+        let doc = MapPrior {
+            map: path.to_owned(),
+            frame,
+            origin: None,
+            alpha: Alpha::default(),
+            unknown: UnknownAs::default(),
+        };
+        self.map_in_world(&doc, &places, start)
+    }
+
+    /// Reads a map; `places` are those of its path and its frame.
+    fn map_in_world(
+        &mut self,
+        doc: &MapPrior,
+        [place, frame_place]: &[String; 2],
+        start: Pose,
+    ) -> Known<OccupancyGrid> {
         let shift = match doc.frame {
             PriorFrame::World => Point::ZERO,
             PriorFrame::Start => start.position(),
         };
         if doc.frame == PriorFrame::Start && start.heading != 0.0 {
             let message = "a map in the start's frame needs a start that faces along x";
-            let fault = self.faults.fault(&format!("{pointer}/frame"), message);
+            let fault = self.faults.fault(frame_place, message);
             let label = format!("the start is turned by {} degrees", start.heading.to_degrees());
-            self.faults.push(fault.label(label).help("turn the image, or use `frame: world`"));
+            let key = frame_place.rsplit('/').next().unwrap_or_default();
+            let help = format!("turn the image, or use `{key}: world`");
+            self.faults.push(fault.label(label).help(help));
             return None;
         }
-        let cache = json!([described, self.faults.written_in(&place), shift]).to_string();
-        let (grid, meaning) = self.once(
-            |library| &mut library.grids,
-            cache,
-            |this| this.read_map(doc, &place, shift),
-        )?;
-        let pointer = pointer.to_owned();
-        Some(UsedPrior { grid, meaning, described, pointer, own: false })
+        let cache = json!([described(doc), self.faults.written_in(place), shift]).to_string();
+        self.once(|library| &mut library.grids, cache, |this| this.read_map(doc, place, shift))
     }
 
     fn read_map(&mut self, doc: &MapPrior, place: &str, shift: Point) -> Known<OccupancyGrid> {
@@ -217,4 +244,14 @@ impl<'a> Resolver<'a> {
         let frame = GridFrame { origin: origin + shift, ..*grid.frame() };
         Some(read_as(&grid, frame, doc.unknown))
     }
+}
+
+fn described(doc: &MapPrior) -> Value {
+    json!({
+        "map": normalised(&doc.map),
+        "frame": doc.frame,
+        "origin": doc.origin.map(|o| json!({ "x-m": o.x_m, "y-m": o.y_m })),
+        "alpha": doc.alpha,
+        "unknown": doc.unknown,
+    })
 }

@@ -9,7 +9,7 @@ use super::numbers::MEASURE;
 use crate::factor::Factor;
 use crate::studies::outcomes::OutcomeTable;
 use crate::studies::prior_map::{
-    AgreementTable, CoverageTable, EffectsTable, MILESTONES, MeasuresTable,
+    AgreementTable, CoverageTable, EffectsTable, MILESTONES, MeasuresTable, ReadingsTable, least_of,
 };
 use crate::studies::{FactorValue, StudyKind, TableLayout, coverage_tables};
 use crate::table::Table;
@@ -53,6 +53,9 @@ impl<'m> Requests<'m> {
                 }
                 TableLayout::AgreementTable(wanted) => {
                     self.check_agreement(wanted, &pointer, faults);
+                }
+                TableLayout::ReadingsTable(wanted) => {
+                    self.check_readings(wanted, &pointer, faults);
                 }
                 TableLayout::EffectsTable(wanted) => {
                     self.check_effects(wanted, &pointer, faults);
@@ -186,8 +189,34 @@ impl<'m> Requests<'m> {
 
     /// Checks that agreement is of coverage tables that have something to agree with.
     fn check_agreement(self, wanted: &AgreementTable, pointer: &str, faults: &mut Faults<'_>) {
+        self.check_compared(&wanted.tables, pointer, faults);
+    }
+
+    /// Checks that readings are of a factor that stands in the rows of every table compared.
+    fn check_readings(self, wanted: &ReadingsTable, pointer: &str, faults: &mut Faults<'_>) {
+        self.check_compared(&wanted.tables, pointer, faults);
+        self.check_only(&wanted.only, pointer, faults);
+        let within = wanted.within.iter().enumerate();
+        let within = within.map(|(i, name)| (name, format!("{pointer}/within/{i}")));
+        let by = (&wanted.by, format!("{pointer}/by"));
+        for (name, place) in std::iter::once(by).chain(within) {
+            if faults.check_factor(self.factors, name, &place, false).is_none() {
+                continue;
+            }
+            let coverage = coverage_tables(&self.doc.tables).into_iter();
+            let mut named = coverage.filter(|(id, _)| wanted.tables.iter().any(|t| t == id));
+            if let Some((id, _)) = named.find(|(_, table)| !table.rows.contains(name)) {
+                let message = format!("`{name}` is not among the rows of the table `{id}`");
+                let fault = faults.fault(&place, message).label("which tells no cell by it");
+                faults.push(fault.help(format!("add `{name}` to that table's `rows`")));
+            }
+        }
+    }
+
+    /// Checks that `tables` are coverage tables that have something to be compared with.
+    fn check_compared(self, tables: &[String], pointer: &str, faults: &mut Faults<'_>) {
         let coverage: Vec<(&str, &CoverageTable)> = coverage_tables(&self.doc.tables);
-        for (i, id) in wanted.tables.iter().enumerate() {
+        for (i, id) in tables.iter().enumerate() {
             let place = format!("{pointer}/tables/{i}");
             let Some((_, table)) = coverage.iter().find(|(known, _)| known == id) else {
                 let known: Vec<&str> = coverage.iter().map(|(id, _)| *id).collect();
@@ -315,7 +344,7 @@ pub(super) fn check_recorded(
         let TableLayout::MeasuresTable(wanted) = &table.layout else { continue };
         for (j, measure) in wanted.measures.iter().enumerate() {
             let place = format!("/tables/{i}/measures-table/measures/{j}");
-            check_measure(measure, &place, &known, faults);
+            check_measure(least_of(measure).unwrap_or(measure), &place, &known, faults);
         }
     }
 }

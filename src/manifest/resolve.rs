@@ -134,7 +134,7 @@ impl Resolver<'_> {
                 .collect(),
             tables: doc.tables.clone(),
             figures: doc.figures.clone(),
-            claims: doc.claims.clone(),
+            claims: claims::as_judged(self),
             assumptions,
             sensitivity,
             calibration: self.calibration_run.take(),
@@ -225,7 +225,13 @@ impl Resolver<'_> {
     fn condition(&mut self, condition: Condition) -> Option<ResolvedCondition> {
         let doc = self.doc;
         let parts = self.parts(&condition);
-        let mut asked = Asked { resolver: self, condition: &condition, parts, knowledge: None };
+        let mut asked = Asked {
+            resolver: self,
+            condition: &condition,
+            parts,
+            knowledge: None,
+            coverage_map: None,
+        };
         let setup = doc.study.setup(&mut asked)?;
         let Asked { parts, knowledge, .. } = asked;
         let Parts { robot_meaning, robot_file, world, .. } = parts?;

@@ -1,5 +1,6 @@
 //! `sensitivity: FILE`: what `reenact vary` found at the other values of the assumptions, read and held against them.
 
+use super::claims::as_judged;
 use super::experiment::{Assumption, Robustness};
 use super::input::InputKind;
 use super::library::normalised;
@@ -39,8 +40,9 @@ pub(super) fn read(resolver: &mut Resolver<'_>, assumptions: &[Assumption]) -> O
             });
         }
     }
-    let claims: Vec<&str> = resolver.doc.claims.iter().map(|claim| claim.id.as_str()).collect();
-    let gone = sensitivity.claims().into_iter().filter(|id| !claims.contains(id));
+    let claims: Vec<String> = as_judged(resolver).into_iter().map(|claim| claim.id).collect();
+    let gone = sensitivity.claims();
+    let gone = gone.into_iter().filter(|id| !claims.iter().any(|claim| claim == id));
     stale.extend(gone.map(|id| format!("it judges `{id}`, which is no claim of this manifest")));
     if let Some(first) = stale.first() {
         let more = match stale.len() - 1 {

@@ -57,6 +57,71 @@ fn the_command_line_goes_over_both_and_can_name_other_settings() {
     assert_eq!((parameters.sensing.range_m, parameters.mapping.resolution_m), (Some(7.0), 0.1));
 }
 
+/// Returns what becomes of a manifest with one file of settings for each of two readings, or its first fault.
+fn with_readings(described: &str, released: &str) -> Result<(Experiment, Vec<Diagnostic>), String> {
+    struct Two([String; 2]);
+    impl Inputs for Two {
+        fn read(&self, as_written: &str, _: WrittenIn) -> Result<Vec<u8>, InputError> {
+            let root = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
+            match as_written {
+                "described.yaml" => Ok(self.0[0].clone().into_bytes()),
+                "released.yaml" => Ok(self.0[1].clone().into_bytes()),
+                _ => std::fs::read(root.join(as_written)).map_err(InputError::other),
+            }
+        }
+    }
+    let text = "reenact: 1\nname: a\ntitle: A\nstudy: prior-map\nseed: 1\ntrials: 1\nrobot: robots/kobuki.urdf\n\
+        world: {file: worlds/basic.yaml}\nstart: {x-m: 3, y-m: 2}\n\
+        settings: {by: reading, values: {described: described.yaml, released: released.yaml}}\n\
+        factors: {reading: [described, released]}\nparameters: {sensing: {range-m: 9}}\nclaims-by: reading\n\
+        claims: [{id: a, ours: quick, expect: {between: {metric: time-s, high: 900}}}]\n";
+    let head = "reenact-settings: 1\nstudy: prior-map\nparameters:\n";
+    let files = Two([described, released].map(|parameters| format!("{head}{parameters}")));
+    resolve(&Source::new("a.yaml", text), &[], &files)
+        .map_err(|faults| faults.iter().map(|fault| fault.render(false)).collect())
+}
+
+#[test]
+fn each_reading_has_settings_of_its_own_and_verdicts_of_its_own() {
+    let (experiment, _) = with_readings(
+        "  sensing: {range-m: 10}\n  exploration: {gain: paper, candidate: middle}\n",
+        "  sensing: {range-m: 30}\n  exploration: {gain: {value: released, why: line 3}, candidate: nearest-to-centroid}\n",
+    )
+    .unwrap();
+    let gains = experiment.conditions.iter().map(|condition| {
+        let setup = condition.setup.of::<prior_map::Setup>().unwrap();
+        (setup.parameters.sensing.range_m, setup.parameters.exploration.gain)
+    });
+    let (paper, released) = (prior_map::Gain::Paper, prior_map::Gain::Released);
+    assert_eq!(gains.collect::<Vec<_>>(), [(Some(9.0), paper), (Some(9.0), released)]);
+    let whys: Vec<_> =
+        experiment.assumptions.iter().map(|a| (a.path.as_str(), a.why.as_str())).collect();
+    assert_eq!(whys, [("parameters.exploration.gain.values.released", "line 3")]);
+    let ids: Vec<&str> = experiment.claims.iter().map(|claim| claim.id.as_str()).collect();
+    assert_eq!(ids, ["a-described", "a-released"]);
+    assert_eq!(experiment.claims[1].only.to_string(), "reading=released");
+}
+
+#[test]
+fn settings_of_a_reading_that_leave_out_what_another_sets_are_a_fault() {
+    let fault = with_readings(
+        "  exploration: {gain: paper}\n",
+        "  exploration: {gain: released, candidate: nearest-to-centroid}\n",
+    )
+    .unwrap_err();
+    assert_eq!(
+        fault,
+        "error: `exploration.candidate` is set here and not in `described.yaml`
+ --> released.yaml:4:33
+  |
+4 |   exploration: {gain: released, candidate: nearest-to-centroid}
+  |                                 ^^^^^^^^^ expected in all of `settings`
+  |
+  = help: say there what holds for `described`
+"
+    );
+}
+
 struct Folder(PathBuf);
 
 impl Inputs for Folder {

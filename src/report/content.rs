@@ -20,6 +20,8 @@ pub struct ReportContent {
     pub limits: Vec<String>,
     /// Why this run is partial; `None` for a whole one.
     pub partial: Option<String>,
+    /// The questions that the study's tables ask, answered: said first.
+    pub answers: Vec<Answer>,
     /// The run in a few numbers.
     pub headline: Headline,
     /// The tables, in the paper's order.
@@ -51,6 +53,18 @@ pub struct Citation {
     pub section: String,
     /// Digital object identifier; may be empty.
     pub doi: String,
+}
+
+/// A question that a table asks, and what it answers.
+#[derive(Debug, Clone, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Answer {
+    /// Id of the table.
+    pub table: String,
+    /// Its title.
+    pub question: String,
+    /// The answer, in sentences.
+    pub answer: String,
 }
 
 /// The run in a few numbers.

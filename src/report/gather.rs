@@ -1,13 +1,15 @@
 //! A report's content, gathered from a sealed bundle and the plan made again from it.
 
 use super::assumptions::{assumptions, tried_with};
-use super::content::{Citation, Figure, Headline, OutcomeCount, ReportContent, ReportTable};
+use super::content::{
+    Answer, Citation, Figure, Headline, OutcomeCount, ReportContent, ReportTable,
+};
 use super::evaluation::{Evaluated, evaluation};
 use super::origin::provenance;
 use super::{claim, limits};
 use crate::bundle::{Bundle, Fault, assemble};
 use crate::plan::{Plan, Selection};
-use crate::studies::{Findings, TrialRecord};
+use crate::studies::{Exhibit, Findings, TrialRecord};
 
 /// Why a bundle gives no report.
 #[derive(Debug, thiserror::Error)]
@@ -39,10 +41,20 @@ pub fn content_of(
     let claims = rows("results/claims.json", bundle.result("claims.json"))?;
     let machine_claims = rows("circumstances/claims.json", machine_verdicts)?;
     let section = cite.and_then(|cite| cite.section.as_deref()).unwrap_or_default();
-    let exhibits =
-        experiment.tables.iter().map(|request| request.exhibit(&findings, &experiment.tables));
-    let tables: Vec<ReportTable> =
-        exhibits.map(|exhibit| ReportTable::of(exhibit, section, trials_a_cell(plan))).collect();
+    let exhibits: Vec<Exhibit> = experiment
+        .tables
+        .iter()
+        .map(|request| request.exhibit(&findings, &experiment.tables))
+        .collect();
+    let answers = exhibits.iter().filter_map(|exhibit| {
+        let answer = exhibit.answer.clone()?;
+        Some(Answer { table: exhibit.id.clone(), question: exhibit.title.clone(), answer })
+    });
+    let answers: Vec<Answer> = answers.collect();
+    let tables: Vec<ReportTable> = exhibits
+        .into_iter()
+        .map(|exhibit| ReportTable::of(exhibit, section, trials_a_cell(plan)))
+        .collect();
     let figures = figures(bundle, plan, &findings);
     let headline = headline(bundle, plan, &records);
     let circumstance = bundle.circumstance();
@@ -67,6 +79,7 @@ pub fn content_of(
             judged: !claims.is_empty(),
             circumstance: circumstance.as_ref(),
         }),
+        answers,
         headline,
         tables,
         figures,

@@ -36,7 +36,8 @@ pub(super) fn limits(
         ));
     }
     if experiment.kind.outcomes().contains(&Outcome::EXPLORED) {
-        let unfinished = count(|outcome| outcome != Outcome::EXPLORED) - panicked;
+        let unfinished =
+            count(|outcome| ![Outcome::EXPLORED, Outcome::COVERED].contains(&outcome)) - panicked;
         if unfinished > 0 {
             limits.push(format!(
                 "{unfinished} of {} trials ended before everything was explored.",

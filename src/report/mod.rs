@@ -28,8 +28,8 @@ pub use bag::{Bag, BagError, bag, bag_under_banner};
 pub use banner::{drawing_under_banner, page_under_banner};
 pub use claim::{ClaimRow, ComparisonRow, NoVerdicts};
 pub use content::{
-    Assumption, Citation, Figure, FlipRow, Headline, OutcomeCount, ReportContent, ReportTable,
-    Tried,
+    Answer, Assumption, Citation, Figure, FlipRow, Headline, OutcomeCount, ReportContent,
+    ReportTable, Tried,
 };
 pub use difference::difference_page;
 pub use evaluation::{Badge, Command, Evaluation};

@@ -17,6 +17,7 @@ use crate::geometry::{Outline, Point, Pose};
 use crate::json;
 use crate::math;
 use serde::Serialize;
+use std::f64::consts::PI;
 
 /// A wheeled robot as its URDF describes it, reduced to what matters in the plane.
 ///
@@ -123,6 +124,26 @@ impl Lidar {
     /// Returns the angle between neighbouring beams (rad).
     pub fn increment(&self) -> f64 {
         (self.max_angle - self.min_angle) / f64::from(self.beams - 1)
+    }
+
+    /// Returns a scanner that looks round by `angle` (rad, above 0), about the same middle, its beams as dense; a full turn
+    /// begins behind.
+    #[must_use]
+    pub fn looking_round(&self, angle: f64) -> Self {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "thousands at most"
+        )]
+        let beams_over = |angle: f64| (angle / self.increment()).ceil() as u32;
+        if angle >= 2.0 * PI {
+            let beams = beams_over(2.0 * PI);
+            let step = 2.0 * PI / f64::from(beams);
+            return Self { beams, min_angle: -PI, max_angle: PI - step, ..self.clone() };
+        }
+        let middle = f64::midpoint(self.min_angle, self.max_angle);
+        let (min_angle, max_angle) = (middle - angle / 2.0, middle + angle / 2.0);
+        Self { beams: beams_over(angle).max(1) + 1, min_angle, max_angle, ..self.clone() }
     }
 }
 

@@ -17,6 +17,7 @@ pub mod proportion;
 pub mod rank;
 pub mod special;
 pub mod summary;
+pub mod unexplained;
 
 /// A range that holds a quantity with the stated confidence.
 #[derive(Debug, Clone, Copy, PartialEq)]

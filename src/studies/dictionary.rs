@@ -15,6 +15,8 @@ pub struct Dictionary<'a> {
     pub kind: StudyKind,
     /// Factors with all their values, in the manifest's order.
     pub factors: &'a [Factor],
+    /// How trials can end besides the study's own ways, as parameters ask for it.
+    pub further_outcomes: &'a [Outcome],
 }
 
 impl Dictionary<'_> {
@@ -134,7 +136,7 @@ impl Dictionary<'_> {
     }
 
     fn outcome(&self) -> Column {
-        let known = [self.kind.outcomes(), &[Outcome::PANICKED]].concat();
+        let known = [self.kind.outcomes(), self.further_outcomes, &[Outcome::PANICKED]].concat();
         let words: Vec<String> =
             known.iter().map(|outcome| format!("{}: {}", outcome.name(), outcome.says())).collect();
         let meaning = format!("Why the trial ended. {}", words.join("; "));

@@ -22,6 +22,8 @@ pub struct Exhibit {
     pub columns: Vec<Column>,
     /// The tidy form: one row a cell.
     pub tidy: Table,
+    /// The answer to the question that it asks, in sentences, where it asks one.
+    pub answer: Option<String>,
     /// The same for readers.
     pub set: Set,
 }
@@ -159,6 +161,11 @@ pub trait Layout {
 
     /// Sets the cells for readers.
     fn set(&self, cells: &[Self::Cell], findings: &Findings<'_>) -> Set;
+
+    /// Answers the question that the table asks, in sentences; `None` where it asks none.
+    fn answer(&self, _cells: &[Self::Cell]) -> Option<String> {
+        None
+    }
 }
 
 impl Exhibit {
@@ -179,6 +186,7 @@ impl Exhibit {
             title: request.title.clone(),
             columns: declared.described().into_iter().map(known).collect(),
             tidy,
+            answer: wanted.answer(&cells),
             set: wanted.set(&cells, findings),
         }
     }

@@ -89,6 +89,11 @@ fn published() -> BTreeMap<String, Table> {
              office,floor-plan,80,150,20,10\noffice,none,95,700,50,10\n",
         ),
         (
+            "time-ways",
+            "environment,prior,coverage-percent,value,sd,n\nbasic,none,80,130,9,10\nbasic,floor-plan,80,80,,\n\
+             office,none,80,900,100,10\n",
+        ),
+        (
             "explored",
             "environment,prior,value,n\nbasic,none,60,50\nbasic,floor-plan,20,50\noffice,none,70,\n",
         ),
@@ -118,6 +123,11 @@ fn requests() -> Vec<TableRequest> {
             "rows": ["environment", "gain", "stop"], "published": "ways"}},
         {"id": "agreement", "title": "Agreement with the paper", "agreement-table": {
             "tables": ["coverage", "readings"]}},
+        {"id": "which-reading", "title": "Which reading explains the tables?", "readings-table": {
+            "tables": ["readings", "times-by-gain"], "by": "gain", "within": ["environment"]}},
+        {"id": "times-by-gain", "title": "Time by gain", "coverage-table": {
+            "metric": "time-s", "at": [80], "by": "prior", "baseline": "none",
+            "rows": ["environment", "gain", "stop"], "published": "time-ways"}},
         {"id": "effects", "title": "What each choice moves", "effects-table": {
             "metric": "distance-m", "at": [70, 75, 80, 85, 90, 95], "factors": ["prior", "gain", "stop"],
             "within": ["environment"], "published": "ways"}},

@@ -71,7 +71,9 @@ impl Outcome {
 
 /// Returns the outcomes of all studies, those twice that two have, and the one of no study.
 fn every() -> impl Iterator<Item = Outcome> {
-    let of_studies = super::STUDIES.iter().flat_map(|study| study.outcomes().iter().copied());
+    let of_study =
+        |study: &&dyn super::Study| [study.outcomes(), study.further_outcomes()].concat();
+    let of_studies = super::STUDIES.iter().flat_map(of_study);
     of_studies.chain([Outcome::PANICKED])
 }
 
@@ -138,7 +140,7 @@ mod tests {
     #[test]
     fn a_word_has_one_meaning_in_all_studies() {
         for study in super::super::STUDIES {
-            for outcome in study.outcomes() {
+            for outcome in &[study.outcomes(), study.further_outcomes()].concat() {
                 let same = Outcome::all().into_iter().find(|other| other == outcome).unwrap();
                 assert_eq!((same.end, same.says), (outcome.end, outcome.says), "{outcome:?}");
                 assert_ne!(outcome.end, End::Fault, "{outcome:?}");
@@ -163,7 +165,7 @@ mod tests {
         assert_eq!(
             serde_json::from_str::<Outcome>("\"won\"").unwrap_err().to_string(),
             "unknown variant `won`, expected one of `reached`, `collided`, `late`, `stalled`, `explored`, `stuck`, \
-             `time-limit`, `panicked`"
+             `time-limit`, `covered`, `panicked`"
         );
     }
 }

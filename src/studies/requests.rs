@@ -52,6 +52,8 @@ table_layouts! {
     CoverageTable "coverage-table" (prior_map::CoverageTable),
     /// Prior map: slope, correlation and distance of log ratios to the baseline, ours against the paper's.
     AgreementTable "agreement-table" (prior_map::AgreementTable),
+    /// Prior map: what each reading of the paper leaves of its tables unexplained.
+    ReadingsTable "readings-table" (prior_map::ReadingsTable),
     /// Prior map: how much each level of a factor moves a metric, over matched conditions.
     EffectsTable "effects-table" (prior_map::EffectsTable),
     /// Prior map: measures of whole trials side by side, as the numbers of section 4.5.

@@ -4,7 +4,7 @@
 //! manifest's condition, how its trials run and end, and what they measure. Nothing outside its folder names it, but for the
 //! layouts of tables and figures that are its own.
 
-use super::prior_map::{self, SharedReference, tour::TopoMetricMap};
+use super::prior_map::{self, CoverageMap, SharedReference, tour::TopoMetricMap};
 use super::recording::Recording;
 use super::{Calibrating, Expectations, Outcome, STUDIES, TrialRecord, TrialSpec};
 use crate::geometry::Pose;
@@ -50,6 +50,11 @@ pub trait Study: Sync {
 
     /// Returns how trials end that are no fault of the program.
     fn outcomes(&self) -> &'static [Outcome];
+
+    /// Returns how trials end besides, where parameters ask for it ([`StudySetup::further_outcomes`]).
+    fn further_outcomes(&self) -> &'static [Outcome] {
+        &[]
+    }
 
     /// Returns the names of every measure that a trial can have, but for those that parameters make
     /// ([`StudySetup::further_measures`]).
@@ -119,6 +124,9 @@ pub trait ConditionAsWritten {
     /// Returns the prior knowledge that the manifest chooses, `Some(None)` where it chooses none.
     fn prior(&mut self, own: &prior_map::Parameters) -> Option<Option<Prior>>;
 
+    /// Returns the map that coverage is counted against, in the world's frame; `Some(None)` where `own` names none.
+    fn coverage_map(&mut self, own: &prior_map::Parameters) -> Option<Option<CoverageMap>>;
+
     /// Returns what coverage is measured against together with every other condition of these `parameters`, robot, world and
     /// start.
     fn reference(&mut self, parameters: &Value) -> SharedReference;
@@ -179,6 +187,11 @@ pub trait StudySetup: Any + fmt::Debug + Send + Sync {
     /// Returns the names of measures that these parameters ask for.
     fn further_measures(&self) -> Vec<String> {
         Vec::new()
+    }
+
+    /// Returns how trials can end by these parameters, besides the study's own ways.
+    fn further_outcomes(&self) -> &'static [Outcome] {
+        &[]
     }
 
     /// Runs a trial under the eyes of `watch`, writing everything down in `recording` where there is one: a pure function of

@@ -1,4 +1,4 @@
-//! `between`: the mean (or `median`, `p95`) of a cell lies between bounds; with `relative-to`, its relative
+//! `between`: the mean (or `median`, `p95`, `least`) of a cell lies between bounds; with `relative-to`, its relative
 //! difference from another cell.
 //!
 //! ```yaml
@@ -23,7 +23,7 @@ use super::scope::Scope;
 use crate::claims::cannot_test::CannotTest;
 use crate::claims::cells::{ForEach, Values, Where};
 use crate::claims::faults::Faults;
-use crate::claims::gather::{Bench, Draft, Evidence, Group, varies};
+use crate::claims::gather::{Bench, COUNT, Draft, Evidence, Group, varies};
 use crate::claims::metric::Metric;
 use crate::claims::terms::Terms;
 use crate::claims::verdict::EffectSize;
@@ -78,6 +78,8 @@ pub enum Statistic {
     Median,
     /// The 95th percentile.
     P95,
+    /// The least of all: a best run, of which nothing is estimated.
+    Least,
 }
 
 impl Between {
@@ -98,6 +100,7 @@ impl Between {
             (None, Statistic::Mean) => (format!("mean {metric}: ({cell}) {words}"), "t"),
             (None, Statistic::Median) => (format!("median {metric}: ({cell}) {words}"), "binomial"),
             (None, Statistic::P95) => (format!("p95 {metric}: ({cell}) {words}"), "binomial"),
+            (None, Statistic::Least) => (format!("least {metric}: ({cell}) {words}"), COUNT),
         }
     }
 
@@ -116,6 +119,7 @@ impl Between {
             },
             ([a, ..], Statistic::Median) => Ok(quantile_level(bench, about, a, 0.5, bounds)),
             ([a, ..], Statistic::P95) => Ok(quantile_level(bench, about, a, 0.95, bounds)),
+            ([a, ..], Statistic::Least) => least_level(bench, about, a, bounds),
             ([], _) => Err(CannotTest::NoCell),
         }
     }
@@ -180,6 +184,31 @@ fn mean_level(group: &Group, bounds: Bounds, confidence: f64) -> Result<Evidence
     });
     let interval = mean_interval(group.summary, confidence);
     let effect = EffectSize::new("mean", group.summary.mean, interval);
+    Ok(Evidence { p_for, p_against, statistics: Vec::new(), effect: Some(effect) })
+}
+
+/// Looks whether the least value lies within the bounds; its interval is of what other runs would have had for theirs.
+fn least_level(
+    bench: &Bench<'_>,
+    about: &str,
+    group: &Group,
+    bounds: Bounds,
+) -> Result<Evidence, CannotTest> {
+    if group.values.is_empty() {
+        return Err(CannotTest::NoCell);
+    }
+    let least = |values: &[f64]| values.iter().copied().fold(f64::INFINITY, f64::min);
+    let found = bootstrap(
+        &[&group.values],
+        |drawn| least(&drawn[0]),
+        bench.context.resamples,
+        bench.confidence(),
+        &mut bench.stream(about),
+    );
+    let is_within = bounds.low.is_none_or(|low| low <= found.estimate)
+        && bounds.high.is_none_or(|high| found.estimate <= high);
+    let (p_for, p_against) = if is_within { (0.0, 1.0) } else { (1.0, 0.0) };
+    let effect = EffectSize::new("least", found.estimate, found.interval);
     Ok(Evidence { p_for, p_against, statistics: Vec::new(), effect: Some(effect) })
 }
 

@@ -6,7 +6,10 @@ use crate::studies::{Exhibit, Lines};
 /// Returns the table, ours beside the paper's, in `width` characters.
 pub(super) fn in_lines(exhibit: &Exhibit, width: usize) -> String {
     let note = |text: &str| wrapped(text, 2, width);
-    let title = wrapped(&exhibit.title, 0, width);
+    let mut title = wrapped(&exhibit.title, 0, width);
+    if let Some(answer) = &exhibit.answer {
+        title.push_str(&note(answer));
+    }
     let (table, keys, left) = match &exhibit.set.lines {
         Lines::All { table, keys, left } => (table, *keys, left),
         Lines::Elsewhere { cells, by } => {
@@ -177,7 +180,9 @@ mod tests {
                 TableLayout::OutcomeTable(_) => ("value", "published"),
                 TableLayout::EffectsTable(_) => ("effect-percent", "gap-percent"),
                 // These have a row where the tidy form has one.
-                TableLayout::AgreementTable(_) | TableLayout::ManeuverTable(_) => {
+                TableLayout::AgreementTable(_)
+                | TableLayout::ReadingsTable(_)
+                | TableLayout::ManeuverTable(_) => {
                     assert_eq!(page.rows.len(), exhibit.tidy.rows.len(), "{id}");
                     return;
                 }
@@ -214,6 +219,9 @@ mod tests {
             }
             for text in [&document, &terminal] {
                 let text = on_one_line(text);
+                if let Some(answer) = &exhibit.answer {
+                    assert!(text.contains(answer.as_str()), "{id}: {text}");
+                }
                 if let Some(rules) = exhibit.rules() {
                     assert!(text.contains(&rules), "{id}: {text}");
                 }

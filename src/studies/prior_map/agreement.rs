@@ -7,10 +7,13 @@ use super::requests::{AgreementTable, CoverageTable};
 use super::results::CoverageCell;
 use crate::condition::Condition;
 use crate::math::ln;
+use crate::rng::{Seeds, Stream};
 use crate::stats::agreement::{Line, line, log_ratio_half_width, rmse, skill_over_constant};
 use crate::stats::compatibility::{Agreement, Method};
 use crate::stats::rank::{pearson, spearman};
-use crate::stats::summary::{Summary, mean};
+use crate::stats::real;
+use crate::stats::summary::{Summary, mean, median};
+use crate::stats::unexplained::{Difference, Unexplained, unexplained};
 use crate::studies::Findings;
 
 /// Confidence of every interval here.
@@ -53,6 +56,61 @@ pub struct TableAgreement {
     pub ratios_inside: (u64, u64),
     /// Of the cells themselves (m or s), how many do, and how many have one.
     pub cells_inside: (u64, u64),
+    /// What the cells themselves tell.
+    pub absolute: Absolute,
+}
+
+/// How cells themselves (m or s) agree with the paper's: judged before any ratio of theirs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Absolute {
+    /// Each cell with a mean and a spread on both sides, its arm among those of the table.
+    pub cells: Vec<Difference>,
+    /// tau: what neither side's sampling explains of a cell, as a share of it.
+    pub unexplained: Unexplained,
+    /// Log of our mean over the paper's, of every cell with a mean on both sides.
+    pub logs: Vec<f64>,
+    /// Mean of these: above 0 ours are longer.
+    pub bias: f64,
+    /// Median over cells of our standard deviation over the paper's.
+    pub spread: f64,
+}
+
+impl Absolute {
+    /// Judges `both` sides, arms numbered by `arm_of`.
+    fn of(both: &[Both<'_>], arm_of: impl Fn(&CoverageCell) -> usize) -> Self {
+        let positive =
+            || both.iter().filter(|both| both.ours.mean > 0.0 && both.printed.mean > 0.0);
+        let relative = |summary: Summary| {
+            let share = summary.sd / summary.mean;
+            share * share / real(summary.n)
+        };
+        let difference = |both: &Both<'_>| Difference {
+            arm: arm_of(both.cell),
+            log_ratio: ln(both.ours.mean / both.printed.mean),
+            variance: relative(both.ours) + relative(both.printed),
+        };
+        let cells: Vec<Difference> =
+            positive().filter(|both| both.spread && both.ours.n >= 2).map(difference).collect();
+        let logs: Vec<f64> =
+            positive().map(|both| ln(both.ours.mean / both.printed.mean)).collect();
+        let spreads: Vec<f64> = both
+            .iter()
+            .filter(|both| both.spread && both.ours.n >= 2 && both.printed.sd > 0.0)
+            .map(|both| both.ours.sd / both.printed.sd)
+            .collect();
+        let found =
+            unexplained(std::slice::from_ref(&cells), RESAMPLES, CONFIDENCE, &mut arms_stream());
+        Self { cells, unexplained: found[0], bias: mean(&logs), logs, spread: median(&spreads) }
+    }
+}
+
+/// Resamples of arms behind an interval of tau.
+pub(super) const RESAMPLES: u32 = 2000;
+
+/// Returns the stream by which arms are resampled: the same for every table, whatever the experiment's seed, so that a
+/// table's interval depends on its cells alone.
+pub(super) fn arms_stream() -> Stream {
+    Seeds::new(0, Vec::new()).stream("agreement/arms")
 }
 
 /// A log ratio on both sides.
@@ -86,7 +144,7 @@ impl Findings<'_> {
                 agreement(
                     id,
                     names,
-                    cells,
+                    (cells, cells),
                     table.baseline.as_ref().map(|b| b.0.as_str()),
                     &readings,
                 )
@@ -127,10 +185,11 @@ impl Findings<'_> {
     }
 }
 
-fn agreement(
+/// Computes the agreement of `cells` with the paper's; their arms are numbered `among` others.
+pub(super) fn agreement(
     id: &str,
     (scope, name): (&str, &str),
-    cells: &[CoverageCell],
+    (cells, among): (&[CoverageCell], &[CoverageCell]),
     baseline: Option<&str>,
     readings: &[String],
 ) -> TableAgreement {
@@ -196,7 +255,28 @@ fn agreement(
         published_mean: mean(&x),
         ratios_inside: tally(&ratios_inside),
         cells_inside: tally(&cells_inside),
+        absolute: Absolute::of(&both, |cell| arm_of(among, cell, readings)),
     }
+}
+
+/// Returns the number of the arm of `cell` among those of `cells`: cells that differ in coverage are of the same runs, and
+/// those that differ in readings alone of the same arm in print.
+fn arm_of(cells: &[CoverageCell], cell: &CoverageCell, readings: &[String]) -> usize {
+    let printed = |rows: &Condition| -> Condition {
+        rows.iter().filter(|(factor, _)| !readings.contains(factor)).cloned().collect()
+    };
+    let own = (printed(&cell.rows), &cell.by);
+    let mut arms: Vec<(Condition, &String)> = Vec::new();
+    for other in cells {
+        let arm = (printed(&other.rows), &other.by);
+        if arm == own {
+            return arms.len();
+        }
+        if !arms.contains(&arm) {
+            arms.push(arm);
+        }
+    }
+    arms.len()
 }
 
 fn on_both_sides(cell: &CoverageCell) -> Option<Both<'_>> {

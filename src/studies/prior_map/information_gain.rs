@@ -1,7 +1,8 @@
 //! I(p): "the estimate of the amount of new (unexplored) area visible from p" (section 3.2).
 
 use super::field_of_view::{Headings, Sector};
-use crate::grid::{Cell, CellSet, Occupancy, OccupancyGrid, Run, examine_runs};
+use crate::geometry::{Bounds, Point, Pose};
+use crate::grid::{Cell, CellSet, GridFrame, Occupancy, OccupancyGrid, Run, examine_runs};
 
 /// The data needed to estimate I(p) on one state of the map.
 #[derive(Debug)]
@@ -154,32 +155,9 @@ pub struct AlignedPrior {
 impl AlignedPrior {
     /// Aligns `prior` (world frame) to the lattice of `resolution` m cells whose frame is the pose `start`: each
     /// lattice cell takes the value of "the cell with the closest center after scaling and alignment".
-    pub fn new(prior: &OccupancyGrid, start: crate::geometry::Pose, resolution: f64) -> Self {
-        use crate::geometry::{Bounds, Point};
-        use crate::grid::GridFrame;
-        let area = prior.frame().bounds();
-        let corners = [
-            area.min,
-            Point::new(area.max.x, area.min.y),
-            area.max,
-            Point::new(area.min.x, area.max.y),
-        ];
-        let bounds = corners
-            .iter()
-            .fold(Bounds::EMPTY, |b, &corner| b.including(start.inverse_transform(corner)));
-        let frame = GridFrame::covering(bounds, resolution);
-        let lattice = GridFrame { origin: Point::ZERO, ..frame };
-        // Half a cell in, so that rounding cannot choose the neighbour.
-        let half = Point::new(resolution / 2.0, resolution / 2.0);
-        let corner = lattice.cell_at(frame.origin + half);
-        let cells = frame
-            .cells()
-            .map(|cell| {
-                let center = lattice.center(Cell::new(cell.x + corner.x, cell.y + corner.y));
-                prior.at(prior.frame().cell_at(start.transform(center)))
-            })
-            .collect();
-        Self { free: OccupancyGrid::from_cells(frame, cells), corner }
+    pub fn new(prior: &OccupancyGrid, start: Pose, resolution: f64) -> Self {
+        let (free, corner) = on_lattice(prior, start, resolution);
+        Self { free, corner }
     }
 
     /// Returns which of the 64 lattice cells from (`x`, `y`) on along x are free in the prior.
@@ -193,11 +171,46 @@ impl AlignedPrior {
     }
 }
 
+/// Lays `map` (world frame) on the lattice of `resolution` m cells whose frame is the pose `origin`, each lattice cell with
+/// the value of the map's cell with the closest centre, of two as close the upper; returns it with the lattice cell of its
+/// cell (0, 0).
+pub(super) fn on_lattice(
+    map: &OccupancyGrid,
+    origin: Pose,
+    resolution: f64,
+) -> (OccupancyGrid, Cell) {
+    let area = map.frame().bounds();
+    let corners = [
+        area.min,
+        Point::new(area.max.x, area.min.y),
+        area.max,
+        Point::new(area.min.x, area.max.y),
+    ];
+    let bounds = corners
+        .iter()
+        .fold(Bounds::EMPTY, |b, &corner| b.including(origin.inverse_transform(corner)));
+    let frame = GridFrame::covering(bounds, resolution);
+    let lattice = GridFrame { origin: Point::ZERO, ..frame };
+    // Half a cell in, so that rounding cannot choose the neighbour.
+    let half = Point::new(resolution / 2.0, resolution / 2.0);
+    let corner = lattice.cell_at(frame.origin + half);
+    // A lattice about the start lies half a cell off maps whose cells begin at whole ones: each of its centres is as close to
+    // two of theirs, and rounding must not choose between them at random.
+    let upward = half * 1e-6;
+    let cells = frame
+        .cells()
+        .map(|cell| {
+            let center = lattice.center(Cell::new(cell.x + corner.x, cell.y + corner.y));
+            map.at(map.frame().cell_at(origin.transform(center) + upward))
+        })
+        .collect();
+    (OccupancyGrid::from_cells(frame, cells), corner)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Point, Pose};
-    use crate::grid::{Axis, GridFrame};
+    use crate::grid::Axis;
     use proptest::prelude::*;
 
     fn grid(origin: Point, value: Occupancy) -> OccupancyGrid {

@@ -28,13 +28,19 @@ pub struct MeasureCell {
     pub agreement: Agreement,
 }
 
+/// Returns the measure whose least value over trials `name` asks for: `least:distance-m`.
+pub fn least_of(name: &str) -> Option<&str> {
+    name.strip_prefix("least:")
+}
+
 impl Findings<'_> {
     /// Returns the cells of a table: rows that were run, then measures.
     pub fn measure_cells(&self, request: &MeasuresTable) -> Vec<MeasureCell> {
         let cell = |rows: &Condition, measure: &String| {
             let here = self.matching(rows);
+            let recorded = least_of(measure).unwrap_or(measure);
             let values: Vec<f64> =
-                here.iter().filter_map(|r| r.measures.get(measure).copied().flatten()).collect();
+                here.iter().filter_map(|r| r.measures.get(recorded).copied().flatten()).collect();
             let published = request.published.as_ref().and_then(|name| {
                 let fixed = rows.clone().with("measure", measure);
                 let (table, row) = self.published_row(name, &fixed)?;
@@ -47,7 +53,12 @@ impl Findings<'_> {
                 let n = number("n").map(|n| n.max(0.0) as u64);
                 Some(Printed { value: number("value")?, sd: number("sd"), n })
             });
-            let ours = (!values.is_empty()).then(|| Summary::of(&values));
+            let least = values.iter().copied().reduce(f64::min).filter(|_| recorded != measure);
+            let ours = match least {
+                // One number of all trials, which has no spread.
+                Some(mean) => Some(Summary { n: 1, mean, sd: f64::NAN }),
+                None => (!values.is_empty()).then(|| Summary::of(&values)),
+            };
             let found = ours.map(Ours::Mean).ok_or_else(|| self.absence(rows, here.len() as u64));
             MeasureCell {
                 agreement: Agreement::between(found, published),
@@ -164,7 +175,8 @@ fn in_print(cell: &MeasureCell) -> String {
         let space = if mark.is_empty() { "" } else { " " };
         text.push_str(&format!(" ({mark}{space}{})", measured(paper.value, paper.sd)));
     }
-    if let Some(ours) = cell.ours.filter(|ours| ours.n < cell.trials) {
+    let told = |ours: &Summary| ours.n < cell.trials && least_of(&cell.measure).is_none();
+    if let Some(ours) = cell.ours.filter(told) {
         text.push_str(&format!(" [{} of {}]", ours.n, cell.trials));
     }
     text
@@ -204,20 +216,22 @@ mod tests {
             record("graph", "0", 1, Some(260.0)),
             record("graph", "4", 0, Some(390.0)),
         ];
-        let csv = "prior,noise,measure,value,sd\ngraph,0,distance-m,239,\ngraph,0,time-s,1,\n";
+        let csv =
+            "prior,noise,measure,value,sd\ngraph,0,least:distance-m,239,\ngraph,0,time-s,1,\n";
         let published = BTreeMap::from([("section".to_owned(), Table::from_csv(csv).unwrap())]);
         let findings = Findings::new(&factors, &records, &published);
         let wanted = MeasuresTable {
-            measures: vec!["distance-m".to_owned()],
+            measures: vec!["distance-m".to_owned(), "least:distance-m".to_owned()],
             rows: vec!["prior".to_owned(), "noise".to_owned()],
             published: Some("section".to_owned()),
         };
         let cells = findings.measure_cells(&wanted);
         assert_eq!(
             wanted.set(&cells, &findings).print.unwrap().to_csv(),
-            "prior,noise,distance-m\nnone,0,400.0 [1 of 2]\ngraph,0,250.0 ± 14.1 (≈ 239.0)\ngraph,4,390.0\n"
+            "prior,noise,distance-m,least:distance-m\nnone,0,400.0 [1 of 2],400.0\n\
+             graph,0,250.0 ± 14.1,240.0 (≈ 239.0)\ngraph,4,390.0,390.0\n"
         );
         let tidy = wanted.columns(&findings).table(&cells).to_csv();
-        assert!(tidy.contains("graph,0,distance-m,250,14.1421,2,2,239,,,within-10-percent,relative-difference,,,4.60251\n"), "{tidy}");
+        assert!(tidy.contains("graph,0,least:distance-m,240,,1,2,239,,,within-10-percent,relative-difference,,,0.41841\n"), "{tidy}");
     }
 }

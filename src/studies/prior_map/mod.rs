@@ -17,6 +17,7 @@ pub mod measures;
 mod mission;
 mod parameters;
 mod phase;
+pub mod readings;
 mod released_gain;
 mod requests;
 pub mod results;
@@ -26,16 +27,19 @@ pub mod tour;
 pub mod utility;
 
 pub use cell_tests::{CellTests, Difference};
+pub use measures::least_of;
 pub use study::PriorMap;
 
 pub use parameters::{
-    Candidate, Coverage, Crossing, Exploration, Gain, Mapping, Measurement, Mission, Navigation,
-    Parameters, Reselect, Sensing, Strategy, View,
+    Candidate, Coverage, Crossing, Exploration, Gain, MapFrame, Mapping, Measurement, Mission,
+    Navigation, Origin, Parameters, ReferenceMap, Reselect, Sensing, Strategy, View,
 };
 pub use requests::{
     AgreementTable, CoverageCurve, CoverageTable, EffectsTable, MeasuresTable, Metric, PlanFigure,
+    ReadingsTable,
 };
 
+use crate::digest::MeaningDigest;
 use crate::geometry::Pose;
 use crate::grid::OccupancyGrid;
 use crate::robot::Robot;
@@ -46,9 +50,18 @@ use tour::TopoMetricMap;
 
 pub use mission::columns;
 pub use mission::{
-    FURTHER_AT_MILESTONES, MILESTONES, NoMap, POSE_ERRORS, Prepared, SharedReference,
-    coverage_at_distance, explored_map, is_coverage_at_distance, run,
+    FURTHER_AT_MILESTONES, MILESTONES, NoMap, POSE_ERRORS, Prepared, SharedReference, at_level,
+    coverage_at_distance, explored_map, is_coverage_at_distance, level_of, run,
 };
+
+/// A map that coverage is counted against.
+#[derive(Debug, Clone)]
+pub struct CoverageMap {
+    /// The map, in the world's frame.
+    pub map: Arc<OccupancyGrid>,
+    /// What it means: where it lies and what it holds.
+    pub meaning: MeaningDigest,
+}
 
 /// Everything that a trial of this study needs.
 #[derive(Debug)]
@@ -65,6 +78,8 @@ pub struct Setup {
     pub start: Pose,
     /// Everything else.
     pub parameters: Parameters,
+    /// The map that coverage is counted against, where the manifest names one.
+    pub coverage_map: Option<CoverageMap>,
     /// The reference of coverage, perhaps shared with other setups.
     reference: SharedReference,
     prepared: OnceLock<Result<Prepared, CannotBegin>>,
@@ -86,6 +101,7 @@ impl Setup {
             topo_metric_map: None,
             start,
             parameters,
+            coverage_map: None,
             reference: SharedReference::default(),
             prepared: OnceLock::new(),
         }
@@ -102,6 +118,21 @@ impl Setup {
     #[must_use]
     pub fn with_topo_metric_map(self, map: Option<Arc<TopoMetricMap>>) -> Self {
         Self { topo_metric_map: map, ..self }
+    }
+
+    /// Returns the same setup, its coverage counted against `map` in the world's frame.
+    #[must_use]
+    pub fn with_coverage_map(self, map: Option<CoverageMap>) -> Self {
+        Self { coverage_map: map, ..self }
+    }
+
+    /// Returns the frame of the robot's map, a pose in the world's (m, rad): cells begin at its origin.
+    pub fn map_frame(&self) -> Pose {
+        let half = self.parameters.mapping.resolution_m / 2.0;
+        match self.parameters.mapping.origin {
+            Origin::Corner => self.start,
+            Origin::Centre => self.start.compose(Pose::new(-half, -half, 0.0)),
+        }
     }
 
     /// Returns the scanner's range for computing a gain, in cells of the robot's map; 0 without a scanner.

@@ -36,6 +36,11 @@ parameters!(
         /// Standard deviation of the Gaussian noise on ranges (m), 0 or more.
         #[schemars(range(min = 0.0))]
         range_noise_sd_m: Option<f64> = None,
+        /// How far round the scanner looks (degrees), about the middle of the robot's own scanner and with its beams as
+        /// dense; 360 is all round.
+        #[serde(skip_serializing_if = "is_default")]
+        #[schemars(range(max = 360.0), extend("exclusiveMinimum" = 0))]
+        field_of_view_deg: Option<f64> = None,
         /// Standard deviation of the error of the executed linear speed, as a share of the command, 0 to 1.
         #[schemars(range(min = 0.0, max = 1.0))]
         drive_noise_linear: f64 = 0.0,
@@ -64,6 +69,9 @@ parameters!(
         /// Side of a map cell (m), above 0.
         #[schemars(extend("exclusiveMinimum" = 0))]
         resolution_m: f64 = 0.1,
+        /// Where in its cell the robot's start lies, and with it every cell.
+        #[serde(skip_serializing_if = "is_default")]
+        origin: Origin = Origin::Corner,
         /// A scan is taken into the map after this much travel (m), above 0.
         #[schemars(extend("exclusiveMinimum" = 0))]
         keyframe_distance_m: f64 = 1.0,
@@ -108,9 +116,9 @@ parameters!(
         #[serde(skip_serializing_if = "is_thousandths::<50>")]
         #[schemars(extend("exclusiveMinimum" = 0))]
         match_sigma_m2: f64 = 0.05,
-        /// How many cells to either side a beam looks for the obstacle it hit, 0 to 10 (`kernelSize`).
+        /// How many cells to either side a beam looks for the obstacle it hit, 0 to 2 (`kernelSize`).
         #[serde(skip_serializing_if = "is::<1>")]
-        #[schemars(range(min = 0, max = 10))]
+        #[schemars(range(min = 0, max = 2))]
         match_kernel_cells: u32 = 1,
         /// A scan whose score, at most its number of beams, is not above this leaves a particle where it moved to, 0 or more
         /// (`minimumScore`).
@@ -175,6 +183,17 @@ impl Mapping {
             resample_threshold: self.resample_threshold,
         }
     }
+}
+
+/// Where in a cell of the map the robot's start lies.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Origin {
+    /// At its lower left corner: cells are found by rounding down.
+    #[default]
+    Corner,
+    /// In its middle: cells are found by rounding to the nearest centre, as GMapping does.
+    Centre,
 }
 
 parameters!(
@@ -329,6 +348,19 @@ parameters!(
     Measurement {
         /// What coverage counts.
         coverage: Coverage = Coverage::Paper,
+        /// Whose map coverage is counted against where `coverage-map` names none.
+        #[serde(skip_serializing_if = "is_default")]
+        reference: ReferenceMap = ReferenceMap::Ideal,
+        /// A `map_server` map that coverage is counted against, by its path from the manifest: what somebody recorded.
+        #[serde(skip_serializing_if = "is_default")]
+        coverage_map: Option<String> = None,
+        /// The frame that the map's origin is given in.
+        #[serde(skip_serializing_if = "is_default")]
+        coverage_map_frame: MapFrame = MapFrame::Start,
+        /// Further levels of coverage (percent, 0 to 100) at which distance and time are recorded.
+        #[serde(skip_serializing_if = "is_default")]
+        #[schemars(inner(range(min = 0.0, max = 100.0)))]
+        coverage_levels_percent: Vec<f64> = Vec::new(),
         /// When a coverage counts as reached; time runs from the trial's start.
         #[serde(skip_serializing_if = "is_default")]
         crossing: Crossing = Crossing::Keyframe,
@@ -345,7 +377,30 @@ parameters!(
     }
 );
 
-/// What coverage counts, against the map that ideal exploration of the same world would make.
+/// Whose map coverage is counted against.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ReferenceMap {
+    /// That of ideal exploration: noiseless scans all round from wherever the body fits.
+    #[default]
+    Ideal,
+    /// What the same robot has known after exploring without any noise or prior knowledge, by the nearest frontier till none is
+    /// left: by each `candidate`, and by choosing anew all the time. What a robot can see at all.
+    Robot,
+}
+
+/// The frame that a map's origin is given in.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum MapFrame {
+    /// That of the robot's start, as mapping programs save what they mapped.
+    #[default]
+    Start,
+    /// The world's.
+    World,
+}
+
+/// What coverage counts, of the map that it is counted against.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Coverage {
@@ -374,6 +429,10 @@ parameters!(
         /// Simulated time after which a trial is ended (s), above 0.
         #[schemars(extend("exclusiveMinimum" = 0))]
         time_limit_s: f64 = 1800.0,
+        /// The experimenter ends the trial where this coverage (percent, above 0, to 100) is reached; `null` means that it goes on.
+        #[serde(skip_serializing_if = "is_default")]
+        #[schemars(range(max = 100.0), extend("exclusiveMinimum" = 0))]
+        stop_at_coverage_percent: Option<f64> = None,
         /// A robot that has not moved `stuck-distance-m` within this time (s) is stuck, above 0.
         #[schemars(extend("exclusiveMinimum" = 0))]
         stuck_after_s: f64 = 60.0,

@@ -39,11 +39,29 @@ pub struct AgreementTable {
     pub tables: Vec<String>,
 }
 
+/// Which reading explains the paper's coverage tables: what each leaves of a cell unexplained.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct ReadingsTable {
+    /// Ids of the coverage tables, each with a `baseline` and `published` numbers and with `by` among its rows.
+    #[schemars(length(min = 1))]
+    pub tables: Vec<String>,
+    /// The factor whose values are readings of the paper.
+    pub by: String,
+    /// Factors of the tables' rows for each of whose values readings are compared besides the whole.
+    #[serde(default)]
+    pub within: Vec<String>,
+    /// Only cells with these factor values.
+    #[serde(default, rename = "where", skip_serializing_if = "BTreeMap::is_empty")]
+    pub only: BTreeMap<String, FactorValue>,
+}
+
 /// Mean and standard deviation of whole trials' measures, side by side, one row for every cell that was run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub struct MeasuresTable {
-    /// Measures of trials, as columns of `results/trials.csv`: `distance-m`, `coverage-percent-at-239-m`.
+    /// Measures of trials, as columns of `results/trials.csv`: `distance-m`, `coverage-percent-at-239-m`; or the least of one
+    /// over the trials of a cell: `least:distance-m`.
     #[schemars(length(min = 1))]
     pub measures: Vec<String>,
     /// Factors whose values get rows of their own; trials that differ in other factors are one cell.

@@ -1,7 +1,9 @@
 //! The prior-knowledge study behind the interface of a study.
 
-use super::mission::{self, columns, coverage_at_distance, is_coverage_at_distance};
-use super::{Parameters, Setup, Strategy};
+use super::mission::{
+    self, at_level, columns, coverage_at_distance, is_coverage_at_distance, level_of,
+};
+use super::{Parameters, ReferenceMap, Setup, Strategy};
 use crate::geometry::Pose;
 use crate::robot::Robot;
 use crate::studies::recording::Recording;
@@ -13,7 +15,7 @@ use crate::studies::{
 use crate::table::Column;
 use crate::world::World;
 use schemars::{Schema, SchemaGenerator};
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 /// Luperto et al. 2020.
 #[derive(Debug)]
@@ -23,6 +25,12 @@ impl Outcome {
     /// Prior map: no frontier is left that the robot could go to.
     pub const EXPLORED: Self =
         Self::new("explored", End::Success, "no frontier was left that the robot could go to");
+    /// Prior map: as much was covered as the manifest asks for.
+    pub const COVERED: Self = Self::new(
+        "covered",
+        End::Success,
+        "the coverage was reached at which the manifest has runs stopped",
+    );
     /// Prior map: the robot could not go on to any frontier, or made no progress.
     pub const STUCK: Self = Self::new(
         "stuck",
@@ -56,6 +64,7 @@ impl Study for PriorMap {
         &[
             "coverage-table",
             "agreement-table",
+            "readings-table",
             "effects-table",
             "measures-table",
             "coverage-curve",
@@ -68,6 +77,10 @@ impl Study for PriorMap {
         &[Outcome::EXPLORED, Outcome::STUCK, Outcome::TIME_LIMIT]
     }
 
+    fn further_outcomes(&self) -> &'static [Outcome] {
+        &[Outcome::COVERED]
+    }
+
     fn measures(&self) -> Vec<String> {
         columns::measures()
     }
@@ -77,7 +90,7 @@ impl Study for PriorMap {
     }
 
     fn is_further_measure(&self, name: &str) -> bool {
-        is_coverage_at_distance(name)
+        is_coverage_at_distance(name) || level_of(name).is_some()
     }
 
     fn has_series(&self) -> bool {
@@ -93,8 +106,13 @@ impl Study for PriorMap {
         // Every part has reported its faults by now; the prior needs them all.
         let (parameters, around) = (parameters?, condition.surroundings()?);
         let knowledge = condition.prior(&parameters)?;
-        let alike =
-            Parameters { exploration: Parameters::default().exploration, ..parameters.clone() };
+        let coverage_map = condition.coverage_map(&parameters)?;
+        let alike = match parameters.measurement.reference {
+            ReferenceMap::Ideal => {
+                Parameters { exploration: Parameters::default().exploration, ..parameters.clone() }
+            }
+            ReferenceMap::Robot => mission::of_reference(&parameters),
+        };
         let reference = condition.reference(&json!(alike));
         let (map, graph) = match knowledge {
             Some(Prior::Map(map)) => (Some(map), None),
@@ -103,6 +121,7 @@ impl Study for PriorMap {
         };
         let setup = Setup::new(around.world, around.robot, map, around.start, parameters)
             .with_topo_metric_map(graph)
+            .with_coverage_map(coverage_map)
             .with_reference(reference);
         for remark in median(&setup).into_iter().chain(tour(&setup)) {
             condition.tell(remark);
@@ -177,9 +196,24 @@ impl StudySetup for Setup {
         json!(self.parameters)
     }
 
+    fn further(&self) -> Map<String, Value> {
+        let map = self.coverage_map.iter();
+        map.map(|map| ("coverage-map".to_owned(), json!(map.meaning))).collect()
+    }
+
     fn further_measures(&self) -> Vec<String> {
-        let asked_for = &self.parameters.measurement.coverage_at_distance_m;
-        asked_for.iter().map(|&distance| coverage_at_distance(distance)).collect()
+        let asked_for = &self.parameters.measurement;
+        let at_distances = asked_for.coverage_at_distance_m.iter();
+        let at_levels = asked_for.coverage_levels_percent.iter();
+        let at_distances = at_distances.map(|&distance| coverage_at_distance(distance));
+        at_distances.chain(at_levels.flat_map(|&level| at_level(level))).collect()
+    }
+
+    fn further_outcomes(&self) -> &'static [Outcome] {
+        match self.parameters.mission.stop_at_coverage_percent {
+            Some(_) => &[Outcome::COVERED],
+            None => &[],
+        }
     }
 
     fn run(

@@ -1,6 +1,7 @@
 //! What is shown of how coverage tables agree with the paper's.
 
 use super::TableAgreement;
+use crate::math::exp;
 use crate::stats::{Interval, real};
 use crate::studies::columns::Columns;
 use crate::studies::exhibit::{Grid, GridCell, GridRow, Layout, Lines, Measured, Set, Source};
@@ -20,11 +21,11 @@ impl Layout for AgreementTable {
             Column::number(name, "", meaning).empty_where("too few cells vary")
         };
         let correlation = |name, meaning| number(name, meaning).at_least(-1.0).at_most(1.0);
-        let end = |name: &str, which: &str, of: &str| {
-            number(
-                name,
-                &format!("{which} end of the {of}'s 95 % interval (jackknife over blocks)"),
-            )
+        let end = |name: &str, which: &str, of: &str, how: &str| {
+            number(name, &format!("{which} end of the {of}'s 95 % interval ({how})"))
+        };
+        let tau = |of: fn(Interval) -> f64| {
+            move |part: &TableAgreement| part.absolute.unexplained.interval.map(of)
         };
         let slope = |of: fn(Interval) -> f64| {
             move |part: &TableAgreement| part.line.intervals.map(|(slope, _)| of(slope))
@@ -58,19 +59,49 @@ impl Layout for AgreementTable {
                 |part| part.blocks,
             )
             .number(
+                Column::number(
+                    "tau",
+                    "",
+                    "What neither side's sampling explains of a cell, as a share of it: 0 is perfect",
+                )
+                .at_least(0.0)
+                .empty_where("the paper prints no spread of any cell"),
+                |part| {
+                    let absolute = &part.absolute;
+                    (!absolute.cells.is_empty()).then_some(absolute.unexplained.tau)
+                },
+            )
+            .number(
+                end("tau-low", "Lower", "tau", ARMS).at_least(0.0),
+                tau(|interval| interval.low),
+            )
+            .number(
+                end("tau-high", "Upper", "tau", ARMS).at_least(0.0),
+                tau(|interval| interval.high),
+            )
+            .number(
+                Column::number(
+                    "bias-percent",
+                    "%",
+                    "Geometric mean of our cells over the paper's, less one",
+                )
+                .empty_where("no cell has a mean on both sides"),
+                |part| Some(percent(part.absolute.bias)).filter(|bias| bias.is_finite()),
+            )
+            .number(
                 number(
                     "slope",
                     "Slope of our log ratios on the paper's: 1 agrees, below 1 our gains are smaller",
                 ),
                 |part| part.line.slope,
             )
-            .number(end("slope-low", "Lower", "slope"), slope(|i| i.low))
-            .number(end("slope-high", "Upper", "slope"), slope(|i| i.high))
+            .number(end("slope-low", "Lower", "slope", BLOCKS), slope(|i| i.low))
+            .number(end("slope-high", "Upper", "slope", BLOCKS), slope(|i| i.high))
             .number(number("intercept", "Intercept of that line: 0 agrees"), |part| {
                 part.line.intercept
             })
-            .number(end("intercept-low", "Lower", "intercept"), intercept(|i| i.low))
-            .number(end("intercept-high", "Upper", "intercept"), intercept(|i| i.high))
+            .number(end("intercept-low", "Lower", "intercept", BLOCKS), intercept(|i| i.low))
+            .number(end("intercept-high", "Upper", "intercept", BLOCKS), intercept(|i| i.high))
             .number(correlation("pearson", "Pearson's correlation of the log ratios"), |part| {
                 part.pearson
             })
@@ -119,6 +150,9 @@ impl Layout for AgreementTable {
     /// Sets one line a part of a table. The columns of the page are its measures of agreement, each on its own.
     fn set(&self, cells: &[TableAgreement], _: &Findings<'_>) -> Set {
         let columns = [
+            "tau",
+            "bias (%)",
+            "share of cells inside",
             "slope",
             "intercept",
             "Pearson",
@@ -126,7 +160,6 @@ impl Layout for AgreementTable {
             "rmse (the score)",
             "skill over the mean ratio",
             "share of ratios inside",
-            "share of cells inside",
         ];
         let row = |part: &TableAgreement| GridRow {
             label: format!("{}, {}", part.table, part.scope),
@@ -147,8 +180,9 @@ impl Layout for AgreementTable {
             print: Some(table.clone()),
             lines: Lines::all(table, 1, [0]),
             legend: vec![
-                "log ratios to the baseline, ours on the paper's; rmse is the score, skill is over the paper's mean ratio; \
-                 in: inside the paper's 95 % prediction interval"
+                "tau: what neither side's sampling explains of a cell; bias: ours longer than the paper's; in: inside the paper's \
+                 95 % prediction interval; slope to skill: log ratios to the baseline, ours on the paper's; rmse is the score, \
+                 skill is over the paper's mean ratio"
                     .to_owned(),
             ],
             more: 0,
@@ -156,10 +190,24 @@ impl Layout for AgreementTable {
     }
 }
 
+/// How intervals come about.
+const BLOCKS: &str = "jackknife over blocks";
+const ARMS: &str = "bootstrap over arms";
+
+/// Returns a log as a difference in percent.
+fn percent(log: f64) -> f64 {
+    100.0 * (exp(log) - 1.0)
+}
+
 /// Returns the cells in the order of the page's columns.
-fn numbers(part: &TableAgreement) -> [GridCell; 8] {
+fn numbers(part: &TableAgreement) -> [GridCell; 10] {
     let share = |(inside, known): (u64, u64)| (real(inside) / real(known), Some(known));
+    let absolute = &part.absolute;
+    let tau = if absolute.cells.is_empty() { f64::NAN } else { absolute.unexplained.tau };
     [
+        (tau, Some(absolute.cells.len() as u64)),
+        (percent(absolute.bias), None),
+        share(part.cells_inside),
         (part.line.slope, Some(part.ratios)),
         (part.line.intercept, None),
         (part.pearson, None),
@@ -167,7 +215,6 @@ fn numbers(part: &TableAgreement) -> [GridCell; 8] {
         (part.rmse, None),
         (part.skill, None),
         share(part.ratios_inside),
-        share(part.cells_inside),
     ]
     .map(|(mean, n)| GridCell {
         ours: mean.is_finite().then_some(Measured { mean, sd: None, n }),
@@ -177,15 +224,26 @@ fn numbers(part: &TableAgreement) -> [GridCell; 8] {
 
 /// Returns the lines, in 80 columns where names are short: each table, then its parts.
 fn in_print(parts: &[TableAgreement]) -> Table {
-    let columns = ["part", "ratios", "slope", "Pearson", "rmse", "skill", "in", "cells in"];
+    let columns =
+        ["part", "tau %", "bias %", "cells in", "ratios", "slope", "r", "rmse", "skill", "in"];
     let mut table = Table::new(columns);
     for part in parts {
         let number = |x: f64| if x.is_finite() { format!("{x:.2}") } else { "-".to_owned() };
-        let slope = match part.line.intervals {
-            Some((slope, _)) => {
-                format!("{:.2} [{:.2}, {:.2}]", part.line.slope, slope.low, slope.high)
-            }
-            None => number(part.line.slope),
+        let absolute = &part.absolute;
+        let tau = match (absolute.cells.is_empty(), absolute.unexplained.interval) {
+            (true, _) => "-".to_owned(),
+            (_, Some(Interval { low, high, .. })) => format!(
+                "{:.0} [{:.0}, {:.0}]",
+                100.0 * absolute.unexplained.tau,
+                100.0 * low,
+                100.0 * high
+            ),
+            _ => format!("{:.0}", 100.0 * absolute.unexplained.tau),
+        };
+        let bias = if absolute.bias.is_finite() {
+            format!("{:+.0}", percent(absolute.bias))
+        } else {
+            "-".to_owned()
         };
         let of = |(inside, known): (u64, u64)| format!("{inside}/{known}");
         let ratios = match part.missing {
@@ -194,13 +252,15 @@ fn in_print(parts: &[TableAgreement]) -> Table {
         };
         let texts = [
             part.name.clone(),
+            tau,
+            bias,
+            of(part.cells_inside),
             ratios,
-            slope,
+            number(part.line.slope),
             number(part.pearson),
             number(part.rmse),
             number(part.skill),
             of(part.ratios_inside),
-            of(part.cells_inside),
         ];
         table.push(texts.map(Value::from).to_vec());
     }

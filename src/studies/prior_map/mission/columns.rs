@@ -2,7 +2,7 @@
 
 use super::FURTHER_AT_MILESTONES;
 use super::pose_errors::POSE_ERRORS;
-use super::trace::{MILESTONES, coverage_at_distance};
+use super::trace::{MILESTONES, coverage_at_distance, level_of};
 use crate::studies::prior_map::requests::Metric;
 use crate::table::{Column, unit_of};
 
@@ -83,7 +83,11 @@ fn pose_error(name: &str) -> Option<Column> {
 
 fn at_milestone(name: &str) -> Option<Column> {
     let (what, percent) = name.rsplit_once("-at-")?;
-    let percent = percent.parse().ok().filter(|percent| MILESTONES.contains(percent))?;
+    let percent: f64 = percent.parse().ok()?;
+    let is_milestone = MILESTONES.iter().any(|&known| f64::from(known) == percent);
+    if !is_milestone && level_of(name).is_none() {
+        return None;
+    }
     let never = format!("coverage never reached {percent} %");
     let then = format!("when {percent} % of the environment was covered");
     let column = match what {
@@ -115,7 +119,9 @@ mod tests {
         }
         let asked_for = measure("coverage-percent-at-239-m").unwrap();
         assert_eq!(asked_for.meaning, "Coverage when the robot had travelled 239 m");
-        assert_eq!(measure("distance-m-at-51"), None);
+        let further = measure("distance-m-at-99.5").unwrap();
+        assert_eq!(further.meaning, "Way travelled when 99.5 % of the environment was covered");
+        assert_eq!(measure("decisions-at-51"), None);
         assert_eq!(measure("coverage-percent-at-m"), None);
     }
 }

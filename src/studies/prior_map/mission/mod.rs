@@ -24,14 +24,16 @@ mod trace;
 
 pub use pose_errors::POSE_ERRORS;
 pub use reference::SharedReference;
-pub use trace::{MILESTONES, coverage_at_distance, is_coverage_at_distance};
+pub(super) use reference::of_reference;
+pub use trace::{MILESTONES, at_level, coverage_at_distance, is_coverage_at_distance, level_of};
 
 use super::explorer::{CONTROL_PERIOD, Ending, Explorer};
 use super::information_gain::AlignedPrior;
 use super::tour::Tour;
-use super::{Parameters, Setup};
+use super::{Origin, Parameters, Setup};
 use crate::geometry::{Outline, Point, Pose};
 use crate::grid::{Cell, GridFrame, Occupancy, OccupancyGrid};
+use crate::rng::Seeds;
 use crate::robot::{Lidar, Odometry, Scan};
 use crate::sim::{Distribution, DriveNoise, OdometryNoise, Scene, Simulator};
 use crate::studies::recording::Recording;
@@ -58,26 +60,30 @@ pub struct Prepared {
 }
 
 impl Prepared {
-    /// Cuts the world at the lidar's height, aligns the prior and explores ideally.
+    /// Cuts the world at the lidar's height, aligns the prior and makes what coverage is counted against.
     ///
     /// # Errors
     /// Where the robot has no range scanner, which resolution refuses with a better message.
     pub fn new(setup: &Setup) -> Result<Self, CannotBegin> {
         let own = setup.robot.lidar.as_ref().ok_or(CannotBegin::NoScanner)?;
         let sensing = &setup.parameters.sensing;
+        let own = match sensing.field_of_view_deg {
+            Some(degrees) => own.looking_round(degrees.to_radians()),
+            None => own.clone(),
+        };
         let lidar = Lidar {
             max_range: sensing.range_m.unwrap_or(own.max_range),
             noise_sd: sensing.range_noise_sd_m.unwrap_or(own.noise_sd),
-            ..own.clone()
+            ..own
         };
         let visible = setup.world.slice(lidar.height);
         let solid = setup.world.contact(setup.robot.body_z[0], setup.robot.body_z[1]);
-        let resolution = setup.parameters.mapping.resolution_m;
-        let prior =
-            setup.prior.as_ref().map(|prior| AlignedPrior::new(prior, setup.start, resolution));
-        let explore = || Reference::explore(setup, &lidar, &visible, &solid);
-        let reference = setup.reference.get_or_explore(explore);
-        Ok(Self { visible, solid, lidar, prior, reference })
+        let (frame, resolution) = (setup.map_frame(), setup.parameters.mapping.resolution_m);
+        let prior = setup.prior.as_ref().map(|prior| AlignedPrior::new(prior, frame, resolution));
+        let mut prepared =
+            Self { visible, solid, lidar, prior, reference: Arc::new(Reference::default()) };
+        prepared.reference = setup.reference.get_or_explore(|| Reference::of(setup, &prepared));
+        Ok(prepared)
     }
 }
 
@@ -104,7 +110,7 @@ pub fn explored_map(spec: &TrialSpec, setup: &Setup) -> Result<OccupancyGrid, No
         return Err(NoMap::Turned { degrees: setup.start.heading.to_degrees() });
     }
     let (_, mind) = enact(spec, setup, setup.prepared()?, None, &mut ());
-    known_part(mind.map().grid(), setup.start.position()).ok_or(NoMap::Empty)
+    known_part(mind.map().grid(), setup.map_frame().position()).ok_or(NoMap::Empty)
 }
 
 /// The reason why a trial leaves no map that another may be given.
@@ -148,9 +154,21 @@ fn enact(
     recording: Option<&mut Recording>,
     watch: &mut dyn Stopwatch,
 ) -> (TrialRecord, Explorer) {
+    let mut mission = begin(&spec.seeds, setup, prepared, recording, watch);
+    let ending = mission.drive();
+    mission.measured(spec, ending)
+}
+
+fn begin<'a>(
+    seeds: &Seeds,
+    setup: &'a Setup,
+    prepared: &'a Prepared,
+    recording: Option<&'a mut Recording>,
+    watch: &'a mut dyn Stopwatch,
+) -> Mission<'a> {
     // 1. The start.
     let Parameters { sensing, measurement, .. } = &setup.parameters;
-    let start = start::draw(setup, &prepared.solid, &spec.seeds);
+    let start = start::draw(setup, &prepared.solid, seeds);
     // 2. The scene.
     let scene = Scene {
         visible: &prepared.visible,
@@ -171,14 +189,14 @@ fn enact(
             heading: sensing.odometry_noise_heading,
         },
     };
-    let sim = Simulator::new(scene, &spec.seeds);
+    let sim = Simulator::new(scene, seeds);
     // 3. The mind.
     let node_noise = setup.parameters.exploration.node_noise_sd_m;
     let tour = setup.topo_metric_map.as_ref().map(|map| {
-        let mut noise = spec.seeds.stream("node-noise");
-        Tour::new(&map.seen_from(setup.start).with_noise(node_noise, &mut noise))
+        let mut noise = seeds.stream("node-noise");
+        Tour::new(&map.seen_from(setup.map_frame()).with_noise(node_noise, &mut noise))
     });
-    let mission = Mission {
+    Mission {
         setup,
         prepared,
         scan: sim.blank_scan(),
@@ -187,8 +205,8 @@ fn enact(
             &setup.parameters,
             &prepared.lidar,
             prepared.prior.clone(),
-            spec.seeds.stream("decision-delay"),
-            spec.seeds.stream("slam"),
+            seeds.stream("decision-delay"),
+            seeds.stream("slam"),
         )
         .with_tour(tour),
         errors: PoseErrors::default(),
@@ -196,14 +214,22 @@ fn enact(
             prepared.reference.total(),
             measurement.crossing,
             &measurement.coverage_at_distance_m,
+            &measurement.coverage_levels_percent,
         ),
         further: BTreeMap::new(),
         recorder: recording.map(|recording| Recorder::new(recording, setup, &prepared.visible)),
         moved: (start.unwrap_or(setup.start), Tick(0)),
-        known_start: start.map(|start| setup.start.relative(start)),
+        known_start: known_start(setup, start),
         watch,
-    };
-    mission.run(spec)
+    }
+}
+
+/// Returns where the robot, which begins at `start` or as the manifest says, begins in the frame of its map; `None` where
+/// that is its origin.
+fn known_start(setup: &Setup, start: Option<Pose>) -> Option<Pose> {
+    let is_shifted = setup.parameters.mapping.origin != Origin::Corner;
+    let start = start.or_else(|| is_shifted.then_some(setup.start))?;
+    Some(setup.map_frame().relative(start))
 }
 
 struct Mission<'a> {
@@ -218,8 +244,8 @@ struct Mission<'a> {
     further: BTreeMap<String, f64>,
     /// Errors of poses, where these are estimated.
     errors: PoseErrors,
-    /// The robot's start in the frame of the manifest's start, where that is not the origin. The mind knows it: its
-    /// map, its prior and the reference of coverage share that one frame.
+    /// The robot's start in the frame of the map, where that is not its origin. The mind knows it: its map, its prior and
+    /// the reference of coverage share that one frame.
     known_start: Option<Pose>,
     /// The robot's pose when it last had moved on, and the time.
     moved: (Pose, Tick),
@@ -227,13 +253,14 @@ struct Mission<'a> {
 }
 
 impl Mission<'_> {
-    fn run(mut self, spec: &TrialSpec) -> (TrialRecord, Explorer) {
+    /// Runs to the end and returns how it ended.
+    fn drive(&mut self) -> (Outcome, String) {
         // 1. The first scan.
         let limit = Tick::at_or_after(Seconds(self.setup.parameters.mission.time_limit_s));
         let mut next_control = Tick(0);
         self.perceive();
         // 2. Control.
-        let (outcome, cause) = loop {
+        loop {
             if self.sim.now() >= next_control {
                 next_control = next_control + CONTROL_PERIOD;
                 let choices = self.mind.choices();
@@ -246,7 +273,7 @@ impl Mission<'_> {
                 self.sim.command(twist);
                 self.note_state();
                 if let Some(ending) = self.ending(limit) {
-                    break ending;
+                    return ending;
                 }
             }
             // 3. Advance.
@@ -255,7 +282,15 @@ impl Mission<'_> {
             if self.sim.now() == self.sim.odometry_at_scan().stamp {
                 self.perceive();
             }
-        };
+        }
+    }
+
+    /// Returns the record of the trial `spec` that ended so, and its mind.
+    fn measured(
+        self,
+        spec: &TrialSpec,
+        (outcome, cause): (Outcome, String),
+    ) -> (TrialRecord, Explorer) {
         // 4. Measures.
         let mut record = self.trace.finish(spec, outcome, cause, self.sim.now());
         let mut measure = |name: &str, value: f64| {
@@ -318,7 +353,7 @@ impl Mission<'_> {
             recorder.map_changed(changes, &self.scan, self.sim.true_pose());
         }
         if self.mind.estimates() {
-            let truth = self.setup.start.relative(self.sim.true_pose());
+            let truth = self.setup.map_frame().relative(self.sim.true_pose());
             self.errors.note(truth, self.mind.pose(odometry.pose), odometry.pose);
         }
         if !is_new {
@@ -341,7 +376,7 @@ impl Mission<'_> {
         self.further.insert(format!("open-frontiers-at-{percent}"), open);
     }
 
-    /// Returns odometry as the mind receives it, in the frame of the manifest's start.
+    /// Returns odometry as the mind receives it, in the frame of the map.
     fn known(&self, odometry: Odometry) -> Odometry {
         match self.known_start {
             Some(start) => Odometry { pose: start.compose(odometry.pose), ..odometry },
@@ -382,6 +417,12 @@ impl Mission<'_> {
             return Some((Outcome::TIME_LIMIT, String::new()));
         }
         let mission = &self.setup.parameters.mission;
+        let enough = mission.stop_at_coverage_percent;
+        if enough.is_some_and(|percent| self.trace.coverage_percent() >= percent)
+            && self.trace.is_settled()
+        {
+            return Some((Outcome::COVERED, String::new()));
+        }
         let pose = self.sim.true_pose();
         if pose.position().distance(self.moved.0.position()) >= mission.stuck_distance_m {
             self.moved = (pose, now);

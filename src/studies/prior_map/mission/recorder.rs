@@ -31,7 +31,7 @@ fn rule(exploration: &Exploration) -> String {
 /// A recording in the making.
 pub(super) struct Recorder<'a> {
     recording: &'a mut Recording,
-    start: Pose,
+    frame: Pose,
     resolution: f64,
     pending: Frame,
     low: Cell,
@@ -43,12 +43,12 @@ impl<'a> Recorder<'a> {
         recording.world = visible.to_vec();
         recording.footprint = setup.robot.footprint.clone();
         recording.prior = setup.prior.as_deref().cloned();
-        recording.map_pose = setup.start;
+        recording.map_pose = setup.map_frame();
         recording.rule = rule(&setup.parameters.exploration);
         let resolution = setup.parameters.mapping.resolution_m;
         Self {
             recording,
-            start: setup.start,
+            frame: setup.map_frame(),
             resolution,
             pending: Frame::default(),
             low: Cell::new(i32::MAX, i32::MAX),
@@ -98,13 +98,13 @@ impl<'a> Recorder<'a> {
         frame.pose = pose;
         frame.distance_m = distance_m;
         frame.coverage_percent = coverage_percent;
-        frame.path = path.map(|path| path.into_iter().map(|p| self.start.transform(p)).collect());
+        frame.path = path.map(|path| path.into_iter().map(|p| self.frame.transform(p)).collect());
         frame.decision = choice.map(|choice| self.decision(choice));
         self.recording.frames.push(frame);
     }
 
     fn decision(&self, choice: &Choice) -> Decision {
-        let world = |cell: Cell| self.start.transform(choice.frame.center(cell));
+        let world = |cell: Cell| self.frame.transform(choice.frame.center(cell));
         let frontiers = choice.frontiers.iter().enumerate().map(|(i, frontier)| FrontierView {
             cells: frontier.cells.iter().map(|&cell| world(cell)).collect(),
             candidate: world(frontier.candidate),

@@ -12,7 +12,8 @@ use crate::studies;
 use crate::studies::prior_map::columns;
 use crate::studies::prior_map::tour::{self, TopoMetricMap};
 use crate::studies::prior_map::{
-    Candidate, Coverage, Crossing, Gain, Parameters, Reselect, Strategy, View,
+    Candidate, Coverage, CoverageMap, Crossing, Gain, Origin, Parameters, ReferenceMap, Reselect,
+    Strategy, View,
 };
 use crate::world::{Body, Solid, World};
 use std::collections::BTreeMap;
@@ -165,6 +166,7 @@ fn unusual() -> Vec<(&'static str, Parameters)> {
         ("centroid", with(|p| p.exploration.candidate = Candidate::NearestToCentroid)),
         ("nearest", with(|p| p.exploration.strategy = Strategy::NearestFrontier)),
         ("long frontiers", with(|p| p.exploration.minimum_frontier_cells = 3)),
+        ("all round", with(|p| p.sensing.field_of_view_deg = Some(360.0))),
         ("slow mind", with(|p| p.exploration.decision_jitter_s = 1.5)),
         (
             "slow mind, continuous",
@@ -179,8 +181,10 @@ fn unusual() -> Vec<(&'static str, Parameters)> {
                 p.exploration.gain = Gain::Released;
                 p.exploration.candidate = Candidate::NearestToCentroid;
                 p.exploration.reselect = Reselect::Continuous;
+                p.mapping.origin = Origin::Centre;
                 p.measurement.coverage = Coverage::Released;
                 p.measurement.crossing = Crossing::Decision;
+                p.measurement.reference = ReferenceMap::Robot;
             }),
         ),
         (
@@ -238,6 +242,78 @@ fn a_trial_that_starts_elsewhere_is_measured_in_the_same_frame() {
         };
         assert_eq!((at(-3.7), at(-4.05)), (Occupancy::Free, Occupancy::Occupied));
     }
+}
+
+#[test]
+fn a_robots_own_map_counts_less_than_light_and_every_trial_can_reach_it() {
+    let mut parameters = Parameters::default();
+    parameters.measurement.reference = ReferenceMap::Robot;
+    parameters.sensing.range_noise_sd_m = Some(0.0);
+    let total = |parameters: &Parameters| {
+        let setup = Setup { parameters: parameters.clone(), ..setup(None) };
+        setup.prepared().unwrap().reference.total()
+    };
+    let (robots, ideal) = (total(&parameters), total(&Parameters::default()));
+    assert!(robots <= ideal && f64::from(robots) > 0.95 * f64::from(ideal), "{robots} of {ideal}");
+    parameters.exploration.strategy = Strategy::NearestFrontier;
+    let record = studies::execute(&spec(0, false, parameters));
+    assert!(record.measures["coverage-percent"].unwrap() > 99.5, "one of the very explorations");
+}
+
+#[test]
+fn a_run_is_stopped_where_enough_is_covered_and_all_is_told() {
+    let mut parameters = Parameters::default();
+    parameters.exploration.reselect = Reselect::Continuous;
+    parameters.measurement.crossing = Crossing::Decision;
+    let whole = studies::execute(&spec(0, true, parameters.clone()));
+    parameters.mission.stop_at_coverage_percent = Some(90.0);
+    let stopped = studies::execute(&spec(0, true, parameters));
+    assert_eq!((whole.outcome, stopped.outcome), (Outcome::EXPLORED, Outcome::COVERED));
+    for name in ["time-s-at-50", "distance-m-at-90"] {
+        assert!(
+            whole.measures[name].is_some() && stopped.measures[name] == whole.measures[name],
+            "{name}"
+        );
+    }
+    assert_eq!(
+        stopped.measures["time-s"], stopped.measures["time-s-at-90"],
+        "at the choice that told it"
+    );
+    assert!(stopped.measures["time-s"] < whole.measures["time-s"]);
+}
+
+#[test]
+fn coverage_is_counted_against_a_map_that_is_given() {
+    // The left room alone: exploration of it is whole before the right one is seen.
+    let frame =
+        GridFrame { resolution: 0.05, origin: Point::new(-4.0, -2.0), width: 78, height: 80 };
+    let map = OccupancyGrid::from_cells(frame, vec![Occupancy::Free; 78 * 80]);
+    let meaning = crate::digest::MeaningDigest(Sha256Digest::of("left"));
+    let given = CoverageMap { map: Arc::new(map), meaning };
+    let parameters = Parameters::default();
+    let own = Setup { parameters, ..setup(None) }.with_coverage_map(Some(given));
+    assert_eq!(own.prepared().unwrap().reference.total(), 39 * 40, "cells of 0.1 m");
+    assert_eq!(studies::Setup::new(own).further().keys().collect::<Vec<_>>(), ["coverage-map"]);
+}
+
+#[test]
+fn cells_about_the_start_are_those_of_rounding() {
+    let explored = |origin: Origin| {
+        let mut parameters = Parameters::default();
+        parameters.mapping.origin = origin;
+        let spec = spec(0, true, parameters);
+        let record = studies::execute(&spec);
+        let map = explored_map(&spec, spec.setup.of().unwrap()).unwrap();
+        (record, map.frame().origin)
+    };
+    let (record, corner) = explored(Origin::Corner);
+    let (other, centre) = explored(Origin::Centre);
+    assert_eq!((record.outcome, other.outcome), (Outcome::EXPLORED, Outcome::EXPLORED));
+    let cells_from_start = |origin: Point| (origin.x - -2.5) / 0.1;
+    let off = |x: f64| (x - x.round()).abs();
+    assert!(off(cells_from_start(corner)) < 1e-6, "whole cells");
+    assert!(off(cells_from_start(centre)) > 0.5 - 1e-6, "half a cell");
+    assert!(other.measures["coverage-percent"].unwrap() > 99.0);
 }
 
 #[test]

@@ -10,6 +10,19 @@ use std::collections::BTreeMap;
 /// Coverages (percent) at which distance and time are measured.
 pub const MILESTONES: [u32; 10] = [50, 55, 60, 65, 70, 75, 80, 85, 90, 95];
 
+/// Returns the names of the measures of time and distance at a further level of coverage (percent): `time-s-at-99.5`.
+pub fn at_level(percent: f64) -> [String; 2] {
+    [format!("time-s-at-{percent}"), format!("distance-m-at-{percent}")]
+}
+
+/// Returns the level of coverage (percent) that `name`, one of [`at_level`], is of.
+pub fn level_of(name: &str) -> Option<f64> {
+    let percent =
+        name.strip_prefix("time-s-at-").or_else(|| name.strip_prefix("distance-m-at-"))?;
+    let percent: f64 = percent.parse().ok().filter(|level| (0.0..=100.0).contains(level))?;
+    at_level(percent).iter().any(|known| known == name).then_some(percent)
+}
+
 /// Returns the name of the measure of coverage (percent) after `distance_m` of travel.
 pub fn coverage_at_distance(distance_m: u32) -> String {
     format!("coverage-percent-at-{distance_m}-m")
@@ -19,6 +32,15 @@ pub fn coverage_at_distance(distance_m: u32) -> String {
 pub fn is_coverage_at_distance(name: &str) -> bool {
     let distance = name.strip_prefix("coverage-percent-at-").and_then(|n| n.strip_suffix("-m"));
     distance.is_some_and(|distance| distance.parse::<u32>().is_ok())
+}
+
+/// A level of coverage, and when it was reached.
+#[derive(Debug, Clone, Copy)]
+struct Level {
+    percent: f64,
+    is_reached: bool,
+    /// Time (s) and distance (m), once that is decided.
+    crossing: Option<(f64, f64)>,
 }
 
 /// The running record of a trial.
@@ -34,6 +56,8 @@ pub(super) struct Trace {
     undecided: Vec<u32>,
     /// Time (s), distance (m) and coverage (percent) at the last keyframe that changed the map.
     before: (f64, f64, f64),
+    /// Further levels of coverage (percent) that are asked for, in between or above whole ones.
+    levels: Vec<Level>,
     /// Distances (m) at which coverage is asked for, and its value there.
     at_distances: BTreeMap<u32, Option<f64>>,
     chain: StateChain,
@@ -41,8 +65,9 @@ pub(super) struct Trace {
 
 impl Trace {
     /// Creates the trace of a trial in a world of `total` cells to cover; `when` decides at which moment a coverage
-    /// counts as reached, and coverage is also measured at `distances` (m).
-    pub(super) fn new(total: u32, when: Crossing, distances: &[u32]) -> Self {
+    /// counts as reached, which is also told of the further `levels` (percent), and coverage at `distances` (m).
+    pub(super) fn new(total: u32, when: Crossing, distances: &[u32], levels: &[f64]) -> Self {
+        let level = |&percent: &f64| Level { percent, is_reached: false, crossing: None };
         Self {
             total,
             covered: 0,
@@ -52,6 +77,7 @@ impl Trace {
             crossings: BTreeMap::new(),
             undecided: Vec::new(),
             before: (0.0, 0.0, 0.0),
+            levels: levels.iter().map(level).collect(),
             at_distances: distances.iter().map(|&distance| (distance, None)).collect(),
             chain: StateChain::default(),
         }
@@ -69,6 +95,12 @@ impl Trace {
         100.0 * covered / f64::from(self.total.max(1))
     }
 
+    /// Returns whether it is told of every coverage reached when that was.
+    pub(super) fn is_settled(&self) -> bool {
+        let waits = |level: &Level| level.is_reached && level.crossing.is_none();
+        self.undecided.is_empty() && !self.levels.iter().any(waits)
+    }
+
     /// Notes the first crossing of every whole percent, at a keyframe that changed the map, and returns those crossed.
     pub(super) fn note_coverage(&mut self, now: Tick, distance_m: f64) -> std::ops::Range<u32> {
         let percent = self.coverage_percent();
@@ -76,23 +108,36 @@ impl Trace {
         let first = self.next_percent;
         while self.next_percent <= 100 && percent >= f64::from(self.next_percent) {
             let level = self.next_percent;
-            match self.when {
-                Crossing::Keyframe => {
-                    self.crossings.insert(level, (time_s, distance_m));
-                }
-                Crossing::Interpolated => {
-                    let crossing = self.in_between(f64::from(level), (time_s, distance_m, percent));
+            match self.crossing(f64::from(level), (time_s, distance_m, percent)) {
+                Some(crossing) => {
                     self.crossings.insert(level, crossing);
                 }
-                Crossing::Decision => self.undecided.push(level),
+                None => self.undecided.push(level),
             }
             self.next_percent += 1;
+        }
+        for i in 0..self.levels.len() {
+            let Level { percent: level, is_reached, .. } = self.levels[i];
+            if !is_reached && percent >= level {
+                let crossing = self.crossing(level, (time_s, distance_m, percent));
+                self.levels[i] = Level { percent: level, is_reached: true, crossing };
+            }
         }
         self.before = (time_s, distance_m, percent);
         if first < self.next_percent {
             self.series.push(SeriesPoint { time_s, distance_m, coverage_percent: percent });
         }
         first..self.next_percent
+    }
+
+    /// Returns the time and distance at which `level` percent count as reached by a keyframe that brought `after`; `None`
+    /// where the next choice will tell.
+    fn crossing(&self, level: f64, after: (f64, f64, f64)) -> Option<(f64, f64)> {
+        match self.when {
+            Crossing::Keyframe => Some((after.0, after.1)),
+            Crossing::Interpolated => Some(self.in_between(level, after)),
+            Crossing::Decision => None,
+        }
     }
 
     /// Returns the time and distance at which `level` percent were reached on a straight line from the keyframe before
@@ -107,6 +152,9 @@ impl Trace {
     pub(super) fn note_choice(&mut self, now: Tick, distance_m: f64) {
         for level in self.undecided.drain(..) {
             self.crossings.insert(level, (now.seconds().get(), distance_m));
+        }
+        for level in self.levels.iter_mut().filter(|level| level.is_reached) {
+            level.crossing.get_or_insert((now.seconds().get(), distance_m));
         }
     }
 
@@ -147,6 +195,11 @@ impl Trace {
             measures.insert(format!("time-s-at-{percent}"), crossing.map(|c| c.0));
             measures.insert(format!("distance-m-at-{percent}"), crossing.map(|c| c.1));
         }
+        for level in &self.levels {
+            let [time, distance] = at_level(level.percent);
+            measures.insert(time, level.crossing.map(|c| c.0));
+            measures.insert(distance, level.crossing.map(|c| c.1));
+        }
         for (&distance, coverage) in &self.at_distances {
             // A robot that has nothing left to explore has covered as much after any further distance.
             let coverage = coverage.unwrap_or_else(|| self.coverage_percent());
@@ -174,7 +227,7 @@ mod tests {
 
     /// Returns a trace whose keyframes at 2 s and 4 s bring 50 and 60 of 100 cells; a choice follows at 5 s.
     fn trace(when: Crossing) -> Trace {
-        let mut trace = Trace::new(100, when, &[]);
+        let mut trace = Trace::new(100, when, &[], &[52.5, 65.5, 90.5]);
         trace.cover(50);
         assert_eq!(trace.note_coverage(Tick(6000), 1.0), 1..51);
         trace.cover(10);
@@ -187,7 +240,7 @@ mod tests {
 
     #[test]
     fn coverage_is_told_where_the_robot_first_is_that_far() {
-        let mut trace = Trace::new(100, Crossing::Keyframe, &[2, 5]);
+        let mut trace = Trace::new(100, Crossing::Keyframe, &[2, 5], &[]);
         for (seconds, distance, cells) in [(1, 1.0, 10), (2, 2.1, 20), (3, 2.5, 30)] {
             trace.cover(cells);
             trace.note_time(Tick(seconds * 3000), distance, Pose::default(), 0);
@@ -207,5 +260,19 @@ mod tests {
         assert_eq!(at(Crossing::Decision, 55), Some((5.0, 3.5)));
         assert_eq!(at(Crossing::Decision, 65), None, "no choice came after it");
         assert_eq!(at(Crossing::Keyframe, 71), None);
+        let further =
+            |when| trace(when).levels.iter().map(|level| level.crossing).collect::<Vec<_>>();
+        assert_eq!(further(Crossing::Keyframe), [Some((4.0, 3.0)), Some((6.0, 4.0)), None]);
+        assert_eq!(further(Crossing::Interpolated), [Some((2.5, 1.5)), Some((5.1, 3.55)), None]);
+        assert_eq!(further(Crossing::Decision), [Some((5.0, 3.5)), None, None]);
+    }
+
+    #[test]
+    fn a_level_is_known_by_its_name() {
+        assert_eq!(level_of("distance-m-at-99.5"), Some(99.5));
+        assert_eq!(level_of("time-s-at-70"), Some(70.0));
+        assert_eq!(level_of("distance-m-at-099.5"), None);
+        assert_eq!(level_of("distance-m-at-700"), None);
+        assert_eq!(level_of("decisions-at-70"), None);
     }
 }
