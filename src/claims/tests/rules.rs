@@ -257,3 +257,37 @@ fn empty_claims_are_not_supported() {
         assert_ne!(verdict(expect).judgement, Judgement::Supported, "{expect}");
     }
 }
+
+/// Checks that a claim within one level is judged as if nothing else had been run.
+#[test]
+fn a_claim_within_a_level_sees_no_other_trial() {
+    let text = "{between: {metric: success, where: {strategy: random}, high: 0.9}}";
+    let trials = as_printed();
+    let published = published();
+    let context = Context::new(&published, &[], 2019);
+    let all = judge(&claim(text), &trials, &context).unwrap();
+    let at_a = judge(&claim(text).within("start", "A"), &trials, &context).unwrap();
+    let cell = |verdict: &ClaimVerdict| verdict.comparisons[0].cells[0].clone();
+    assert_eq!((cell(&all).trials, cell(&at_a).trials), (600, 200));
+    // Of TABLE_1: 48 + 47 + 40 + 13.
+    assert_eq!((at_a.id.as_str(), cell(&at_a).successes), ("X-A", Some(148)));
+}
+
+/// Checks that a best run is held against the bounds as it is, and that no p is made of it.
+#[test]
+fn a_best_run_is_within_bounds_or_not() {
+    // Times of those that reached the goal are 10, 11, ... s.
+    let least = |bounds: &str| {
+        verdict(&format!(
+            "{{between: {{metric: time-s, where: {{start: A, deadline-s: 680, strategy: random}}, statistic: least, {bounds}, \
+             censored: reached-only}}}}"
+        ))
+    };
+    let within = least("low: 9, high: 11");
+    assert_eq!(within.judgement, Judgement::Supported);
+    assert_eq!(within.reason, "one number of all trials, held against the bounds");
+    assert_eq!(within.comparisons[0].p_for, None);
+    assert_eq!(within.comparisons[0].effect.as_ref().unwrap().value, 10.0);
+    assert_eq!(least("high: 9.5").judgement, Judgement::Contradicted);
+    assert_eq!(least("low: 10.5").judgement, Judgement::Contradicted);
+}
