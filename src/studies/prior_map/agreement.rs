@@ -6,7 +6,7 @@ mod layout;
 use super::requests::{AgreementTable, CoverageTable};
 use super::results::CoverageCell;
 use crate::condition::Condition;
-use crate::math::ln;
+use crate::math::{exp, ln};
 use crate::rng::{Seeds, Stream};
 use crate::stats::agreement::{Line, line, log_ratio_half_width, rmse, skill_over_constant};
 use crate::stats::compatibility::{Agreement, Method};
@@ -102,6 +102,11 @@ impl Absolute {
             unexplained(std::slice::from_ref(&cells), RESAMPLES, CONFIDENCE, &mut arms_stream());
         Self { cells, unexplained: found[0], bias: mean(&logs), logs, spread: median(&spreads) }
     }
+}
+
+/// Returns a log as a difference in percent.
+pub(super) fn percent(log: f64) -> f64 {
+    100.0 * (exp(log) - 1.0)
 }
 
 /// Resamples of arms behind an interval of tau.

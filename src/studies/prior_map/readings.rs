@@ -11,8 +11,9 @@ use crate::rng::Seeds;
 use crate::stats::compatibility::{Agreement, Ours, Printed};
 use crate::stats::real;
 use crate::stats::summary::{Summary, mean};
-use crate::stats::unexplained::unexplained;
+use crate::stats::unexplained::{Difference, unexplained};
 use crate::studies::Findings;
+use std::collections::BTreeSet;
 
 /// Whose numbers stand in for a reading's.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -51,7 +52,7 @@ pub struct ReadingScore {
     pub cells: u64,
     /// tau, and the interval of it; `None` of speeds, whose spread is not printed.
     pub tau: Option<(f64, Option<(f64, f64)>)>,
-    /// In what share of resampled arms this reading is the nearest of ours.
+    /// In what share of resampled arms this reading is the nearest of ours; `None` where readings have cells in other arms.
     pub nearest: Option<f64>,
     /// Mean log of our cells over the paper's.
     pub bias: f64,
@@ -166,11 +167,12 @@ impl Findings<'_> {
             parts.iter().map(|own| part.agreement(own, cells)).collect();
         let sets: Vec<_> = agreements.iter().map(|a| a.absolute.cells.clone()).collect();
         let paired = unexplained(&sets, RESAMPLES, 0.95, &mut arms_stream());
+        let are_alike = on_the_same_arms(&sets);
         let mut scores = Vec::new();
         for ((level, agreement), paired) in levels.iter().zip(&agreements).zip(&paired) {
             if !agreement.absolute.logs.is_empty() {
                 let own = part.score(level, Whose::Ours, agreement);
-                scores.push(ReadingScore { nearest: Some(paired.nearest), ..own });
+                scores.push(ReadingScore { nearest: are_alike.then_some(paired.nearest), ..own });
             }
         }
         // What the paper prints is the same whatever the reading; the fullest one says of which cells.
@@ -184,6 +186,14 @@ impl Findings<'_> {
         scores.extend(guess(part, "one-number-a-coverage", &one_number(fullest)));
         scores
     }
+}
+
+/// Returns whether the sets that have cells have them in the same arms: only then is one nearer than another.
+fn on_the_same_arms(sets: &[Vec<Difference>]) -> bool {
+    let arms = |set: &Vec<Difference>| set.iter().map(|cell| cell.arm).collect::<BTreeSet<_>>();
+    let mut found = sets.iter().filter(|set| !set.is_empty()).map(arms);
+    let first = found.next();
+    found.all(|arms| Some(&arms) == first.as_ref())
 }
 
 /// Returns a cell with `ours` in the place of our runs' summary.

@@ -1,7 +1,6 @@
 //! What is shown of how coverage tables agree with the paper's.
 
-use super::TableAgreement;
-use crate::math::exp;
+use super::{TableAgreement, percent};
 use crate::stats::{Interval, real};
 use crate::studies::columns::Columns;
 use crate::studies::exhibit::{Grid, GridCell, GridRow, Layout, Lines, Measured, Set, Source};
@@ -193,11 +192,6 @@ impl Layout for AgreementTable {
 /// How intervals come about.
 const BLOCKS: &str = "jackknife over blocks";
 const ARMS: &str = "bootstrap over arms";
-
-/// Returns a log as a difference in percent.
-fn percent(log: f64) -> f64 {
-    100.0 * (exp(log) - 1.0)
-}
 
 /// Returns the cells in the order of the page's columns.
 fn numbers(part: &TableAgreement) -> [GridCell; 10] {

@@ -3,22 +3,11 @@
 use super::*;
 use crate::condition::Condition;
 use crate::factor::Factor;
+use crate::studies::fixture::PRINTED;
 use crate::studies::prior_map::Metric;
 use crate::studies::{Layout, TrialRecord, fixture};
 use crate::table::{Table, Value};
 use std::collections::BTreeMap;
-
-/// Printed distances at 80 and 95 %.
-const PRINTED: [(&str, &str, [f64; 2]); 8] = [
-    ("basic", "none", [30.0, 36.0]),
-    ("basic", "floor-plan", [16.0, 28.0]),
-    ("office", "none", [290.0, 430.0]),
-    ("office", "floor-plan", [217.0, 405.0]),
-    ("office", "bounding-box", [209.0, 433.0]),
-    ("open", "none", [117.0, 306.0]),
-    ("open", "floor-plan", [112.0, 224.0]),
-    ("open", "bounding-box", [131.0, 223.0]),
-];
 
 /// Returns fifteen trials a cell, of `value(printed)` on average with 3 % of spread; trials of `late` never reach 95 %.
 fn records(value: impl Fn(f64) -> f64, late: std::ops::Range<u32>) -> Vec<TrialRecord> {

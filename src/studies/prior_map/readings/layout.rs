@@ -1,11 +1,11 @@
 //! What is shown of readings.
 
 use super::{ReadingScore, SPEED, Whose};
-use crate::math::exp;
 use crate::stats::real;
 use crate::studies::columns::Columns;
 use crate::studies::exhibit::{Grid, GridCell, GridRow, Layout, Lines, Measured, Set, Source};
 use crate::studies::prior_map::ReadingsTable;
+use crate::studies::prior_map::agreement::percent;
 use crate::studies::{Findings, TableRequest, coverage_tables};
 use crate::table::{Column, Table, Value};
 
@@ -67,7 +67,7 @@ impl Layout for ReadingsTable {
                 number(
                     "nearest",
                     "Share of the resamples in which this reading leaves the least unexplained of all",
-                    no_interval,
+                    "a guess or a replicate, or the readings have cells in different arms",
                 )
                 .at_least(0.0)
                 .at_most(1.0),
@@ -175,7 +175,6 @@ impl Layout for ReadingsTable {
             let what = if i == 0 { "stays unexplained" } else { "stays so" };
             sentences.push(format!("Of a cell of the table {id} {what}: {}.", told.join("; ")));
             if i == 0 {
-                let sure = first.nearest.map_or(0.0, |share| 100.0 * share);
                 let beside: Vec<String> = [Whose::Replicate, Whose::Guess]
                     .into_iter()
                     .flat_map(|whose| whole(whose, id))
@@ -183,11 +182,17 @@ impl Layout for ReadingsTable {
                         Some(format!("{} {:.0} %", score.reading, 100.0 * score.tau?.0))
                     })
                     .collect();
-                sentences.push(format!(
-                    "{} is the nearest in {sure:.0} % of resampled arms; beside it stand {}.",
-                    first.reading,
-                    beside.join(", ")
-                ));
+                let beside = beside.join(", ");
+                sentences.push(match first.nearest {
+                    Some(share) => format!(
+                        "{} is the nearest in {:.0} % of resampled arms; beside it stand {beside}.",
+                        first.reading,
+                        100.0 * share
+                    ),
+                    None => format!(
+                        "Which is nearest is not told, as they have cells in different arms; beside them stand {beside}."
+                    ),
+                });
             }
         }
         let speeds: Vec<String> = whole(Whose::Ours, SPEED)
@@ -212,11 +217,6 @@ fn in_words(score: &ReadingScore) -> String {
     let interval = interval
         .map_or(String::new(), |(low, high)| format!(" [{:.0}, {:.0}]", 100.0 * low, 100.0 * high));
     format!("{} {:.0} %{interval}", score.reading, 100.0 * tau)
-}
-
-/// Returns a log as a difference in percent.
-fn percent(log: f64) -> f64 {
-    100.0 * (exp(log) - 1.0)
 }
 
 /// Returns the cells in the order of the page's columns.

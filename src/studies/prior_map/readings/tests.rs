@@ -3,22 +3,11 @@
 use super::*;
 use crate::condition::Condition;
 use crate::factor::Factor;
+use crate::studies::fixture::PRINTED;
 use crate::studies::prior_map::Metric;
 use crate::studies::{Layout, TrialRecord, fixture};
 use crate::table::{Table, Value};
 use std::collections::BTreeMap;
-
-/// Printed distances at 80 and 95 %.
-const PRINTED: [(&str, &str, [f64; 2]); 8] = [
-    ("basic", "none", [30.0, 36.0]),
-    ("basic", "floor-plan", [16.0, 28.0]),
-    ("office", "none", [290.0, 430.0]),
-    ("office", "floor-plan", [217.0, 405.0]),
-    ("office", "bounding-box", [209.0, 433.0]),
-    ("open", "none", [117.0, 306.0]),
-    ("open", "floor-plan", [112.0, 224.0]),
-    ("open", "bounding-box", [131.0, 223.0]),
-];
 
 /// Returns fifteen trials a cell of two readings: one is off by a tenth either way, the other by a third.
 fn records() -> Vec<TrialRecord> {
@@ -158,4 +147,12 @@ fn a_replicate_is_explained_by_sampling_and_guesses_are_not() {
     // Within one environment, two arms are too few for an interval.
     assert_eq!(scores["environment=basic/distance/near"].tau.unwrap().1, None);
     assert!(scores["environment=open/distance/near"].tau.unwrap().1.is_some());
+}
+
+#[test]
+fn readings_with_cells_in_different_arms_are_not_ranked() {
+    let cell = |arm| Difference { arm, log_ratio: 0.1, variance: 0.0 };
+    let (both, one) = (vec![cell(0), cell(1), cell(1)], vec![cell(0)]);
+    assert!(on_the_same_arms(&[both.clone(), vec![cell(1), cell(0)], Vec::new()]));
+    assert!(!on_the_same_arms(&[both, one]));
 }
