@@ -5,8 +5,8 @@
 
 use reenact::cmdp::{Cmdp, CmdpBuilder, solve};
 use reenact::studies::deadline::build_cmdp::{
-    Expectation, Maneuvers, Navigation, OrientedEdge, Place, Reading, Side, Task, Topology,
-    build_cmdp,
+    DoorPairs, Expectation, Maneuvers, Navigation, OrientedEdge, Place, Reading, Side,
+    SideCorridors, Task, Through, Topology, build_cmdp,
 };
 
 fn main() {
@@ -62,12 +62,14 @@ fn grid(states: usize) -> Cmdp {
 fn building(states: usize, deadline_s: f64) -> Navigation {
     let corridors = 2 * states / 3;
     let mut topology = Topology { vertices: vec![Place::Corridor; corridors], edges: Vec::new() };
-    let mut link = |from: usize, to: usize| {
-        topology.edges.push(OrientedEdge { from, to, side: Side::Right });
-        topology.edges.push(OrientedEdge { from: to, to: from, side: Side::Left });
+    let mut link = |from: usize, to: usize, [there, back]: [Through; 2]| {
+        topology.edges.push(OrientedEdge { from, to, side: Side::Right, through: there });
+        topology.edges.push(OrientedEdge { from: to, to: from, side: Side::Left, through: back });
     };
-    (1..corridors).for_each(|x| link(x - 1, x));
-    (corridors..states).for_each(|room| link(2 * (room - corridors), room));
+    (1..corridors).for_each(|x| link(x - 1, x, [Through::Corridor; 2]));
+    (corridors..states).for_each(|room| {
+        link(2 * (room - corridors), room, [Through::Entering, Through::Leaving]);
+    });
     topology.vertices.resize(states, Place::Room);
     let both = |time_s: f64, failure: f64| {
         [
@@ -77,8 +79,9 @@ fn building(states: usize, deadline_s: f64) -> Navigation {
     };
     let maneuvers = Maneuvers {
         corridor: both(10.0, 0.002),
-        door_left: both(8.0, 0.004),
-        door_right: both(7.0, 0.003),
+        door_left: DoorPairs::alike(both(8.0, 0.004)),
+        door_right: DoorPairs::alike(both(7.0, 0.003)),
+        side_corridors: SideCorridors::Door,
     };
     let edges = f64::from(u32::try_from(corridors - 1).expect("small"));
     let task = Task {

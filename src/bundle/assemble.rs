@@ -7,7 +7,7 @@ use crate::claims::observations::TrialsTableError;
 use crate::claims::{self, ClaimVerdict, Observations};
 use crate::json::AsWritten;
 use crate::manifest::{Input, InputKind};
-use crate::plan::{ENGINE_VERSION, Plan, Selection};
+use crate::plan::{Plan, Selection, engine_version};
 use crate::studies::{Dictionary, Exhibit, Findings, Outcome, TrialRecord};
 use crate::table::{DescribedTable, Table};
 use serde_json::json;
@@ -77,7 +77,7 @@ pub fn assemble_judged(
             .collect(),
         license: experiment.license.clone().unwrap_or_else(|| "No licence stated".to_owned()),
         seed: experiment.seed,
-        engine: ENGINE_VERSION.to_owned(),
+        engine: engine_version(experiment.kind),
         study_yaml: study_yaml.to_vec(),
         resolved,
         inputs: inputs.collect(),

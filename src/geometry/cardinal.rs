@@ -101,6 +101,15 @@ impl Axis {
     /// Both.
     pub const ALL: [Self; 2] = [Self::EastWest, Self::NorthSouth];
 
+    /// Returns the other one.
+    #[must_use]
+    pub const fn across(self) -> Self {
+        match self {
+            Self::EastWest => Self::NorthSouth,
+            Self::NorthSouth => Self::EastWest,
+        }
+    }
+
     /// Returns the two directions along it.
     pub const fn directions(self) -> [Cardinal; 2] {
         match self {

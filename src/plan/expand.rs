@@ -1,6 +1,6 @@
 //! The trials of an experiment, in plan order.
 
-use super::key::{ENGINE_VERSION, Keys, explain, key_content, study_digest};
+use super::key::{Keys, engine_version, explain, key_content, study_digest};
 use super::resolved::ResolvedStudy;
 use super::selection::{Selection, SelectionError};
 use crate::condition::Condition;
@@ -105,7 +105,7 @@ impl Plan {
 
     /// Returns the resolved study: what was asked with nothing left to guess.
     pub fn resolved(&self) -> ResolvedStudy {
-        ResolvedStudy::of(&self.experiment, ENGINE_VERSION)
+        ResolvedStudy::of(&self.experiment, &engine_version(self.experiment.kind))
     }
 
     /// Computes the digest of what was asked.

@@ -14,9 +14,19 @@ use serde_json::{Map, Value, json};
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
-/// Version of everything that turns a trial's content into its bytes. Raised whenever any trial's record
-/// changes; the golden digests in `tests/` fail when that is forgotten.
+/// Version of everything that turns a trial's content into its bytes, whatever its study. Raised whenever any trial's record
+/// changes; the golden digests in `tests/` fail when that is forgotten. Where only one study's trials change, its revision
+/// ([`Study::revision`](crate::studies::Study::revision)) is raised instead, and what the others yielded stays good.
 pub const ENGINE_VERSION: &str = "2";
+
+/// Returns the version of what turns the content of a trial of `kind` into its bytes: [`ENGINE_VERSION`] with the study's
+/// revision, `2.1`; without it where it has none.
+pub fn engine_version(kind: StudyKind) -> String {
+    match kind.revision() {
+        0 => ENGINE_VERSION.to_owned(),
+        revision => format!("{ENGINE_VERSION}.{revision}"),
+    }
+}
 
 /// The key that holds the number of the trial.
 const TRIAL: &str = "trial";
@@ -25,7 +35,7 @@ const TRIAL: &str = "trial";
 ///
 /// | field | holds |
 /// |---|---|
-/// | `engine-version` | [`ENGINE_VERSION`] |
+/// | `engine-version` | [`engine_version`] of the study |
 /// | `study` | the study's kind |
 /// | `seed` | the experiment's seed |
 /// | `shared-noise` | the factors that share noise, sorted |
@@ -48,7 +58,7 @@ pub fn key_content(
     let mut shared: Vec<&String> = shared_noise.iter().collect();
     shared.sort();
     let mut content = json!({
-        "engine-version": ENGINE_VERSION,
+        "engine-version": engine_version(kind),
         "study": kind.name(),
         "seed": seed,
         "shared-noise": shared,
@@ -112,7 +122,9 @@ impl Keys {
 /// Computes the digest of what was asked: of `study.resolved.json`, and so of the manifest's meaning and all input
 /// files.
 pub fn study_digest(experiment: &Experiment) -> StudyDigest {
-    StudyDigest(Sha256Digest::of(ResolvedStudy::of(experiment, ENGINE_VERSION).to_text()))
+    StudyDigest(Sha256Digest::of(
+        ResolvedStudy::of(experiment, &engine_version(experiment.kind)).to_text(),
+    ))
 }
 
 /// Writes the content of a trial's key in lines that two people can compare.

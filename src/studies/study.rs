@@ -68,6 +68,12 @@ pub trait Study: Sync {
         false
     }
 
+    /// Returns the revision of what its trials alone rest on, raised whenever the record of any of them changes; 0 where
+    /// that never happened apart from the engine's version.
+    fn revision(&self) -> u32 {
+        0
+    }
+
     /// Returns how it learns from calibrations; `None` where its trials rest on none.
     fn calibrating(&self) -> Option<&'static dyn Calibrating> {
         None

@@ -297,8 +297,9 @@ impl Climb<'_> {
     /// Climbs level 3 and above: what needs the engine.
     fn upper(&mut self, bundle: &Bundle) {
         let (options, pipeline) = (self.options, self.pipeline);
-        if bundle.engine() != pipeline.engine() {
-            let fault = support::other_engine(bundle, pipeline.engine());
+        let engine = pipeline.engine(bundle);
+        if bundle.engine() != engine {
+            let fault = support::other_engine(bundle, &engine);
             self.report.note(Level::Derived, Severity::Obstacle, [fault]);
             return;
         }

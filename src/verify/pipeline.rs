@@ -104,8 +104,8 @@ pub enum ReplicateError {
 
 /// The way from a manifest to trials, as `run` goes it.
 pub trait Pipeline {
-    /// Returns the engine of this program: bundles of another can be judged up to level 2.
-    fn engine(&self) -> &str;
+    /// Returns the engine of this program for the study of `bundle`: bundles of another can be judged up to level 2.
+    fn engine(&self, bundle: &Bundle) -> String;
 
     /// Plans the study again from the bundle's manifest, inputs and overrides alone.
     ///

@@ -7,7 +7,7 @@ use crate::claims::sensitivity::{Run, in_words};
 use crate::digest::Sha256Digest;
 use crate::document::Source;
 use crate::manifest::{self, CalibrationTrials, Experiment, InputError, Inputs, WrittenIn};
-use crate::plan::{ENGINE_VERSION, Plan, Selection};
+use crate::plan::{ENGINE_VERSION, Plan, Selection, engine_version};
 use crate::rng::Seeds;
 use crate::runner::{Observer, RunError, Scheduler, Silent};
 use crate::studies::{self, TrialRecord, TrialSpec, planned_calibration, records_digest};
@@ -37,8 +37,10 @@ impl Reenactment<'_> {
 }
 
 impl Pipeline for Reenactment<'_> {
-    fn engine(&self) -> &str {
-        ENGINE_VERSION
+    fn engine(&self, bundle: &Bundle) -> String {
+        // A study that this program does not know was run by another.
+        let kind = bundle.resolved().study.read();
+        kind.map_or_else(|_| ENGINE_VERSION.to_owned(), engine_version)
     }
 
     fn replan<'a>(&'a self, bundle: &'a Bundle) -> Result<Box<dyn Replanned + 'a>, ReplanError> {

@@ -30,8 +30,8 @@ struct Study<'a> {
 }
 
 impl Pipeline for Engine {
-    fn engine(&self) -> &str {
-        self.version
+    fn engine(&self, _: &Bundle) -> String {
+        self.version.to_owned()
     }
 
     fn replan<'a>(&'a self, bundle: &'a Bundle) -> Result<Box<dyn Replanned + 'a>, ReplanError> {

@@ -5,7 +5,9 @@ use super::exploration::{Explorer, Next};
 use super::intersection::{Exit, Intersection, Opening};
 use crate::geometry::Cardinal;
 use crate::rng::{Seeds, Stream};
-use crate::studies::deadline::build_cmdp::{Expectation, Maneuvers, Place};
+use crate::studies::deadline::build_cmdp::{
+    DoorPairs, Expectation, Maneuvers, Place, SideCorridors,
+};
 use std::collections::BTreeMap;
 
 /// One vertex.
@@ -206,7 +208,8 @@ pub(super) fn maneuvers() -> Maneuvers {
     };
     Maneuvers {
         corridor: pair((13.0, 0.004), (7.4, 0.008)),
-        door_left: pair((12.1, 0.015), (6.9, 0.03)),
-        door_right: pair((11.8, 0.013), (6.6, 0.028)),
+        door_left: DoorPairs::alike(pair((12.1, 0.015), (6.9, 0.03))),
+        door_right: DoorPairs::alike(pair((11.8, 0.013), (6.6, 0.028))),
+        side_corridors: SideCorridors::Door,
     }
 }

@@ -4,11 +4,15 @@
 use crate::stats::distribution::student_t_quantile;
 use crate::stats::proportion::{Proportion, wilson};
 use crate::stats::summary::Summary;
-use crate::studies::deadline::build_cmdp::{Expectation, Maneuvers, Motion, Speed};
+use crate::studies::deadline::build_cmdp::{
+    DoorPairs, Expectation, Maneuvers, Motion, SideCorridors, Speed, Through,
+};
 use crate::studies::findings::rounded;
 use crate::studies::{CalibrationError, Outcome};
 use crate::table::{Table, Value};
+use crate::world::World;
 use serde_json::{Value as Json, json};
+use std::sync::Arc;
 
 /// The motions, in the order of the table.
 pub const MOTIONS: [Motion; 3] = [Motion::Corridor, Motion::DoorLeft, Motion::DoorRight];
@@ -18,9 +22,11 @@ pub const SPEEDS: [Speed; 2] = [Speed::Slow, Speed::Fast];
 pub const LEAST_PASSAGES: u64 = 10;
 
 const CONFIDENCE: f64 = 0.95;
-const COLUMNS: [&str; 11] = [
+const COLUMNS: [&str; 13] = [
+    "world",
     "motion",
     "speed",
+    "through",
     "passages",
     "reached",
     "collided",
@@ -39,6 +45,8 @@ pub struct Pair {
     pub motion: Motion,
     /// The speed.
     pub speed: Speed,
+    /// What it was done for; `None` for all of it together, the paper's own pair.
+    pub through: Option<Through>,
     /// Passages tried.
     pub passages: u64,
     /// Those that arrived.
@@ -51,10 +59,43 @@ pub struct Pair {
     pub failure: [f64; 3],
 }
 
-/// All six pairs.
+/// All six pairs, and those of doors by what they are done for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Calibration {
     pairs: Vec<Pair>,
+}
+
+/// The pairs of every building in which passages were driven.
+#[derive(Debug, Clone)]
+pub struct Calibrations {
+    by_world: Vec<(Arc<World>, Arc<Calibration>)>,
+}
+
+impl Calibrations {
+    /// Creates those of these buildings.
+    pub fn new(by_world: Vec<(Arc<World>, Arc<Calibration>)>) -> Self {
+        Self { by_world }
+    }
+
+    /// Returns the pairs measured in `world`; `None` where no passage was driven there.
+    pub fn of(&self, world: &World) -> Option<Arc<Calibration>> {
+        let found = self.by_world.iter().find(|(measured_in, _)| **measured_in == *world);
+        found.map(|(_, calibration)| Arc::clone(calibration))
+    }
+
+    /// Returns the names of the buildings, in plan order.
+    pub fn worlds(&self) -> impl Iterator<Item = &str> {
+        self.by_world.iter().map(|(world, _)| world.name.as_str())
+    }
+
+    /// Writes the table that is sealed as an input: one row per building and maneuver, numbers of six significant digits.
+    pub fn to_csv(&self) -> String {
+        let mut table = Table::new(COLUMNS);
+        for (world, calibration) in &self.by_world {
+            calibration.pairs.iter().for_each(|pair| table.push(row(&world.name, pair)));
+        }
+        table.to_csv()
+    }
 }
 
 /// One isolated passage.
@@ -64,6 +105,8 @@ pub struct Driven {
     pub motion: Motion,
     /// The speed.
     pub speed: Speed,
+    /// What it led through.
+    pub through: Through,
     /// Its outcome.
     pub outcome: Outcome,
     /// Its duration (s), where it arrived.
@@ -80,8 +123,13 @@ impl Calibration {
         let mut pairs = Vec::new();
         for motion in MOTIONS {
             for speed in SPEEDS {
-                let of = passages.iter().filter(|p| p.motion == motion && p.speed == speed);
-                pairs.push(pair(motion, speed, of)?);
+                let of = || passages.iter().filter(|p| p.motion == motion && p.speed == speed);
+                pairs.push(pair((motion, speed, None), of())?);
+                // What a building has few of is expected to go as the maneuver does in all.
+                for through in Through::of(motion) {
+                    let through_that = of().filter(|p| p.through == *through);
+                    pairs.extend(pair((motion, speed, Some(*through)), through_that).ok());
+                }
             }
         }
         Ok(Self { pairs })
@@ -93,16 +141,24 @@ impl Calibration {
             Expectation { time_s: 10.0, failure: 0.01 },
             Expectation { time_s: 6.0, failure: 0.02 },
         ];
-        Self::assumed(&Maneuvers { corridor: pair, door_left: pair, door_right: pair })
+        let door = DoorPairs::alike(pair);
+        Self::assumed(&Maneuvers {
+            corridor: pair,
+            door_left: door,
+            door_right: door,
+            side_corridors: SideCorridors::Door,
+        })
     }
 
-    /// Returns pairs that were not measured, for models and checks that need some.
+    /// Returns pairs that were not measured, for models and checks that need some: a door's whatever it is passed for.
     pub fn assumed(maneuvers: &Maneuvers) -> Self {
         let pair = |motion, speed| {
-            let Expectation { time_s, failure } = maneuvers.expect(motion, speed);
+            let Expectation { time_s, failure } =
+                maneuvers.expect(motion, Through::Entering, speed);
             Pair {
                 motion,
                 speed,
+                through: None,
                 passages: 0,
                 reached: 0,
                 collided: 0,
@@ -114,26 +170,34 @@ impl Calibration {
         Self { pairs }
     }
 
-    /// Returns the pairs, motion by motion, slow before fast.
+    /// Returns the pairs, motion by motion, slow before fast; each before those of what it is done for.
     pub fn pairs(&self) -> &[Pair] {
         &self.pairs
     }
 
-    /// Returns the planner's expectation of each maneuver.
-    pub fn maneuvers(&self) -> Maneuvers {
-        let expect = |motion: Motion| {
+    /// Returns the planner's expectation of each maneuver, where that one turns into side corridors.
+    pub fn maneuvers(&self, side_corridors: SideCorridors) -> Maneuvers {
+        let expect = |motion: Motion, through: Through| {
             SPEEDS.map(|speed| {
-                let found = self.pairs.iter().find(|p| p.motion == motion && p.speed == speed);
+                let of = || self.pairs.iter().filter(|p| p.motion == motion && p.speed == speed);
+                let found = of().find(|p| p.through == Some(through));
+                let found = found.or_else(|| of().find(|p| p.through.is_none()));
                 found.map_or(Expectation { time_s: 0.0, failure: 0.0 }, |pair| Expectation {
                     time_s: pair.time_s[0],
                     failure: pair.failure[0],
                 })
             })
         };
+        let door = |motion| DoorPairs {
+            entering: expect(motion, Through::Entering),
+            leaving: expect(motion, Through::Leaving),
+            side_corridor: expect(motion, Through::SideCorridor),
+        };
         Maneuvers {
-            corridor: expect(Motion::Corridor),
-            door_left: expect(Motion::DoorLeft),
-            door_right: expect(Motion::DoorRight),
+            corridor: expect(Motion::Corridor, Through::Corridor),
+            door_left: door(Motion::DoorLeft),
+            door_right: door(Motion::DoorRight),
+            side_corridors,
         }
     }
 
@@ -143,31 +207,31 @@ impl Calibration {
             json!({
                 "motion": pair.motion,
                 "speed": pair.speed,
+                "through": pair.through,
                 "time-s": pair.time_s[0],
                 "failure": pair.failure[0],
             })
         };
         self.pairs.iter().map(entry).collect()
     }
+}
 
-    /// Writes the table that is sealed as an input: one row per maneuver, numbers of six significant digits.
-    pub fn to_csv(&self) -> String {
-        let mut table = Table::new(COLUMNS);
-        let whole = |n: u64| Value::from(i64::try_from(n).unwrap_or(i64::MAX));
-        for pair in &self.pairs {
-            let mut row: Vec<Value> = vec![pair.motion.name().into(), pair.speed.name().into()];
-            row.extend([pair.passages, pair.reached, pair.collided].map(whole));
-            row.extend(pair.time_s.map(Value::from));
-            row.extend(pair.failure.map(Value::from));
-            table.push(row);
-        }
-        table.to_csv()
-    }
+fn row(world: &str, pair: &Pair) -> Vec<Value> {
+    let whole = |n: u64| Value::from(i64::try_from(n).unwrap_or(i64::MAX));
+    let mut row: Vec<Value> = vec![
+        world.into(),
+        pair.motion.name().into(),
+        pair.speed.name().into(),
+        pair.through.map_or("any", Through::name).into(),
+    ];
+    row.extend([pair.passages, pair.reached, pair.collided].map(whole));
+    row.extend(pair.time_s.map(Value::from));
+    row.extend(pair.failure.map(Value::from));
+    row
 }
 
 fn pair<'a>(
-    motion: Motion,
-    speed: Speed,
+    (motion, speed, through): (Motion, Speed, Option<Through>),
     of: impl Iterator<Item = &'a Driven>,
 ) -> Result<Pair, CalibrationError> {
     let (mut times, mut passages, mut collided) = (Vec::new(), 0, 0);
@@ -196,6 +260,7 @@ fn pair<'a>(
     Ok(Pair {
         motion,
         speed,
+        through,
         passages,
         reached,
         collided,
@@ -210,14 +275,35 @@ pub fn maneuver_name(motion: Motion, speed: Speed) -> String {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
+    use crate::world::{Region, RegionKind, World};
+
+    /// Returns a world with nothing in it.
+    pub(in crate::studies::deadline) fn hall(name: &str) -> World {
+        World {
+            name: name.to_owned(),
+            solids: Vec::new(),
+            regions: Vec::new(),
+            tags: Vec::new(),
+            starts: std::collections::BTreeMap::new(),
+            goals: std::collections::BTreeMap::new(),
+            warnings: Vec::new(),
+        }
+    }
+
+    fn longer(mut world: World) -> World {
+        let (name, kind) = ("C2".to_owned(), RegionKind::Corridor);
+        world.regions.push(Region { name, kind, polygon: Vec::new() });
+        world
+    }
 
     #[test]
     fn a_calibration_is_measured_and_written() {
         let passage = |i: u32, motion, speed| Driven {
             motion,
             speed,
+            through: if motion == Motion::Corridor { Through::Corridor } else { Through::Entering },
             outcome: if i < 3 { Outcome::COLLIDED } else { Outcome::REACHED },
             time_s: Some(10.0 + f64::from(i)),
         };
@@ -231,10 +317,19 @@ mod tests {
         assert_eq!((first.time_s[0], first.failure[0]), (21.0, 0.15));
         // Student's t with 16 degrees of freedom: 2.1199; the sample's sd is 5.04975.
         assert!((first.time_s[2] - (21.0 + 2.1199 * 5.04975 / 17.0_f64.sqrt())).abs() < 1e-3);
-        let csv = calibration.to_csv();
-        assert!(csv.contains("\ndoor-left,fast,20,17,3,21,"), "{csv}");
-        let maneuvers = calibration.maneuvers();
-        assert_eq!(maneuvers.expect(Motion::DoorLeft, Speed::Fast).time_s, 21.0);
+        // Six of the paper, and the doors' again by what they were for: nobody left a room here.
+        assert_eq!(calibration.pairs().len(), 10);
+        let maneuvers = calibration.maneuvers(SideCorridors::Door);
+        for through in Through::OF_DOORS {
+            assert_eq!(maneuvers.expect(Motion::DoorLeft, through, Speed::Fast).time_s, 21.0);
+        }
+        let (world, elsewhere) = (Arc::new(hall("here")), longer(hall("there")));
+        let calibrations = Calibrations::new(vec![(Arc::clone(&world), Arc::new(calibration))]);
+        let csv = calibrations.to_csv();
+        assert!(csv.contains("\nhere,door-left,fast,any,20,17,3,21,"), "{csv}");
+        assert!(csv.contains("\nhere,door-left,fast,entering,20,17,3,21,"), "{csv}");
+        assert!(calibrations.of(&world).is_some());
+        assert!(calibrations.of(&elsewhere).is_none(), "nothing was measured there");
     }
 
     #[test]

@@ -6,6 +6,7 @@ use super::requests::ManeuverTable;
 use crate::condition::Condition;
 use crate::stats::proportion::{Proportion, wilson};
 use crate::studies::columns::Columns;
+use crate::studies::deadline::build_cmdp::{Motion, Speed, Through};
 use crate::studies::exhibit::{Grid, GridCell, GridRow, Layout, Lines, Measured, Set, Source};
 use crate::studies::{Findings, TableRequest, TrialRecord};
 use crate::table::{Column, Table, Value};
@@ -13,7 +14,7 @@ use crate::table::{Column, Table, Value};
 /// One maneuver, expected and observed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ManeuverRow {
-    /// Its name: `door-left-slow`.
+    /// Its name: `door-left-slow`, or with what it was done for `door-left-slow-entering`.
     pub name: String,
     /// Passages of the calibration; 0 without one.
     pub calibration_passages: u64,
@@ -35,23 +36,41 @@ pub struct ManeuverRow {
 }
 
 impl Findings<'_> {
-    /// Returns the six maneuvers, motion by motion, slow before fast.
+    /// Returns the six maneuvers, motion by motion, slow before fast; each of a door before the same by what it was done for.
     pub fn maneuver_rows(&self, request: &ManeuverTable) -> Vec<ManeuverRow> {
         let only: Condition = request.only.iter().map(|(f, v)| (f, &v.0)).collect();
         let trials = self.matching(&only);
-        // One calibration serves all conditions.
+        // Where several buildings run, each has a calibration of its own: none is that of them all.
         let mut setups = self.design.iter().filter_map(|(_, setup)| setup.of::<Setup>());
-        let calibration = setups.find_map(|setup| setup.calibration.as_deref());
-        MOTIONS
-            .iter()
-            .flat_map(|motion| SPEEDS.map(|speed| (*motion, speed)))
-            .map(|(motion, speed)| {
-                let pairs = calibration.into_iter().flat_map(Calibration::pairs);
-                let pair = pairs.copied().find(|p| p.motion == motion && p.speed == speed);
-                row(maneuver_name(motion, speed), pair, &trials)
+        let first = setups.clone().find_map(|setup| setup.calibration.as_deref());
+        let calibration = first.filter(|first| {
+            setups.all(|setup| setup.calibration.as_deref().is_none_or(|other| other == *first))
+        });
+        parts()
+            .map(|(motion, speed, through)| {
+                let pairs = calibration.into_iter().flat_map(Calibration::pairs).copied();
+                let pair = pairs
+                    .clone()
+                    .find(|p| (p.motion, p.speed, p.through) == (motion, speed, through));
+                row(part_name(motion, speed, through), pair, &trials)
             })
             .collect()
     }
+}
+
+/// Returns each maneuver, and after it the same by what it is done for.
+pub(super) fn parts() -> impl Iterator<Item = (Motion, Speed, Option<Through>)> {
+    let pairs = MOTIONS.iter().flat_map(|motion| SPEEDS.map(|speed| (*motion, speed)));
+    pairs.flat_map(|(motion, speed)| {
+        let split = Through::of(motion).iter().map(|through| Some(*through));
+        std::iter::once(None).chain(split).map(move |through| (motion, speed, through))
+    })
+}
+
+/// Returns the name of a maneuver, or of it done for that.
+pub(super) fn part_name(motion: Motion, speed: Speed, through: Option<Through>) -> String {
+    let maneuver = maneuver_name(motion, speed);
+    through.map_or(maneuver.clone(), |through| format!("{maneuver}-{}", through.name()))
 }
 
 impl Layout for ManeuverTable {
@@ -68,15 +87,19 @@ impl Layout for ManeuverTable {
         let failure = |name: &str, meaning: &str, empty: &str| {
             Column::percent(name, meaning).empty_where(empty)
         };
-        let (unfinished, uncalibrated) = ("none was finished", "there was no calibration");
-        let names: Vec<String> = MOTIONS
-            .iter()
-            .flat_map(|motion| SPEEDS.map(|speed| maneuver_name(*motion, speed)))
-            .collect();
+        let (unfinished, uncalibrated) =
+            ("none was finished", "there was no calibration of it, or one for each building");
+        let names: Vec<String> = parts().map(|(m, s, through)| part_name(m, s, through)).collect();
         Columns::<ManeuverRow>::none()
-            .with(Column::of_values("maneuver", "", "Motion and speed", &names), |row| {
-                row.name.clone()
-            })
+            .with(
+                Column::of_values(
+                    "maneuver",
+                    "",
+                    "Motion and speed, and what it was done for",
+                    &names,
+                ),
+                |row| row.name.clone(),
+            )
             .number(
                 time(
                     "expected-time-s",

@@ -25,14 +25,14 @@ pub mod strategy;
 mod study;
 pub mod toposemantic_map;
 
-pub use calibration::Calibration;
+pub use calibration::{Calibration, Calibrations};
 pub use in_situ::ManeuverRow;
 pub use intersection_detection::{IntersectionDetectionSystem, Perception};
 pub use mission::{run, tag_scheme};
 pub use parameters::{ErrorShape, Hiding, Mission, Parameters, Passage, Sensing, Task};
 use passages::Isolated;
 pub use requests::{ManeuverTable, PolicyGraph};
-pub use rules::{Rules, UnplannedSpeed};
+pub use rules::{InitialEdges, Rules, UnplannedSpeed};
 pub use study::Deadline;
 
 use crate::geometry::Pose;

@@ -1,19 +1,24 @@
 //! The isolated passages on which a calibration rests, one row per trial: sealed beside the pairs that follow from
 //! them, so that anyone who doubts a pair can count again, and drive any passage again.
 
-use super::calibration::{Calibration, Driven};
+use super::calibration::{Calibration, Calibrations, Driven};
+use super::mission::tally;
 use super::parameters::Task;
 use crate::condition::Condition;
 use crate::digest::Sha256Digest;
-use crate::studies::deadline::build_cmdp::{Motion, Speed};
+use crate::studies::deadline::build_cmdp::{Motion, Speed, Through};
 use crate::studies::{
     Calibrated, Calibrating, CalibrationError, Design, Expectations, Outcome, PlannedCalibration,
     Setup, TrialRecord,
 };
 use crate::table::{Table, Value};
+use crate::world::World;
 use std::sync::Arc;
 
-const COLUMNS: [&str; 6] = ["motion", "speed", "trial", "outcome", "time-s", "record"];
+const COLUMNS: [&str; 8] =
+    ["world", "motion", "speed", "trial", "through", "outcome", "time-s", "record"];
+/// How many of them the plan gives.
+const PLANNED: usize = 4;
 
 /// The outcomes that a passage can have.
 const OUTCOMES: [Outcome; 5] =
@@ -33,9 +38,10 @@ impl Calibrating for Isolated {
     }
 }
 
-fn expectations(calibration: Calibration) -> Expectations {
-    let csv = calibration.to_csv();
-    Expectations::new(calibration, csv)
+fn expectations(by_world: Vec<(Arc<World>, Arc<Calibration>)>) -> Expectations {
+    let calibrations = Calibrations::new(by_world);
+    let csv = calibrations.to_csv();
+    Expectations::new(calibrations, csv)
 }
 
 impl PlannedCalibration for PlannedPassages {
@@ -48,29 +54,36 @@ impl PlannedCalibration for PlannedPassages {
     }
 
     fn stand_in(&self) -> Expectations {
-        expectations(Calibration::stand_in())
+        let stand_in = Arc::new(Calibration::stand_in());
+        let worlds = self.worlds.iter();
+        expectations(worlds.map(|world| (Arc::clone(world), Arc::clone(&stand_in))).collect())
     }
 }
 
 /// The passages of a calibration experiment, in plan order.
 #[derive(Debug, Clone, PartialEq)]
 struct Passages {
+    worlds: Vec<Arc<World>>,
     rows: Vec<Row>,
 }
 
 /// One passage.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Row {
+    /// Index of the building.
+    world: usize,
     trial: u32,
     passage: Driven,
     /// Digest of the trial's record line.
     record: Sha256Digest,
 }
 
-/// The passages that an experiment plans: the maneuver of each condition, and trials per condition.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// The passages that an experiment plans: building and maneuver of each condition, and trials per condition.
+#[derive(Debug, Clone, PartialEq)]
 struct PlannedPassages {
-    maneuvers: Vec<(Motion, Speed)>,
+    /// Every building once, in the order of the conditions.
+    worlds: Vec<Arc<World>>,
+    maneuvers: Vec<(usize, Motion, Speed)>,
     trials: u32,
 }
 
@@ -80,10 +93,17 @@ impl PlannedPassages {
     /// # Errors
     /// Where a condition is something other than isolated passages.
     fn of(design: &Design<'_>, trials: u32) -> Result<Self, CalibrationError> {
+        let mut worlds: Vec<Arc<World>> = Vec::new();
         let maneuver = |(condition, setup): &(&Condition, &Setup)| match setup.of::<super::Setup>()
         {
             Some(setup) if setup.parameters.mission.task == Task::Passage => {
-                Ok((setup.parameters.passage.motion, setup.parameters.passage.speed))
+                let known = worlds.iter().position(|world| *world == setup.world);
+                let world = known.unwrap_or(worlds.len());
+                if known.is_none() {
+                    worlds.push(Arc::clone(&setup.world));
+                }
+                let passage = &setup.parameters.passage;
+                Ok((world, passage.motion, passage.speed))
             }
             _ => Err(CalibrationError::of(format!(
                 "expected `mission.task: passage`, `{}` is something else",
@@ -91,7 +111,7 @@ impl PlannedPassages {
             ))),
         };
         let maneuvers = design.iter().map(maneuver).collect::<Result<_, _>>()?;
-        Ok(Self { maneuvers, trials })
+        Ok(Self { worlds, maneuvers, trials })
     }
 
     /// Returns how many there are.
@@ -99,10 +119,10 @@ impl PlannedPassages {
         self.maneuvers.len() as u64 * u64::from(self.trials)
     }
 
-    fn each(&self) -> impl Iterator<Item = (Motion, Speed, u32)> + '_ {
-        let of = |(motion, speed): &(Motion, Speed)| {
-            let (motion, speed) = (*motion, *speed);
-            (0..self.trials).map(move |trial| (motion, speed, trial))
+    fn each(&self) -> impl Iterator<Item = (usize, Motion, Speed, u32)> + '_ {
+        let of = |(world, motion, speed): &(usize, Motion, Speed)| {
+            let (world, motion, speed) = (*world, *motion, *speed);
+            (0..self.trials).map(move |trial| (world, motion, speed, trial))
         };
         self.maneuvers.iter().flat_map(of)
     }
@@ -117,12 +137,13 @@ impl PlannedPassages {
             let what = format!("expected the records of {expected} passages, found {found}");
             return Err(CalibrationError::of(what));
         }
-        let rows = self.each().zip(records).map(|((motion, speed, trial), record)| {
+        let rows = self.each().zip(records).map(|((world, motion, speed, trial), record)| {
             let time_s = record.measures.get("time-s").copied().flatten();
-            let passage = Driven { motion, speed, outcome: record.outcome, time_s };
-            Row { trial, passage, record: Sha256Digest::of(record.to_line()) }
+            let through = through_of(record);
+            let passage = Driven { motion, speed, through, outcome: record.outcome, time_s };
+            Row { world, trial, passage, record: Sha256Digest::of(record.to_line()) }
         });
-        Ok(Passages { rows: rows.collect() })
+        Ok(Passages { worlds: self.worlds.clone(), rows: rows.collect() })
     }
 
     /// Reads a text that [`Passages::to_csv`] wrote of exactly these.
@@ -145,26 +166,33 @@ impl PlannedPassages {
             return Err(fault(format!("expected the columns {expected}, found {found}")));
         }
         let mut rows = Vec::with_capacity(table.rows.len());
-        for (i, ((motion, speed, trial), row)) in self.each().zip(&table.rows).enumerate() {
+        for (i, ((world, motion, speed, trial), row)) in self.each().zip(&table.rows).enumerate() {
             let at = |problem: String| fault(format!("line {}: {problem}", i + 2));
-            let (wanted, found) = (named(motion, speed, trial), joined(&row[..3]));
+            let name = &self.worlds[world].name;
+            let wanted = joined(&planned(name, motion, speed, trial));
+            let found = joined(&row[..PLANNED]);
             if wanted != found {
                 return Err(at(format!("expected `{wanted}`, found `{found}`")));
             }
-            let written = row[3].to_string();
+            let written = row[4].to_string();
+            let through = Through::ALL.into_iter().find(|through| through.name() == written);
+            let through =
+                through.ok_or_else(|| at(format!("`{written}` is nothing to pass through")))?;
+            let written = row[5].to_string();
             let outcome = OUTCOMES.into_iter().find(|outcome| outcome.name() == written);
             let outcome =
                 outcome.ok_or_else(|| at(format!("`{written}` is no outcome of a passage")))?;
-            let time_s = row[4].as_f64().filter(|time| *time >= 0.0);
-            if time_s.is_none() && row[4] != Value::Missing {
-                return Err(at(format!("`time-s` must be a number from 0, found `{}`", row[4])));
+            let time_s = row[6].as_f64().filter(|time| *time >= 0.0);
+            if time_s.is_none() && row[6] != Value::Missing {
+                return Err(at(format!("`time-s` must be a number from 0, found `{}`", row[6])));
             }
-            let digest = row[5].to_string();
+            let digest = row[7].to_string();
             let record = Sha256Digest::from_hex(&digest)
                 .ok_or_else(|| at(format!("`record` must be 64 hex digits, found `{digest}`")))?;
-            rows.push(Row { trial, passage: Driven { motion, speed, outcome, time_s }, record });
+            let passage = Driven { motion, speed, through, outcome, time_s };
+            rows.push(Row { world, trial, passage, record });
         }
-        Ok(Passages { rows })
+        Ok(Passages { worlds: self.worlds.clone(), rows })
     }
 }
 
@@ -176,19 +204,20 @@ impl Calibrated for Passages {
     fn to_csv(&self) -> String {
         let mut table = Table::new(COLUMNS);
         for row in &self.rows {
-            table.push(fields(row));
+            table.push(self.fields(row));
         }
         table.to_csv()
     }
 
-    /// Returns the row without its first three fields, which are those that the plan gives.
+    /// Returns the row without its first fields, which are those that the plan gives.
     fn told(&self, index: usize) -> Option<String> {
-        self.rows.get(index).map(|row| joined(&fields(row)[3..]))
+        self.rows.get(index).map(|row| joined(&self.fields(row)[PLANNED..]))
     }
 
     fn told_of(&self, record: &TrialRecord) -> String {
         let time: Value = record.measures.get("time-s").copied().flatten().into();
         joined(&[
+            through_of(record).name().into(),
             record.outcome.name().into(),
             time,
             Sha256Digest::of(record.to_line()).hex().into(),
@@ -197,24 +226,41 @@ impl Calibrated for Passages {
 
     /// Computes the pairs of the maneuvers; an error where a maneuver has too few passages or none that arrived.
     fn expectations(&self) -> Result<Expectations, CalibrationError> {
-        Calibration::measure(self.rows.iter().map(|row| row.passage)).map(expectations)
+        let measured = self.worlds.iter().enumerate().map(|(number, world)| {
+            let here = self.rows.iter().filter(|row| row.world == number);
+            let calibration = Calibration::measure(here.map(|row| row.passage))?;
+            Ok((Arc::clone(world), Arc::new(calibration)))
+        });
+        measured.collect::<Result<_, _>>().map(expectations)
     }
 }
 
-fn fields(row: &Row) -> Vec<Value> {
-    let Driven { motion, speed, outcome, time_s } = row.passage;
-    vec![
-        motion.name().into(),
-        speed.name().into(),
-        i64::from(row.trial).into(),
-        outcome.name().into(),
-        time_s.into(),
-        row.record.hex().into(),
-    ]
+impl Passages {
+    fn fields(&self, row: &Row) -> Vec<Value> {
+        let Driven { motion, speed, through, outcome, time_s } = row.passage;
+        let mut fields = planned(&self.worlds[row.world].name, motion, speed, row.trial).to_vec();
+        fields.extend([
+            through.name().into(),
+            outcome.name().into(),
+            time_s.into(),
+            row.record.hex().into(),
+        ]);
+        fields
+    }
 }
 
-fn named(motion: Motion, speed: Speed, trial: u32) -> String {
-    format!("{},{},{trial}", motion.name(), speed.name())
+/// Returns the fields that the plan gives.
+fn planned(world: &str, motion: Motion, speed: Speed, trial: u32) -> [Value; PLANNED] {
+    [world.into(), motion.name().into(), speed.name().into(), i64::from(trial).into()]
+}
+
+/// Returns what the passage of `record` led through. One in which the program failed says nothing and counts for nothing.
+fn through_of(record: &TrialRecord) -> Through {
+    let passed = |through: &Through| {
+        let measure = tally::passages_through(*through);
+        record.measures.get(&measure).copied().flatten().is_some_and(|count| count > 0.0)
+    };
+    Through::ALL.into_iter().find(passed).unwrap_or(Through::Corridor)
 }
 
 fn joined(fields: &[Value]) -> String {
@@ -225,9 +271,14 @@ fn joined(fields: &[Value]) -> String {
 mod tests {
     use super::*;
     use crate::bundle::sample;
+    use crate::studies::deadline::calibration::tests::hall;
 
     fn planned() -> PlannedPassages {
-        PlannedPassages { maneuvers: vec![(Motion::Corridor, Speed::Slow)], trials: 2 }
+        PlannedPassages {
+            worlds: vec![Arc::new(hall("here"))],
+            maneuvers: vec![(0, Motion::Corridor, Speed::Slow)],
+            trials: 2,
+        }
     }
 
     fn records() -> [TrialRecord; 2] {
@@ -247,8 +298,9 @@ mod tests {
         assert_eq!(
             text,
             format!(
-                "motion,speed,trial,outcome,time-s,record\ncorridor,slow,0,reached,12.5,{}\n\
-                 corridor,slow,1,collided,,{}\n",
+                "world,motion,speed,trial,through,outcome,time-s,record\n\
+                 here,corridor,slow,0,corridor,reached,12.5,{}\n\
+                 here,corridor,slow,1,corridor,collided,,{}\n",
                 digest(0),
                 digest(1)
             )
@@ -263,7 +315,7 @@ mod tests {
         let refused = |text: &str| planned().read(text).unwrap_err().to_string();
         assert_eq!(
             refused(&text.replace("slow,1", "fast,1")),
-            "calibration: line 3: expected `corridor,slow,1`, found `corridor,fast,1`"
+            "calibration: line 3: expected `here,corridor,slow,1`, found `here,corridor,fast,1`"
         );
         assert_eq!(
             refused(&text.replace("12.5", "soon")),

@@ -1,7 +1,7 @@
 //! The deadline study behind the interface of a study.
 
 use super::mission::{self, lints};
-use super::{Calibration, Isolated, Parameters, Setup, Task, columns};
+use super::{Calibrations, Isolated, Parameters, Setup, Task, columns};
 use crate::geometry::Pose;
 use crate::robot::Robot;
 use crate::studies::recording::Recording;
@@ -66,6 +66,11 @@ impl Study for Deadline {
         &[Outcome::REACHED, Outcome::COLLIDED, Outcome::LATE, Outcome::STALLED]
     }
 
+    /// Returns 1: side corridors by the maneuver of doors, counts by what was passed.
+    fn revision(&self) -> u32 {
+        1
+    }
+
     fn calibrating(&self) -> Option<&'static dyn Calibrating> {
         Some(&Isolated)
     }
@@ -86,7 +91,14 @@ impl Study for Deadline {
         };
         let around = condition.surroundings()?;
         let calibration = match calibration {
-            Some(expected) => Some(expected?.of::<Calibration>()?),
+            Some(expected) => {
+                let measured = expected?.of::<Calibrations>()?;
+                let here = measured.of(&around.world);
+                if here.is_none() {
+                    condition.tell(lints::not_measured_in(&around.world, &measured));
+                }
+                Some(here?)
+            }
             None => None,
         };
         let setup = Setup::new(around.world, around.robot, around.start, calibration, parameters);

@@ -11,8 +11,8 @@ struct Answering<'a> {
 }
 
 impl Pipeline for Executing {
-    fn engine(&self) -> &str {
-        ENGINE.engine()
+    fn engine(&self, bundle: &Bundle) -> String {
+        ENGINE.engine(bundle)
     }
 
     fn replan<'a>(&'a self, bundle: &'a Bundle) -> Result<Box<dyn Replanned + 'a>, ReplanError> {

@@ -30,6 +30,8 @@ pub(super) struct Hall {
     pub(super) center: Cm,
     /// Distance from its middle line to those of its side walls.
     pub(super) half: Cm,
+    /// Clear width where it opens from another, even.
+    pub(super) mouth: Cm,
     /// Its ends along its axis, to the middle lines of the end walls (or of the wall it opens from).
     pub(super) span: [Cm; 2],
     /// Its vertices along its axis, ascending; a branch does not hold the junction from which it starts.
@@ -345,8 +347,7 @@ impl Floor {
             // A branch opens from the main hall's wall: its floor reaches through, and the junction is its first point.
             let northern = hall.span[0] > 0;
             let mouth = (hall.center, if northern { hall.span[0] } else { hall.span[1] });
-            let width = 2 * (hall.half - half);
-            layout.gaps.push(Gap { line: Axis::EastWest, at: mouth, width });
+            layout.gaps.push(Gap { line: Axis::EastWest, at: mouth, width: hall.mouth });
             if northern {
                 floor.y[0] -= 2 * half;
             } else {

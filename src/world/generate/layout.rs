@@ -2,7 +2,7 @@
 //! conversion to a document. Lengths are whole centimetres, so that walls meet exactly.
 
 use super::walls::walls;
-use crate::geometry::{Axis, Cardinal, Point, Pose};
+use crate::geometry::{Axis, Cardinal, Pose};
 use crate::world::document::{AreaDoc, BASE_LAYER, GoalDoc, LayerDoc, RegionDoc, TagDoc, WorldDoc};
 use crate::world::topology::{Opening, TagScheme};
 use crate::world::{RegionKind, Tag};
@@ -269,10 +269,4 @@ pub(super) fn ahead(at: (Cm, Cm), direction: Cardinal, by: Cm) -> (Cm, Cm) {
 /// Converts centimetres to metres: the number that is written with two decimals.
 pub(super) fn metres(at: (Cm, Cm)) -> [f64; 2] {
     [f64::from(at.0) / 100.0, f64::from(at.1) / 100.0]
-}
-
-/// Converts to a point (m).
-pub(super) fn point(at: (Cm, Cm)) -> Point {
-    let [x, y] = metres(at);
-    Point::new(x, y)
 }

@@ -13,7 +13,7 @@ use super::document::{self, PoseDoc, WorldDoc};
 use super::topology::{Opening, TagScheme, Topology};
 use super::{RegionKind, World};
 use crate::rng::{Seeds, Stream};
-use layout::{degrees, point};
+use layout::degrees;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -52,8 +52,10 @@ pub struct Unsatisfied {
 /// Draws before a seed is given up.
 const ATTEMPTS: u32 = 500;
 
-/// Edges from the goal to the starts A, B and C: at least, at most (the deadline study's tables, facts on them).
-pub const START_DISTANCES: [(&str, [u32; 2]); 3] = [("A", [2, 3]), ("B", [5, 9]), ("C", [11, 18])];
+/// Edges from the goal to the starts A, B and C: at least, at most (what fits the deadline study's Table 1).
+pub const START_DISTANCES: [(&str, [u32; 2]); 3] = [("A", [2, 3]), ("B", [4, 7]), ("C", [7, 12])];
+/// B's distance from the goal by C's, per mille: as the deadlines of Table 1, 2899 and 5628 s.
+const B_BY_C: u32 = 515;
 
 /// Generates the building `seed` of `family`, as a document.
 ///
@@ -82,20 +84,13 @@ fn office_floor(seed: u64, attempt: u32) -> Option<WorldDoc> {
         [("family", Family::OfficeFloor.name().to_owned()), ("attempt", attempt.to_string())];
     let seeds =
         Seeds::new(seed, coordinates.map(|(name, value)| (name.to_owned(), value)).to_vec());
-    let drawn = office_floor::draw(&mut seeds.stream("layout"))?;
-    let layout = drawn.layout;
-
+    let layout = office_floor::draw(&mut seeds.stream("layout"), &mut seeds.stream("mouths"))?;
     let scheme = TagScheme::default();
     let mut ids: Vec<String> = (1..=layout.tag_count()).map(|i| format!("t{i:03}")).collect();
     seeds.stream("tags").shuffle(&mut ids);
     let tags = layout.tags(&ids, &scheme);
     let topology = Topology::read(&tags, &scheme).ok()?;
-    let large: Vec<usize> = drawn
-        .largest_branch
-        .iter()
-        .filter_map(|place| topology.vertex_near(point(layout.places[*place].at), 0.01))
-        .collect();
-    let starts = choose_starts(&topology, &large, &mut seeds.stream("starts"))?;
+    let starts = choose_starts(&topology, &mut seeds.stream("starts"))?;
 
     let name = format!("office-floor-{seed}");
     let source = format!(
@@ -106,13 +101,10 @@ fn office_floor(seed: u64, attempt: u32) -> Option<WorldDoc> {
     Some(doc)
 }
 
-/// Chooses starts at the corridor vertices that have the right distances from the goal, each facing along its corridor.
-/// A does not stand on the `large` branch; C is as far away as possible, B nearest to 40 % of that.
-fn choose_starts(
-    topology: &Topology,
-    large: &[usize],
-    stream: &mut Stream,
-) -> Option<BTreeMap<String, PoseDoc>> {
+/// Chooses starts at the corridor vertices that have the right distances from the goal, each facing along its corridor: C
+/// any of these; B nearest to the share of C's distance that it has of C's deadlines; A on this side of the goal's door, so
+/// that exploring leads away from it.
+fn choose_starts(topology: &Topology, stream: &mut Stream) -> Option<BTreeMap<String, PoseDoc>> {
     let distances = topology.distances_to_goal();
     let [(_, near), (_, middle), (_, far)] = START_DISTANCES;
     let corridor = |range: [u32; 2]| -> Vec<(usize, u32)> {
@@ -128,10 +120,12 @@ fn choose_starts(
         let index = stream.below(candidates.len().max(1) as u64);
         candidates.get(usize::try_from(index).ok()?).copied()
     };
-    let a = draw(corridor(near).into_iter().filter(|(n, _)| !large.contains(n)).collect())?;
-    let most = corridor(far).iter().map(|(_, distance)| *distance).max()?;
-    let c = draw(corridor(far).into_iter().filter(|(_, distance)| *distance == most).collect())?;
-    let off = |distance: u32| (5 * distance).abs_diff(2 * most);
+    let c = draw(corridor(far))?;
+    let from_c = topology.distances([c.0]);
+    let door = topology.goals().next().map(|goal| topology.vertices[goal].exits[0].to)?;
+    let is_before = |(n, _): &(usize, u32)| from_c[*n] < from_c[door];
+    let a = draw(corridor(near).into_iter().filter(is_before).collect())?;
+    let off = |distance: u32| (1000 * distance).abs_diff(B_BY_C * c.1);
     let best = corridor(middle).iter().map(|(_, distance)| off(*distance)).min()?;
     let b = draw(corridor(middle).into_iter().filter(|(_, d)| off(*d) == best).collect())?;
 

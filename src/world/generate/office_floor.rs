@@ -35,6 +35,8 @@ const FOUR_WAYS: usize = 3;
 /// Clear width of corridors and doors, thickness of walls: even numbers from, to.
 const CORRIDOR: [Cm; 2] = [200, 250];
 const DOOR: [Cm; 2] = [90, 100];
+/// Clear width where a branch opens from the main corridor: the leaf of a fire door.
+const MOUTH: [Cm; 2] = [116, 124];
 const WALL: [Cm; 2] = [16, 20];
 /// Clear length of the main corridor.
 const MAIN: [Cm; 2] = [5_800, 6_200];
@@ -48,17 +50,12 @@ const USUAL_STEP: Cm = 475;
 /// Depth of rooms.
 const DEPTH: [Cm; 2] = [420, 680];
 
-/// A floor that was drawn.
-pub(super) struct Drawn {
-    /// Its layout, in its final place.
-    pub(super) layout: Layout,
-    /// Vertices (of corridors) on the branch where most are: A does not stand there.
-    pub(super) largest_branch: Vec<usize>,
-}
-
-/// Draws a floor; `None` where the parts drawn do not fit together.
-pub(super) fn draw(stream: &mut Stream) -> Option<Drawn> {
-    let halls = draw_halls(stream)?;
+/// Draws a floor, in its final place, and from a stream of their own the mouths of its branches; `None` where the parts drawn do not fit together.
+pub(super) fn draw(stream: &mut Stream, mouths: &mut Stream) -> Option<Layout> {
+    let mut halls = draw_halls(stream)?;
+    for branch in &mut halls.halls[1..] {
+        branch.mouth = even(mouths, MOUTH);
+    }
     let mut pen = Pen {
         floor: Floor { thickness: halls.thickness, halls: halls.halls, rooms: Vec::new() },
         stream,
@@ -67,9 +64,7 @@ pub(super) fn draw(stream: &mut Stream) -> Option<Drawn> {
     let floor = pen.floor;
     let layout = floor.layout(goal);
     let mirrored = [stream.below(2) == 1, stream.below(2) == 1];
-    let first = floor.stop_number(LARGE, 0);
-    let largest_branch = (first..first + floor.halls[LARGE].stops.len()).collect();
-    Some(Drawn { layout: layout.placed(mirrored), largest_branch })
+    Some(layout.placed(mirrored))
 }
 
 /// Numbers of the branches.
@@ -117,7 +112,8 @@ fn draw_halls(stream: &mut Stream) -> Option<Halls> {
     stops.extend(eastern);
 
     // 4. The branches.
-    let main = Hall { axis: Axis::EastWest, center: 0, half: halves[0], span: [0, length], stops };
+    let (axis, mouth) = (Axis::EastWest, 0);
+    let main = Hall { axis, center: 0, half: halves[0], mouth, span: [0, length], stops };
     let north = stream.below(2) == 1;
     let mut branch = |center: Cm, north: bool, half: Cm, length: [Cm; 2]| {
         let end = main.half - thickness / 2 + even(stream, length);
@@ -128,7 +124,7 @@ fn draw_halls(stream: &mut Stream) -> Option<Halls> {
             stops = stops.iter().rev().map(|stop| -stop).collect();
             span = [-span[1], -span[0]];
         }
-        Some(Hall { axis: Axis::NorthSouth, center, half, span, stops })
+        Some(Hall { axis: Axis::NorthSouth, center, half, mouth: 0, span, stops })
     };
     let mut branches = vec![
         branch(goal, true, halves[1], GOAL_BRANCH)?,

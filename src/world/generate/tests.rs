@@ -69,7 +69,9 @@ fn check(world: &World) -> Topology {
         match edge.opening {
             Opening::Door => assert!((0.449..=0.52).contains(&least), "{name}: {edge:?} {least}"),
             Opening::Corridor => {
-                assert!((0.999..=1.251).contains(&least), "{name}: {edge:?} {least}");
+                // Past the fire door where a branch opens, or along the middle.
+                let fits = (0.579..=0.621).contains(&least) || (0.999..=1.251).contains(&least);
+                assert!(fits, "{name}: {edge:?} {least}");
             }
         }
     }
@@ -135,7 +137,7 @@ fn the_engineering_building_is_of_the_family() {
         let at = world.starts[start].position();
         distances[topology.vertex_near(at, 1e-9).unwrap()].unwrap()
     };
-    assert_eq!((of("A"), of("B"), of("C")), (2, 6, 15));
+    assert_eq!((of("A"), of("B"), of("C")), (2, 5, 9));
     let bounds = world.bounds();
     assert!((bounds.width() - 62.4).abs() < 1e-9 && (bounds.height() - 41.8).abs() < 1e-9);
 }
@@ -156,7 +158,7 @@ fn every_seed_to_a_thousand_is_a_building_and_a_sample_keeps_every_rule() {
 fn buildings_are_pinned() {
     let meanings: Vec<String> =
         (0..3).map(|seed| generate(Family::OfficeFloor, seed).unwrap().meaning().short()).collect();
-    assert_eq!(meanings, ["305cd9fc", "68b7c138", "0e731342"]);
+    assert_eq!(meanings, ["3147a5d5", "57b9b39d", "930b8d66"]);
 }
 
 #[test]

@@ -9,12 +9,19 @@ const FAST: Expectation = Expectation { time_s: 4.0, failure: 0.04 };
 
 fn corridor(edges: usize, deadline_s: f64, failure: f64, reading: Reading) -> Navigation {
     let mut topology = Topology { vertices: vec![Place::Corridor; edges + 1], edges: Vec::new() };
+    let through = Through::Corridor;
     for x in 0..edges {
-        topology.edges.push(OrientedEdge { from: x, to: x + 1, side: Side::Right });
-        topology.edges.push(OrientedEdge { from: x + 1, to: x, side: Side::Left });
+        topology.edges.push(OrientedEdge { from: x, to: x + 1, side: Side::Right, through });
+        topology.edges.push(OrientedEdge { from: x + 1, to: x, side: Side::Left, through });
     }
     let both = [SLOW, FAST];
-    let maneuvers = Maneuvers { corridor: both, door_left: both, door_right: both };
+    let door = DoorPairs::alike(both);
+    let maneuvers = Maneuvers {
+        corridor: both,
+        door_left: door,
+        door_right: door,
+        side_corridors: SideCorridors::Door,
+    };
     let task = Task { from: 0, to: edges, deadline_s, failure, reading };
     build_cmdp(&topology, &task, &maneuvers).unwrap()
 }

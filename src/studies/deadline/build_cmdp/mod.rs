@@ -6,8 +6,8 @@
 //! `t_d`. What it leaves open, and how it is settled here:
 //!
 //! - Maneuvers are relative to the heading and X = V has none. An action is therefore an outgoing edge at a
-//!   speed. Its maneuver follows from the edge: through a door if either end is a room, on the side of the
-//!   edge's label S(e), else through a corridor.
+//!   speed. Its maneuver follows from the edge: through a door if either end is a room or if no robot can go
+//!   straight on into it, on the side of the edge's label S(e), else through a corridor.
 //! - The failure bound is on a *sum* of probabilities ([`Reading::Additive`]) or on the probability itself
 //!   ([`Reading::Reach`]).
 //! - Ties go by failure, then by time; a failure bound that cannot be met is dropped; a deadline that cannot
@@ -36,6 +36,60 @@ pub enum Side {
     Right,
 }
 
+/// What an edge leads through, in its direction.
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
+)]
+#[serde(rename_all = "kebab-case")]
+pub enum Through {
+    /// Along a corridor.
+    Corridor,
+    /// From a corridor into another one, which no robot can do straight on.
+    SideCorridor,
+    /// Through a door into a room.
+    Entering,
+    /// Through a door out of a room.
+    Leaving,
+}
+
+impl Through {
+    /// All, in the order of tables.
+    pub const ALL: [Self; 4] = [Self::Corridor, Self::SideCorridor, Self::Entering, Self::Leaving];
+    /// All that a door's maneuver is done for.
+    pub const OF_DOORS: [Self; 3] = [Self::Entering, Self::Leaving, Self::SideCorridor];
+
+    /// Returns what counts of a motion are split by.
+    pub const fn of(motion: Motion) -> &'static [Self] {
+        match motion {
+            Motion::Corridor => &[],
+            Motion::DoorLeft | Motion::DoorRight => &Self::OF_DOORS,
+        }
+    }
+
+    /// Returns the name in files: `side-corridor`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Corridor => "corridor",
+            Self::SideCorridor => "side-corridor",
+            Self::Entering => "entering",
+            Self::Leaving => "leaving",
+        }
+    }
+}
+
+/// The maneuver by which a robot turns from one corridor into another. Section 6 has six maneuvers: the one of corridors
+/// keeps the orientation, and only those of doors turn.
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
+)]
+#[serde(rename_all = "kebab-case")]
+pub enum SideCorridors {
+    /// That of a door to its side: nothing else turns.
+    Door,
+    /// That of a corridor, after a turn in place.
+    Corridor,
+}
+
 /// One explored, oriented edge (unexplored ones lead nowhere yet and are left out).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct OrientedEdge {
@@ -45,6 +99,8 @@ pub struct OrientedEdge {
     pub to: usize,
     /// S(e).
     pub side: Side,
+    /// What it leads through.
+    pub through: Through,
 }
 
 /// The part of a toposemantic map that a plan needs.
@@ -112,29 +168,83 @@ pub struct Expectation {
     pub failure: f64,
 }
 
-/// The six (time, failure) pairs.
+/// Returns the motion by which an edge on that side of its vertex, through that, is passed.
+pub const fn motion_of(through: Through, side: Side, side_corridors: SideCorridors) -> Motion {
+    match (through, side_corridors, side) {
+        (Through::Corridor, ..) | (Through::SideCorridor, SideCorridors::Corridor, _) => {
+            Motion::Corridor
+        }
+        (_, _, Side::Left) => Motion::DoorLeft,
+        (_, _, Side::Right) => Motion::DoorRight,
+    }
+}
+
+/// The (time, failure) pairs of a door's maneuver, by what it is done for: slow, fast.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DoorPairs {
+    /// To enter a room.
+    pub entering: [Expectation; 2],
+    /// To leave one.
+    pub leaving: [Expectation; 2],
+    /// To turn into another corridor.
+    pub side_corridor: [Expectation; 2],
+}
+
+impl DoorPairs {
+    /// Creates the pairs of a maneuver that takes the same whatever it is done for.
+    pub const fn alike(both: [Expectation; 2]) -> Self {
+        Self { entering: both, leaving: both, side_corridor: both }
+    }
+
+    fn each(&self) -> [&[Expectation; 2]; 3] {
+        [&self.entering, &self.leaving, &self.side_corridor]
+    }
+}
+
+/// The set of actions: by which maneuver each edge is passed, and what is expected of it. Six maneuvers, and those of doors
+/// apart by what they are done for: entering a room carries nearly all of their hazard.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Maneuvers {
     /// Through a corridor: slow, fast.
     pub corridor: [Expectation; 2],
-    /// Through a door on the left: slow, fast.
-    pub door_left: [Expectation; 2],
-    /// Through a door on the right: slow, fast.
-    pub door_right: [Expectation; 2],
+    /// Through a door on the left.
+    pub door_left: DoorPairs,
+    /// Through a door on the right.
+    pub door_right: DoorPairs,
+    /// The maneuver that turns into another corridor.
+    pub side_corridors: SideCorridors,
 }
 
 impl Maneuvers {
-    /// Returns the expected time and failure of `motion` at `speed`.
-    pub fn expect(&self, motion: Motion, speed: Speed) -> Expectation {
+    /// Returns the motion by which an edge on that side, through that, is passed.
+    pub const fn motion(&self, through: Through, side: Side) -> Motion {
+        motion_of(through, side, self.side_corridors)
+    }
+
+    /// Returns the expected time and failure of `motion` at `speed`, through that.
+    pub fn expect(&self, motion: Motion, through: Through, speed: Speed) -> Expectation {
+        let of_door = |door: &DoorPairs| match through {
+            Through::Entering => door.entering,
+            Through::Leaving => door.leaving,
+            Through::SideCorridor | Through::Corridor => door.side_corridor,
+        };
         let both = match motion {
-            Motion::Corridor => &self.corridor,
-            Motion::DoorLeft => &self.door_left,
-            Motion::DoorRight => &self.door_right,
+            Motion::Corridor => self.corridor,
+            Motion::DoorLeft => of_door(&self.door_left),
+            Motion::DoorRight => of_door(&self.door_right),
         };
         match speed {
             Speed::Slow => both[0],
             Speed::Fast => both[1],
         }
+    }
+
+    /// Returns all pairs, with the names of what they are of.
+    pub fn pairs(&self) -> impl Iterator<Item = (&'static str, &[Expectation; 2])> {
+        let doors = [("door left", &self.door_left), ("door right", &self.door_right)];
+        let of_doors =
+            doors.into_iter().flat_map(|(name, door)| door.each().map(|both| (name, both)));
+        std::iter::once(("corridor", &self.corridor)).chain(of_doors)
     }
 }
 
@@ -216,16 +326,6 @@ pub enum BuildError {
     },
 }
 
-/// Returns the motion that follows `edge`.
-pub fn motion(topology: &Topology, edge: &OrientedEdge) -> Motion {
-    let door = [edge.from, edge.to].iter().any(|v| topology.vertices[*v] == Place::Room);
-    match (door, edge.side) {
-        (false, _) => Motion::Corridor,
-        (true, Side::Left) => Motion::DoorLeft,
-        (true, Side::Right) => Motion::DoorRight,
-    }
-}
-
 /// Builds the model of `task` on `topology`: actions are the edges at both speeds; the target absorbs, and by
 /// [`Reading::Reach`] failure too; then transitions, bounds and costs.
 ///
@@ -245,7 +345,7 @@ pub fn build_cmdp(
         .iter()
         .enumerate()
         .flat_map(|(index, edge)| {
-            let motion = motion(topology, edge);
+            let motion = expectations.motion(edge.through, edge.side);
             [Speed::Slow, Speed::Fast].map(|speed| Maneuver { edge: index, motion, speed })
         })
         .collect();
@@ -258,7 +358,7 @@ pub fn build_cmdp(
     builder.initial(task.from, 1.0).expect(valid);
     for (action, maneuver) in maneuvers.iter().enumerate() {
         let edge = topology.edges[maneuver.edge];
-        let failure = expectations.expect(maneuver.motion, maneuver.speed).failure;
+        let failure = expectations.expect(maneuver.motion, edge.through, maneuver.speed).failure;
         if reach {
             builder.transition(edge.from, action, failed, failure).expect(valid);
             builder.transition(edge.from, action, edge.to, 1.0 - failure).expect(valid);
@@ -269,8 +369,8 @@ pub fn build_cmdp(
     let failure = builder.secondary("failure", task.failure).expect(valid);
     let time = builder.secondary("time-s", task.deadline_s).expect(valid);
     for (action, maneuver) in maneuvers.iter().enumerate() {
-        let state = topology.edges[maneuver.edge].from;
-        let expected = expectations.expect(maneuver.motion, maneuver.speed);
+        let OrientedEdge { from: state, through, .. } = topology.edges[maneuver.edge];
+        let expected = expectations.expect(maneuver.motion, through, maneuver.speed);
         let primary = if reach { expected.failure } else { 1.0 };
         builder.primary(state, action, primary).expect(valid);
         builder.secondary_cost(failure, state, action, expected.failure).expect(valid);
@@ -313,11 +413,7 @@ fn check(topology: &Topology, task: &Task, expectations: &Maneuvers) -> Result<(
     };
     amount("the deadline (s)".to_owned(), task.deadline_s)?;
     amount("the failure bound".to_owned(), task.failure)?;
-    for (name, both) in [
-        ("corridor", expectations.corridor),
-        ("door left", expectations.door_left),
-        ("door right", expectations.door_right),
-    ] {
+    for (name, both) in expectations.pairs() {
         for (speed, expected) in ["slow", "fast"].iter().zip(both) {
             amount(format!("the time (s) of {name}, {speed}"), expected.time_s)?;
             if !(0.0..=1.0).contains(&expected.failure) {

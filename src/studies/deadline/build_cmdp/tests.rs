@@ -12,8 +12,12 @@ fn map() -> Topology {
         [(0, 1, Side::Right), (1, 2, Side::Right), (1, 3, Side::Left), (2, 4, Side::Right)]
     {
         let back = if side == Side::Left { Side::Right } else { Side::Left };
-        topology.edges.push(OrientedEdge { from, to, side });
-        topology.edges.push(OrientedEdge { from: to, to: from, side: back });
+        let (there, here) = match topology.vertices[to] {
+            Place::Room => (Through::Entering, Through::Leaving),
+            Place::Corridor => (Through::Corridor, Through::Corridor),
+        };
+        topology.edges.push(OrientedEdge { from, to, side, through: there });
+        topology.edges.push(OrientedEdge { from: to, to: from, side: back, through: here });
     }
     topology
 }
@@ -27,8 +31,9 @@ fn maneuvers() -> Maneuvers {
     };
     Maneuvers {
         corridor: pair(10.0, 0.01),
-        door_left: pair(8.0, 0.02),
-        door_right: pair(6.0, 0.03),
+        door_left: DoorPairs::alike(pair(8.0, 0.02)),
+        door_right: DoorPairs::alike(pair(6.0, 0.03)),
+        side_corridors: SideCorridors::Door,
     }
 }
 
@@ -111,7 +116,7 @@ fn an_unreachable_target_and_bad_numbers_are_named() {
         "the deadline (s) is -1; expected a finite number >= 0"
     );
     let mut wrong = maneuvers();
-    wrong.door_left[1].failure = 1.5;
+    wrong.door_left.entering[1].failure = 1.5;
     assert_eq!(
         text(build_cmdp(&map(), &task(3, 1.0), &wrong)),
         "the failure probability of door left, fast is 1.5; expected a probability in [0, 1]"

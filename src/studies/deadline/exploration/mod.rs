@@ -6,13 +6,13 @@
 use super::intersection::{Intersection, Opening};
 use super::navigation::{Flag, NavigateToVertex};
 use super::planner::{Plan, PlanError};
-use super::rules::{Rules, UnplannedSpeed};
+use super::rules::{InitialEdges, Rules, UnplannedSpeed};
 use super::schedule::LocalDeadline;
-use super::strategy::{Chooser, uniform};
+use super::strategy::{Came, Chooser, uniform};
 use super::toposemantic_map::{Arrival, Edge, MapError, ToposemanticMap, VertexId};
 use crate::geometry::Cardinal;
 use crate::rng::{Seeds, Stream};
-use crate::studies::deadline::build_cmdp::{Maneuvers, Motion, Side, Speed};
+use crate::studies::deadline::build_cmdp::{Maneuvers, Motion, Speed, Through};
 use thiserror::Error;
 
 /// The robot's next action.
@@ -33,6 +33,8 @@ pub struct Leave {
     pub exit: Cardinal,
     /// Whether it leads through a corridor or a door.
     pub opening: Opening,
+    /// What it leads through, seen from where the robot comes.
+    pub through: Through,
     /// The motion.
     pub motion: Motion,
     /// The speed.
@@ -150,8 +152,8 @@ pub struct Explorer {
 }
 
 impl Explorer {
-    /// Creates a mind without observations, with the global deadline T = `deadline_s` and the `expectations` of
-    /// maneuvers. It draws from two streams of `seeds`, `exploration` and `policy`.
+    /// Creates a mind without observations, with the global deadline T = `deadline_s` and the maneuvers that it can do with
+    /// what it expects of each. It draws from two streams of `seeds`, `exploration` and `policy`.
     pub fn new(rules: &Rules, expectations: Maneuvers, deadline_s: f64, seeds: &Seeds) -> Self {
         Self {
             rules: rules.clone(),
@@ -231,12 +233,7 @@ impl Explorer {
             Flag::Execute(action) => {
                 let edge =
                     self.map.edge(current, action.exit).expect("plans take edges of the map");
-                let leave = Leave {
-                    exit: action.exit,
-                    opening: edge.opening,
-                    motion: action.motion,
-                    speed: action.speed,
-                };
+                let leave = self.leave(edge, action.speed);
                 Ok(Next::Leave(self.go(now_s, current, leave, Purpose::Navigate)))
             }
             // Lines 6 to 8.
@@ -266,14 +263,14 @@ impl Explorer {
     }
 
     /// Does `InitializeGraph`: "it initially randomly moves around until it has K vertices in the graph". It takes any
-    /// of the current vertex's unexplored edges, or where it has none any of its edges. A building of fewer than K
-    /// vertices ends it too.
+    /// of the current vertex's unexplored edges, or where it has none, or by [`InitialEdges::Any`], any of its edges. A
+    /// building of fewer than K vertices ends it too.
     fn move_randomly(&mut self, now_s: f64, current: VertexId) -> Result<Leave, GiveUp> {
         if self.map.ids().all(|v| self.map.unexplored_degree(v) == 0) {
             return Err(GiveUp::NothingLeft);
         }
         let mut edges: Vec<Edge> = self.map.unexplored(current).collect();
-        if edges.is_empty() {
+        if edges.is_empty() || self.rules.initial_edges == InitialEdges::Any {
             edges = self.map.edges_from(current).collect();
         }
         let edge = uniform(&edges, &mut self.choosing).ok_or(GiveUp::NothingLeft)?;
@@ -283,8 +280,9 @@ impl Explorer {
 
     /// Does line 4, v, t_d ← `ExplorationNext(M, time)`, and the beginning of line 5.
     fn exploration_next(&mut self, now_s: f64, current: VertexId) -> Result<(), GiveUp> {
-        let target =
-            self.chooser.next(&self.map, current, &mut self.choosing).ok_or(GiveUp::NothingLeft)?;
+        let came = self.came();
+        let target = self.chooser.next(&self.map, current, came, &mut self.choosing);
+        let target = target.ok_or(GiveUp::NothingLeft)?;
         let distances = self.map.distances(current);
         let candidate = |v: VertexId| {
             let (unexplored, distance) = (self.map.unexplored_degree(v), distances[v.index()]?);
@@ -312,23 +310,38 @@ impl Explorer {
         Ok(())
     }
 
+    /// Returns the robot's last move, by which it came to where it is.
+    fn came(&self) -> Option<Came> {
+        let last = self.moves.last()?;
+        Some(Came { from: last.from, direction: last.leave.exit, opening: last.leave.opening })
+    }
+
+    /// Returns how to pass `edge` at that speed. A plan knows no heading; the robot does: an edge across the corridor by
+    /// which it came leads into another corridor, whatever else comes up to the vertex.
+    fn leave(&self, edge: Edge, speed: Speed) -> Leave {
+        let turns =
+            |came: Came| came.opening == Opening::Corridor && came.direction.axis() != edge.axis();
+        let through = match self.map.through(&edge) {
+            Through::Corridor if self.came().is_some_and(turns) => Through::SideCorridor,
+            through => through,
+        };
+        let motion = self.expectations.motion(through, edge.side());
+        Leave { exit: edge.direction, opening: edge.opening, through, motion, speed }
+    }
+
     /// Returns how to follow `edge` without a plan.
     fn unplanned(&self, now_s: f64, edge: Edge) -> Leave {
-        let motion = match (edge.opening, edge.side()) {
-            (Opening::Corridor, _) => Motion::Corridor,
-            (Opening::Door, Side::Left) => Motion::DoorLeft,
-            (Opening::Door, Side::Right) => Motion::DoorRight,
-        };
+        let Leave { motion, through, .. } = self.leave(edge, Speed::Slow);
         let speed = match self.rules.unplanned_speed {
             UnplannedSpeed::Slow => Speed::Slow,
             UnplannedSpeed::Fast => Speed::Fast,
             UnplannedSpeed::Schedule => {
-                let slow = self.expectations.expect(motion, Speed::Slow).time_s;
+                let slow = self.expectations.expect(motion, through, Speed::Slow).time_s;
                 let given = self.rules.schedule.local_deadline(1, now_s, self.deadline_s).seconds;
                 if slow > given { Speed::Fast } else { Speed::Slow }
             }
         };
-        Leave { exit: edge.direction, opening: edge.opening, motion, speed }
+        self.leave(edge, speed)
     }
 
     fn go(&mut self, at_s: f64, from: VertexId, leave: Leave, purpose: Purpose) -> Leave {

@@ -1,7 +1,7 @@
 //! Algorithms 2 and 3 on buildings that are graphs.
 
 use super::*;
-use crate::studies::deadline::build_cmdp::Place;
+use crate::studies::deadline::build_cmdp::{Place, SideCorridors};
 use crate::studies::deadline::building::{Building, maneuvers, plain};
 use crate::studies::deadline::intersection::Exit;
 use crate::studies::deadline::planner::{Method, Status};
@@ -169,6 +169,58 @@ fn the_first_moves_are_random_until_there_are_k_vertices() {
     let moves: std::collections::BTreeSet<usize> =
         (0..40).map(|seed| initial(&line, &rules, 1, seed)).collect();
     assert_eq!(moves, [2, 3].into());
+}
+
+/// Checks the other reading of "randomly moves around": back over a known edge, too, so that more moves are needed.
+#[test]
+fn the_first_moves_may_take_any_edge() {
+    let mut line = Building::default();
+    let mut last = line.add(Place::Corridor);
+    for _ in 0..9 {
+        last = line.grow(last, Cardinal::East, Place::Corridor);
+    }
+    let rules = Rules { initial_edges: InitialEdges::Any, ..rules(Strategy::Frontier) };
+    let backs = (0..400).filter(|seed| walk(&line, &rules, 0, *seed).0[2] == 0).count();
+    assert!((150..250).contains(&backs), "half of them turn back at once: {backs}");
+}
+
+/// Checks section 6's six maneuvers: none of corridors turns. A cross of corridors with a room beside an arm.
+#[test]
+fn a_turn_from_one_corridor_into_another_is_a_doors_maneuver() {
+    use Cardinal::{East, North, South, West};
+    let mut cross = Building::default();
+    let center = cross.add(Place::Corridor);
+    let arms = [East, North, West, South].map(|d| cross.grow(center, d, Place::Corridor));
+    cross.grow(arms[0], North, Place::Room);
+    let rules = |side_corridors| Rules { side_corridors, ..rules(Strategy::Random) };
+    for (side_corridors, turned) in [
+        (SideCorridors::Door, [Motion::DoorLeft, Motion::DoorRight]),
+        (SideCorridors::Corridor, [Motion::Corridor; 2]),
+    ] {
+        let (mut turns, mut straight) = (0, 0);
+        for seed in 0..20 {
+            let (maneuvers, seeds) =
+                (Maneuvers { side_corridors, ..maneuvers() }, Seeds::new(seed, Vec::new()));
+            let mut explorer = Explorer::new(&rules(side_corridors), maneuvers, 1e9, &seeds);
+            cross.explore(&mut explorer, arms[2], 12.0, plain);
+            for pair in explorer.moves().windows(2) {
+                let [before, Leave { exit, opening, through, motion, .. }] =
+                    [pair[0].leave, pair[1].leave];
+                if [before.opening, opening] != [Opening::Corridor; 2] {
+                    continue;
+                }
+                if exit.axis() == before.exit.axis() {
+                    assert_eq!((through, motion), (Through::Corridor, Motion::Corridor));
+                    straight += 1;
+                } else {
+                    let left = usize::from(!matches!(exit, West | South));
+                    assert_eq!((through, motion), (Through::SideCorridor, turned[left]));
+                    turns += 1;
+                }
+            }
+        }
+        assert!(turns > 10 && straight > 10, "{turns} turns, {straight} straight on");
+    }
 }
 
 /// Checks that each of three exits is taken first a third of the time, within five standard errors.

@@ -9,7 +9,7 @@ use crate::robot::{CompassReading, Detection, Scan, Twist};
 use crate::sim::{
     CameraScene, CompassNoise, Distribution, DriveNoise, Occlusion, OdometryNoise, Scene, Simulator,
 };
-use crate::studies::deadline::build_cmdp::Speed;
+use crate::studies::deadline::build_cmdp::{Motion, Speed};
 use crate::studies::deadline::intersection::{Intersection, Opening};
 use crate::studies::deadline::{ErrorShape, Hiding, IntersectionDetectionSystem, Setup};
 use crate::studies::recording::{Frame, GraphView, Recording, Sensed};
@@ -139,14 +139,14 @@ impl<'a> Body<'a> {
         self.pilot.look_around();
     }
 
-    /// Leaves the vertex by `exit`.
-    pub(super) fn leave(&mut self, exit: Cardinal, opening: Opening, speed: Speed) {
+    /// Leaves the vertex by `exit`, which leads through `opening`, with a maneuver of that motion.
+    pub(super) fn leave(&mut self, exit: Cardinal, opening: Opening, motion: Motion, speed: Speed) {
         self.ids.depart(exit, opening);
         self.pilot.begin(Leg {
             direction: exit.heading(),
-            opening: match opening {
-                Opening::Corridor => maneuver::Opening::Corridor,
-                Opening::Door => maneuver::Opening::Door,
+            opening: match motion {
+                Motion::Corridor => maneuver::Opening::Corridor,
+                Motion::DoorLeft | Motion::DoorRight => maneuver::Opening::Door,
             },
             limits: match speed {
                 Speed::Slow => self.limits[0],

@@ -7,12 +7,12 @@
 //! 5. At the deadline, the time since the last new vertex separates a late trial from a stalled one.
 
 use super::body::{Body, Happening};
-use super::tally::{self, Tally};
+use super::tally::{self, Done, Tally};
 use super::{Ending, Prepared, graph, record};
 use crate::geometry::Point;
 use crate::studies::deadline::Setup;
 use crate::studies::deadline::build_cmdp::Maneuvers;
-use crate::studies::deadline::exploration::{Explorer, Next};
+use crate::studies::deadline::exploration::{Explorer, Leave, Next};
 use crate::studies::deadline::planner::Plan;
 use crate::studies::recording::{Recording, SolvedPlan};
 use crate::studies::{Outcome, Stopwatch, TrialRecord, TrialSpec};
@@ -30,8 +30,8 @@ pub(super) fn run(
     let Some(calibration) = &setup.calibration else {
         return TrialRecord::panicked(spec, "the planner has no calibration".to_owned());
     };
-    let mut exploration =
-        Exploration::new(spec, setup, prepared, calibration.maneuvers(), recording);
+    let expectations = calibration.maneuvers(setup.parameters.rules.side_corridors);
+    let mut exploration = Exploration::new(spec, setup, prepared, expectations, recording);
     let ending = exploration.run(watch);
     exploration.write_plans_down();
     let mut measures = BTreeMap::new();
@@ -118,8 +118,9 @@ impl<'a> Exploration<'a> {
                         }
                         Next::GiveUp(_) => {}
                         Next::Leave(leave) => {
-                            self.tally.begin(leave.motion, leave.speed, now);
-                            self.body.leave(leave.exit, leave.opening, leave.speed);
+                            let Leave { exit, opening, through, motion, speed } = leave;
+                            self.tally.begin(Done { motion, speed, through }, now);
+                            self.body.leave(exit, opening, motion, speed);
                             if self.body.is_recorded() {
                                 self.body.note(
                                     graph::view(&self.mind, &self.places),

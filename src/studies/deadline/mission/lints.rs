@@ -2,7 +2,27 @@
 
 use super::Setup;
 use crate::studies::Remark;
+use crate::studies::deadline::Calibrations;
+use crate::world::World;
 use crate::world::topology::{TagFault, Topology};
+
+/// Returns the fault of a calibration that drove no passage in `world`.
+pub(in crate::studies::deadline) fn not_measured_in(
+    world: &World,
+    measured: &Calibrations,
+) -> Remark {
+    let worlds: Vec<String> = measured.worlds().map(|name| format!("`{name}`")).collect();
+    Remark {
+        pointer: "/calibration",
+        message: format!("the calibration drives no passage in the building `{}`", world.name),
+        label: format!("it measures maneuvers in {}", worlds.join(", ")),
+        help: Some(
+            "what a maneuver takes depends on the building's doors: name a calibration of this building, or give the \
+             calibration the same factor of buildings"
+                .to_owned(),
+        ),
+    }
+}
 
 /// Returns the faults found; `graph` is what the world's tags make by the setup's scheme, or the faults of these.
 pub(in crate::studies::deadline) fn remarks(

@@ -6,7 +6,7 @@ mod graph;
 pub(super) mod lints;
 mod passage;
 mod policy_chart;
-mod tally;
+pub(super) mod tally;
 #[cfg(test)]
 mod tests;
 

@@ -2,15 +2,18 @@
 //! planner's expectations.
 
 use super::body::{Body, Happening};
+use super::tally::{Done, Tally};
 use super::{Ending, Prepared, record};
 use crate::geometry::{Cardinal, Pose};
 use crate::rng::Stream;
 use crate::studies::deadline::Setup;
-use crate::studies::deadline::build_cmdp::Motion;
+use crate::studies::deadline::build_cmdp::{Motion, SideCorridors, Through, motion_of};
 use crate::studies::deadline::intersection::Opening;
+use crate::studies::deadline::toposemantic_map::side;
 use crate::studies::recording::Recording;
 use crate::studies::{Outcome, TrialRecord, TrialSpec};
 use crate::units::{Radians, Seconds, Tick};
+use crate::world::RegionKind;
 use crate::world::topology::{self, Topology};
 use std::collections::BTreeMap;
 
@@ -24,6 +27,7 @@ struct Way {
     to: usize,
     direction: Cardinal,
     opening: Opening,
+    through: Through,
 }
 
 /// Drives one maneuver and measures it.
@@ -35,7 +39,7 @@ pub(super) fn run(
 ) -> TrialRecord {
     let passage = &setup.parameters.passage;
     let topology = &prepared.topology;
-    let ways = ways(topology, passage.motion);
+    let ways = ways(topology, passage.motion, setup.parameters.rules.side_corridors);
     let mut stream = spec.seeds.stream("passage");
     if ways.is_empty() {
         let cause = format!("the building has no way for the motion {:?}", passage.motion);
@@ -49,11 +53,17 @@ pub(super) fn run(
         body.step();
     }
     let began = body.now();
-    body.leave(way.direction, way.opening, passage.speed);
+    let mut tally = Tally::default();
+    let done = Done { motion: passage.motion, speed: passage.speed, through: way.through };
+    tally.begin(done, began);
+    body.leave(way.direction, way.opening, passage.motion, passage.speed);
     let limit = began + Tick::at_or_after(Seconds(passage.time_limit_s));
     let ending = loop {
         match body.step() {
-            Happening::Contact => break Ending::plain(Outcome::COLLIDED, body.now()),
+            Happening::Contact => {
+                tally.collide();
+                break Ending::plain(Outcome::COLLIDED, body.now());
+            }
             Happening::Arrived(here) => {
                 let there = &topology.vertices[way.to].tag;
                 if here.tags.contains(there) {
@@ -69,25 +79,37 @@ pub(super) fn run(
         }
     };
     let mut measures = BTreeMap::new();
+    tally.passed(&mut measures);
     measures.insert("distance-m".to_owned(), Some(body.travelled()));
     measures.insert("turning-rad".to_owned(), Some(body.turned()));
     record(spec, ending, began, measures, body.chain())
 }
 
-/// Returns the directed edges that require `motion`: the side of a door is S(e), as the planner names it.
-fn ways(topology: &Topology, motion: Motion) -> Vec<Way> {
+/// Returns the directed edges that require `motion`: the side of a door is S(e), as the planner names it, and a side corridor
+/// is one that no robot can go straight on into.
+fn ways(topology: &Topology, motion: Motion, side_corridors: SideCorridors) -> Vec<Way> {
     let mut ways = Vec::new();
     for (from, vertex) in topology.vertices.iter().enumerate() {
+        let corridor = |direction: Cardinal| {
+            let mut exits = vertex.exits.iter();
+            exits.any(|e| e.direction == direction && e.opening == topology::Opening::Corridor)
+        };
         for exit in &vertex.exits {
-            // S: facing north for edges E-W, west is left; facing west for edges N-S, south is left.
-            let left = matches!(exit.direction, Cardinal::West | Cardinal::South);
-            let (asked, opening) = match exit.opening {
-                topology::Opening::Corridor => (Motion::Corridor, Opening::Corridor),
-                topology::Opening::Door if left => (Motion::DoorLeft, Opening::Door),
-                topology::Opening::Door => (Motion::DoorRight, Opening::Door),
+            let direction = exit.direction;
+            let across = direction.axis().across().directions();
+            let is_side = !corridor(direction.opposite()) && across.into_iter().any(corridor);
+            let (opening, through) = match (exit.opening, topology.vertices[exit.to].kind) {
+                (topology::Opening::Corridor, _) if is_side => {
+                    (Opening::Corridor, Through::SideCorridor)
+                }
+                (topology::Opening::Corridor, _) => (Opening::Corridor, Through::Corridor),
+                (topology::Opening::Door, RegionKind::Room) => (Opening::Door, Through::Entering),
+                (topology::Opening::Door, RegionKind::Corridor) => {
+                    (Opening::Door, Through::Leaving)
+                }
             };
-            if asked == motion {
-                ways.push(Way { from, to: exit.to, direction: exit.direction, opening });
+            if motion_of(through, side(direction), side_corridors) == motion {
+                ways.push(Way { from, to: exit.to, direction, opening, through });
             }
         }
     }

@@ -110,7 +110,7 @@ pub(super) fn policy_chart(
     // 3. The plans.
     let mut panels: Vec<PolicyPanel> = Vec::new();
     for (seconds, steps) in legs {
-        let maneuvers = calibration.maneuvers();
+        let maneuvers = calibration.maneuvers(rules.side_corridors);
         let plan = Plan::new(&map, from, goal, seconds, &rules.planner, &maneuvers)?;
         let when = match steps.as_slice() {
             [] => String::new(),

@@ -1,11 +1,12 @@
-//! Counts over a trial: maneuvers by motion and speed, and plans by how they meet their deadlines.
+//! Counts over a trial: maneuvers by motion, speed and what they led through, and plans by how they meet their deadlines.
 
-use crate::studies::deadline::build_cmdp::{Motion, Speed};
+use crate::studies::deadline::build_cmdp::{Motion, Speed, Through};
 use crate::studies::deadline::calibration::{MOTIONS, SPEEDS, maneuver_name};
 use crate::studies::deadline::exploration::Explorer;
 use crate::studies::deadline::planner::{Plan, Status};
 use crate::units::{Seconds, Tick};
 use std::collections::BTreeMap;
+use std::ops::AddAssign;
 
 /// The counts of one maneuver over a trial.
 #[derive(Debug, Clone, Copy, Default)]
@@ -17,24 +18,41 @@ struct Count {
     seconds: f64,
 }
 
-/// Counts in the order of the calibration table.
+impl AddAssign for Count {
+    fn add_assign(&mut self, other: Self) {
+        self.begun += other.begun;
+        self.arrived += other.arrived;
+        self.collided += other.collided;
+        self.seconds += other.seconds;
+    }
+}
+
+/// A maneuver as it was done.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Done {
+    pub(super) motion: Motion,
+    pub(super) speed: Speed,
+    pub(super) through: Through,
+}
+
+/// Counts by motion and speed, in the order of the calibration table, and by what was passed, in that of [`Through::ALL`].
 #[derive(Debug, Default)]
 pub(super) struct Tally {
-    counts: [[Count; 2]; 3],
-    under_way: Option<(Motion, Speed, Tick)>,
+    counts: [[[Count; 4]; 2]; 3],
+    under_way: Option<(Done, Tick)>,
 }
 
 impl Tally {
     /// Records that a maneuver begins.
-    pub(super) fn begin(&mut self, motion: Motion, speed: Speed, now: Tick) {
-        self.count(motion, speed).begun += 1;
-        self.under_way = Some((motion, speed, now));
+    pub(super) fn begin(&mut self, done: Done, now: Tick) {
+        self.count(done).begun += 1;
+        self.under_way = Some((done, now));
     }
 
     /// Records that the maneuver under way, if there is one, has arrived.
     pub(super) fn arrive(&mut self, now: Tick) {
-        if let Some((motion, speed, since)) = self.under_way.take() {
-            let count = self.count(motion, speed);
+        if let Some((done, since)) = self.under_way.take() {
+            let count = self.count(done);
             count.arrived += 1;
             let Seconds(ended) = now.seconds();
             let Seconds(began) = since.seconds();
@@ -44,30 +62,37 @@ impl Tally {
 
     /// Records that the maneuver under way, if there is one, has ended in contact.
     pub(super) fn collide(&mut self) {
-        if let Some((motion, speed, _)) = self.under_way.take() {
-            self.count(motion, speed).collided += 1;
+        if let Some((done, _)) = self.under_way.take() {
+            self.count(done).collided += 1;
         }
     }
 
-    fn count(&mut self, motion: Motion, speed: Speed) -> &mut Count {
-        let row = MOTIONS.iter().position(|m| *m == motion).unwrap_or_default();
-        let column = SPEEDS.iter().position(|s| *s == speed).unwrap_or_default();
-        &mut self.counts[row][column]
+    fn count(&mut self, done: Done) -> &mut Count {
+        let row = MOTIONS.iter().position(|m| *m == done.motion).unwrap_or_default();
+        let column = SPEEDS.iter().position(|s| *s == done.speed).unwrap_or_default();
+        let depth = Through::ALL.iter().position(|t| *t == done.through).unwrap_or_default();
+        &mut self.counts[row][column][depth]
     }
 
-    /// Adds the measures of the maneuvers to `measures`.
+    /// Adds the measures of an exploration's maneuvers to `measures`.
     pub(super) fn measures(&self, measures: &mut BTreeMap<String, Option<f64>>) {
+        self.passed(measures);
         let mut put = |name: String, value: f64| measures.insert(name, Some(value));
         let mut totals = [(0, 0); 2];
         for (row, motion) in self.counts.iter().zip(MOTIONS) {
-            for ((count, speed), total) in row.iter().zip(SPEEDS).zip(&mut totals) {
+            for ((by_through, speed), total) in row.iter().zip(SPEEDS).zip(&mut totals) {
                 let name = maneuver_name(motion, speed);
-                put(format!("{name}-passages"), f64::from(count.begun));
-                put(format!("{name}-arrived"), f64::from(count.arrived));
-                put(format!("{name}-collisions"), f64::from(count.collided));
-                put(format!("{name}-total-s"), count.seconds);
-                total.0 += count.begun;
-                total.1 += count.collided;
+                let mut all = Count::default();
+                for (count, through) in by_through.iter().zip(Through::ALL) {
+                    all += *count;
+                    // Most are not done in most trials: a record says only what was.
+                    if count.begun > 0 && Through::of(motion).contains(&through) {
+                        put_counts(&format!("{name}-{}", through.name()), count, &mut put);
+                    }
+                }
+                put_counts(&name, &all, &mut put);
+                total.0 += all.begun;
+                total.1 += all.collided;
             }
         }
         let [(slow, slow_collisions), (fast, fast_collisions)] = totals;
@@ -81,6 +106,33 @@ impl Tally {
         let share = (slow + fast > 0).then(|| f64::from(fast) / all);
         measures.insert("fast-maneuver-share".to_owned(), share);
     }
+
+    /// Adds the counts by what was passed, over all motions and speeds, to `measures`.
+    pub(super) fn passed(&self, measures: &mut BTreeMap<String, Option<f64>>) {
+        for (depth, through) in Through::ALL.into_iter().enumerate() {
+            let mut all = Count::default();
+            self.counts.iter().flatten().for_each(|by_through| all += by_through[depth]);
+            measures.insert(passages_through(through), Some(f64::from(all.begun)));
+            measures.insert(collisions_through(through), Some(f64::from(all.collided)));
+        }
+    }
+}
+
+fn put_counts<T>(name: &str, count: &Count, put: &mut impl FnMut(String, f64) -> T) {
+    put(format!("{name}-passages"), f64::from(count.begun));
+    put(format!("{name}-arrived"), f64::from(count.arrived));
+    put(format!("{name}-collisions"), f64::from(count.collided));
+    put(format!("{name}-total-s"), count.seconds);
+}
+
+/// Returns the name of the measure of passages through that.
+pub(in crate::studies::deadline) fn passages_through(through: Through) -> String {
+    format!("{}-passages", through.name())
+}
+
+/// Returns the name of the measure of collisions on passages through that.
+pub(in crate::studies::deadline) fn collisions_through(through: Through) -> String {
+    format!("{}-collisions", through.name())
 }
 
 /// Adds the measures of the mind's decisions and discoveries to `measures`.

@@ -16,8 +16,8 @@ use crate::cmdp::{
 use crate::geometry::Cardinal;
 use crate::rng::Stream;
 use crate::studies::deadline::build_cmdp::{
-    BuildError, FAILURE, Maneuver, Maneuvers, Motion, Navigation, Reading, Speed, TIME, Task,
-    Topology, build_cmdp, motion,
+    BuildError, FAILURE, Maneuver, Maneuvers, Motion, Navigation, OrientedEdge, Reading, Speed,
+    TIME, Task, Topology, build_cmdp,
 };
 use path::Way;
 use schemars::JsonSchema;
@@ -245,8 +245,9 @@ impl Plan {
     /// arrives.
     pub fn choices(&self, v: VertexId) -> Vec<(Action, f64)> {
         let action = |edge: usize, speed: Speed| {
-            let topology = &self.problem.topology;
-            let motion = motion(topology, &topology.edges[edge]);
+            let Problem { topology, expectations, .. } = &self.problem;
+            let OrientedEdge { through, side, .. } = topology.edges[edge];
+            let motion = expectations.motion(through, side);
             Action { exit: self.problem.exits[edge].1, motion, speed }
         };
         match &self.policy {

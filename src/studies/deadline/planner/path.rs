@@ -2,7 +2,7 @@
 
 use super::{Method, Status};
 use crate::studies::deadline::build_cmdp::{
-    Expectation, Maneuvers, Reading, Speed, Task, Topology, motion,
+    Expectation, Maneuvers, OrientedEdge, Reading, Speed, Task, Topology,
 };
 
 /// One path to the target.
@@ -48,8 +48,8 @@ pub(super) fn unbound(topology: &Topology, task: &Task, expectations: &Maneuvers
     if task.reading != Reading::Additive || task.from == task.to {
         return None;
     }
-    let expected = [expectations.corridor, expectations.door_left, expectations.door_right];
-    if expected.iter().flatten().any(|e| e.time_s.is_nan() || e.time_s < CLEAR) {
+    let mut expected = expectations.pairs().flat_map(|(_, both)| both);
+    if expected.any(|e| e.time_s.is_nan() || e.time_s < CLEAR) {
         return None;
     }
     let within_failure = |way: &Way| way.failure < task.failure * (1.0 - CLEAR);
@@ -144,8 +144,9 @@ impl<'a, C: Fn(Expectation) -> [f64; 3]> Going<'a, C> {
     }
 
     fn expected(&self, choice: Choice) -> Expectation {
-        let motion = motion(self.topology, &self.topology.edges[choice.edge]);
-        self.expectations.expect(motion, choice.speed)
+        let OrientedEdge { through, side, .. } = self.topology.edges[choice.edge];
+        let motion = self.expectations.motion(through, side);
+        self.expectations.expect(motion, through, choice.speed)
     }
 
     /// Returns the costs of beginning with `choice`; `None` where that leads nowhere.

@@ -3,7 +3,7 @@
 use super::*;
 use crate::cmdp::solve_document;
 use crate::rng::Seeds;
-use crate::studies::deadline::build_cmdp::{Expectation, Place};
+use crate::studies::deadline::build_cmdp::{DoorPairs, Expectation, Place};
 use crate::studies::deadline::building::{Building, below, maneuvers};
 use crate::studies::deadline::toposemantic_map::End;
 use proptest::prelude::*;
@@ -60,8 +60,10 @@ fn some_maneuvers(stream: &mut Stream) -> Maneuvers {
             _ => {}
         }
     };
-    for both in [&mut some.corridor, &mut some.door_left, &mut some.door_right] {
-        vary(both);
+    vary(&mut some.corridor);
+    for door in [&mut some.door_left, &mut some.door_right] {
+        vary(&mut door.entering);
+        *door = DoorPairs::alike(door.entering);
     }
     some
 }

@@ -11,15 +11,17 @@ mod random;
 #[cfg(test)]
 mod tests;
 
-pub use complete_corridor::{CompleteCorridor, Completion};
+pub use complete_corridor::{CompleteCorridor, Completion, CorridorOf};
 pub use corridors_first::CorridorsFirst;
 pub use frontier::{Frontier, Ties};
 pub use normalized_frontier::NormalizedFrontier;
 
+use super::intersection::Opening;
 use super::rules::Rules;
 use super::toposemantic_map::{ToposemanticMap, VertexId};
+use crate::geometry::Cardinal;
 use crate::rng::Stream;
-use complete_corridor::CorridorInHand;
+use complete_corridor::CompletingCorridors;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -53,6 +55,17 @@ pub enum Preference {
     MostUnexplored,
     /// None: any of them.
     Uniform,
+}
+
+/// How the robot came to the current vertex.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Came {
+    /// The vertex that it left.
+    pub from: VertexId,
+    /// The exit by which it left that one: its direction still.
+    pub direction: Cardinal,
+    /// What the exit led through.
+    pub opening: Opening,
 }
 
 /// 𝒱 of section 5, the vertices with edges (v, v∅), relative to the current vertex.
@@ -133,7 +146,7 @@ pub struct Chooser {
     frontier: Frontier,
     normalized_frontier: NormalizedFrontier,
     corridors_first: CorridorsFirst,
-    complete_corridor: CorridorInHand,
+    complete_corridor: CompletingCorridors,
 }
 
 impl Chooser {
@@ -144,15 +157,17 @@ impl Chooser {
             frontier: rules.frontier.clone(),
             normalized_frontier: rules.normalized_frontier.clone(),
             corridors_first: rules.corridors_first.clone(),
-            complete_corridor: CorridorInHand::new(rules.complete_corridor.clone()),
+            complete_corridor: CompletingCorridors::new(rules.complete_corridor.clone()),
         }
     }
 
-    /// Chooses the vertex to which to go next from `current`; `None` where nothing is left to explore.
+    /// Chooses the vertex to which to go next from `current`, to which the robot `came` by its last move; `None` where
+    /// nothing is left to explore.
     pub fn next(
         &mut self,
         map: &ToposemanticMap,
         current: VertexId,
+        came: Option<Came>,
         stream: &mut Stream,
     ) -> Option<VertexId> {
         let candidates = Candidates::new(map, current);
@@ -162,7 +177,7 @@ impl Chooser {
             Strategy::NormalizedFrontier => self.normalized_frontier.choose(&candidates, stream),
             Strategy::CorridorsFirst => self.corridors_first.choose(&candidates, stream),
             Strategy::CompleteCorridor => {
-                self.complete_corridor.choose(&candidates, current, stream)
+                self.complete_corridor.choose(&candidates, current, came, stream)
             }
         }
     }

@@ -49,7 +49,7 @@ fn counts(rules: &Rules, current: usize) -> [i32; 4] {
     let mut counts = [0; 4];
     for seed in 0..3000 {
         let mut chooser = Chooser::new(rules);
-        let next = chooser.next(&map, vertices[current], &mut stream(seed)).unwrap();
+        let next = chooser.next(&map, vertices[current], None, &mut stream(seed)).unwrap();
         counts[next.index()] += 1;
     }
     counts
@@ -151,7 +151,7 @@ fn corridors_come_before_rooms() {
     let a = map.begin(&corridor("a", &[], &[North])).unwrap();
     let r = map.create_new_node(a, North, &room("r", &[South, East])).unwrap();
     let mut chooser = Chooser::new(&rules(Strategy::CorridorsFirst));
-    assert_eq!(chooser.next(&map, a, &mut stream(0)), Some(r));
+    assert_eq!(chooser.next(&map, a, None, &mut stream(0)), Some(r));
 }
 
 #[test]
@@ -166,22 +166,90 @@ fn nothing_left_is_nothing_chosen() {
         Strategy::CorridorsFirst,
         Strategy::CompleteCorridor,
     ] {
-        assert_eq!(Chooser::new(&rules(strategy)).next(&map, a, &mut stream(0)), None);
+        assert_eq!(Chooser::new(&rules(strategy)).next(&map, a, None, &mut stream(0)), None);
     }
 }
 
-/// Checks that from the middle of the corridor c1 it goes to c1's ends although a crossing corridor is as near, and
-/// comes back from that.
+/// Returns how the robot came by its last move, from `from` towards `direction`.
+const fn came(from: VertexId, direction: Cardinal, opening: Opening) -> Came {
+    Came { from, direction, opening }
+}
+
+fn in_hand() -> Rules {
+    let mut rules = rules(Strategy::CompleteCorridor);
+    rules.complete_corridor.corridor = CorridorOf::InHand;
+    rules.complete_corridor.finished = Completion::Explored;
+    rules
+}
+
+/// Checks "finishes exploring the corridor it is located in" and "can no longer be extended": from wherever a random edge has
+/// led the robot it is that corridor which is gone on with, not the one before.
 #[test]
-fn a_corridor_is_completed_before_another_begins() {
+fn the_corridor_it_is_located_in_is_extended_first() {
+    // c1: a - b going east and on; c2 goes north from b, over n and on. Each has a door besides.
+    let mut map = ToposemanticMap::new();
+    let a = map.begin(&corridor("a", &[East], &[North])).unwrap();
+    let b = map.create_new_node(a, East, &corridor("b", &[East, West, North], &[])).unwrap();
+    let n = map.create_new_node(b, North, &corridor("n", &[South, North], &[East])).unwrap();
+    let rules = rules(Strategy::CompleteCorridor);
+    let from = |at, came| Chooser::new(&rules).next(&map, at, came, &mut stream(1)).unwrap();
+    assert_eq!(
+        from(n, Some(came(b, North, Opening::Corridor))),
+        n,
+        "it is in c2, which goes on at n"
+    );
+    assert_eq!(from(b, Some(came(n, South, Opening::Corridor))), n, "it is in c2 still");
+    assert_eq!(
+        from(b, Some(came(a, East, Opening::Corridor))),
+        b,
+        "it is in c1, which goes on at b"
+    );
+    // In the room at a's door: c1 passes it, whatever the door's own direction.
+    let r = map.create_new_node(a, North, &room("r", &[South])).unwrap();
+    let from = |at, came| Chooser::new(&rules).next(&map, at, came, &mut stream(1)).unwrap();
+    assert_eq!(from(r, Some(came(a, North, Opening::Door))), b);
+    // In the room at n's door: c2 passes that.
+    let s = map.create_new_node(n, East, &room("s", &[West])).unwrap();
+    let from = |at, came| Chooser::new(&rules).next(&map, at, came, &mut stream(1)).unwrap();
+    assert_eq!(from(s, Some(came(n, East, Opening::Door))), n);
+}
+
+/// Checks that a corridor which cannot be extended is left, though doors of it are unexplored, and that a stated option
+/// explores it first.
+#[test]
+fn a_corridor_that_cannot_be_extended_is_left() {
+    let mut map = ToposemanticMap::new();
+    let a = map.begin(&corridor("a", &[East], &[South])).unwrap();
+    let b = map.create_new_node(a, East, &corridor("b", &[West, East, South], &[])).unwrap();
+    let c = map.create_new_node(b, East, &corridor("c", &[West], &[North, South])).unwrap();
+    let mut rules = rules(Strategy::CompleteCorridor);
+    let arrived = Some(came(b, East, Opening::Corridor));
+    rules.complete_corridor.next = Preference::MostUnexplored;
+    assert_eq!(Chooser::new(&rules).next(&map, c, arrived, &mut stream(0)), Some(c), "two doors");
+    rules.complete_corridor.next = Preference::Nearest;
+    let r = map.create_new_node(c, North, &room("r", &[South])).unwrap();
+    let s = map.create_new_node(c, South, &room("s", &[North])).unwrap();
+    let arrived = Some(came(c, South, Opening::Door));
+    assert_eq!(Chooser::new(&rules).next(&map, s, arrived, &mut stream(0)), Some(b), "a new one");
+    rules.complete_corridor.finished = Completion::Explored;
+    rules.complete_corridor.inside = Preference::MostUnexplored;
+    let explored =
+        Chooser::new(&rules).next(&map, r, Some(came(c, North, Opening::Door)), &mut stream(0));
+    assert!([a, b].map(Some).contains(&explored), "doors and side corridors of c1 are left");
+}
+
+/// Checks, by the reading that keeps a corridor in hand, that from the middle of the corridor c1 it goes to c1's ends
+/// although a crossing corridor is as near, and comes back from that.
+#[test]
+fn a_corridor_in_hand_is_completed_before_another_begins() {
     // c1: a - b - c going east, all with a door; a second corridor goes north from b.
     let mut map = ToposemanticMap::new();
     let a = map.begin(&corridor("a", &[East], &[North])).unwrap();
     let b = map.create_new_node(a, East, &corridor("b", &[East, West, North], &[])).unwrap();
     let c = map.create_new_node(b, East, &corridor("c", &[West], &[South])).unwrap();
     let n = map.create_new_node(b, North, &corridor("n", &[South, North], &[East, West])).unwrap();
-    let mut chooser = Chooser::new(&rules(Strategy::CompleteCorridor));
-    let first = chooser.next(&map, b, &mut stream(1)).unwrap();
+    let mut chooser = Chooser::new(&in_hand());
+    let first = chooser.next(&map, b, None, &mut stream(1)).unwrap();
     assert!([a, c].contains(&first), "{first}");
     let (near, far) = if first == a { ((a, North), (c, South)) } else { ((c, South), (a, North)) };
     let shut = |map: &mut ToposemanticMap, (v, direction): (VertexId, Cardinal), tag: &str| {
@@ -189,27 +257,10 @@ fn a_corridor_is_completed_before_another_begins() {
     };
     let inside = shut(&mut map, near, "near");
     // From the new room, and even from the crossing corridor, back to what is left of c1.
-    assert_eq!(chooser.next(&map, inside, &mut stream(2)), Some(far.0));
-    assert_eq!(chooser.next(&map, n, &mut stream(2)), Some(far.0));
+    assert_eq!(chooser.next(&map, inside, None, &mut stream(2)), Some(far.0));
+    assert_eq!(chooser.next(&map, n, None, &mut stream(2)), Some(far.0));
     shut(&mut map, far, "far");
-    assert_eq!(chooser.next(&map, far.0, &mut stream(3)), Some(n), "c1 is finished");
-}
-
-/// Checks that c1 is finished, by this reading, when it cannot be extended: its doors are left for later.
-#[test]
-fn a_corridor_that_cannot_be_extended_is_finished_by_the_other_reading() {
-    let mut map = ToposemanticMap::new();
-    let a = map.begin(&corridor("a", &[East], &[South])).unwrap();
-    let b = map.create_new_node(a, East, &corridor("b", &[West, East], &[South])).unwrap();
-    let mut extended = rules(Strategy::CompleteCorridor);
-    extended.complete_corridor.finished = Completion::Extended;
-    let mut chooser = Chooser::new(&extended);
-    assert_eq!(chooser.next(&map, a, &mut stream(0)), Some(b), "it goes on at b");
-    map.create_new_node(b, East, &corridor("c", &[West], &[North])).unwrap();
-    // Its end is reached: the next begins at the nearest corridor vertex, whatever is left there.
-    assert_eq!(chooser.next(&map, a, &mut stream(0)), Some(a));
-    let mut explored = Chooser::new(&rules(Strategy::CompleteCorridor));
-    assert_eq!(explored.next(&map, b, &mut stream(0)), Some(b), "a door is left to explore");
+    assert_eq!(chooser.next(&map, far.0, None, &mut stream(3)), Some(n), "c1 is finished");
 }
 
 proptest! {
@@ -218,7 +269,7 @@ proptest! {
     /// Checks that any strategy, driven through any building, only ever chooses a vertex with unexplored edges, keeps
     /// its rule, and leaves nothing unexplored.
     #[test]
-    fn every_choice_keeps_the_rule(seed in 0_u64..1_000_000, which in 0_usize..5) {
+    fn every_choice_keeps_the_rule(seed in 0_u64..1_000_000, which in 0_usize..5, keeps: bool) {
         let strategy = [
             Strategy::Random,
             Strategy::Frontier,
@@ -228,12 +279,17 @@ proptest! {
         ][which];
         let building = Building::random(seed, 2 + usize::try_from(seed % 14).unwrap(), 6, true);
         let mut stream = stream(seed);
-        let mut chooser = Chooser::new(&rules(strategy));
+        let mut rules = rules(strategy);
+        if keeps {
+            rules.complete_corridor = in_hand().complete_corridor;
+        }
+        let mut chooser = Chooser::new(&rules);
+        let mut came = None;
         let mut map = ToposemanticMap::new();
         let mut spots = vec![below(&mut stream, building.spots.len())];
         let mut current = map.begin(&building.see(spots[0])).unwrap();
         let mut in_hand = None;
-        while let Some(target) = chooser.next(&map, current, &mut stream) {
+        while let Some(target) = chooser.next(&map, current, came, &mut stream) {
             let candidates = Candidates::new(&map, current);
             prop_assert!(candidates.open().contains(&target));
             let place = |v: &VertexId| map.place(*v);
@@ -244,6 +300,9 @@ proptest! {
                     prop_assert_eq!(Some(candidates.degree(target)), most);
                 }
                 Strategy::CorridorsFirst => {
+                    prop_assert!(!any_corridor || place(&target) == Place::Corridor);
+                }
+                Strategy::CompleteCorridor if !keeps => {
                     prop_assert!(!any_corridor || place(&target) == Place::Corridor);
                 }
                 Strategy::CompleteCorridor => {
@@ -266,6 +325,7 @@ proptest! {
             let to = building.spots[spot].exits[edge.direction.index()].unwrap().1;
             let arrived = map.arrive(target, edge.direction, &building.see(to)).unwrap();
             current = arrived.0;
+            came = Some(Came { from: target, direction: edge.direction, opening: edge.opening });
             if map.len() > spots.len() {
                 spots.push(to);
             }

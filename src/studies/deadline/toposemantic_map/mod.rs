@@ -17,7 +17,7 @@ pub use label::{SemanticLabel, side};
 
 use super::intersection::{Intersection, Opening};
 use crate::geometry::{Axis, Cardinal};
-use crate::studies::deadline::build_cmdp::{OrientedEdge, Place, Side, Topology};
+use crate::studies::deadline::build_cmdp::{OrientedEdge, Place, Side, Through, Topology};
 use label::Labels;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::fmt;
@@ -232,6 +232,30 @@ impl ToposemanticMap {
         path
     }
 
+    /// Returns what `edge` leads through. A door into unexplored space leads out of a room, or else into one. A corridor is
+    /// a side corridor where no corridor comes up to the vertex from the opposite side, from which a robot would go straight
+    /// on, and one runs across.
+    pub fn through(&self, edge: &Edge) -> Through {
+        let corridor = |direction: Cardinal| {
+            self.edge(edge.from, direction).is_some_and(|edge| edge.opening == Opening::Corridor)
+        };
+        match (edge.opening, edge.to) {
+            (Opening::Corridor, _) => {
+                let across = edge.axis().across().directions();
+                let is_side =
+                    !corridor(edge.direction.opposite()) && across.into_iter().any(corridor);
+                if is_side { Through::SideCorridor } else { Through::Corridor }
+            }
+            (Opening::Door, End::Vertex(to)) if self.place(to) == Place::Corridor => {
+                Through::Leaving
+            }
+            (Opening::Door, End::Unexplored) if self.place(edge.from) == Place::Room => {
+                Through::Leaving
+            }
+            (Opening::Door, _) => Through::Entering,
+        }
+    }
+
     /// Returns the part that the planner needs: all vertices and the explored edges, with each edge's exit.
     pub fn topology(&self) -> (Topology, Vec<(VertexId, Cardinal)>) {
         let mut topology = Topology {
@@ -242,7 +266,8 @@ impl ToposemanticMap {
         for edge in self.edges() {
             if let End::Vertex(to) = edge.to {
                 let (from, to) = (edge.from.0, to.0);
-                topology.edges.push(OrientedEdge { from, to, side: edge.side() });
+                let (side, through) = (edge.side(), self.through(&edge));
+                topology.edges.push(OrientedEdge { from, to, side, through });
                 exits.push((edge.from, edge.direction));
             }
         }
