@@ -9,10 +9,7 @@ use crate::studies::deadline::build_cmdp::{
 };
 use crate::studies::findings::rounded;
 use crate::studies::{CalibrationError, Outcome};
-use crate::table::{Table, Value};
-use crate::world::World;
 use serde_json::{Value as Json, json};
-use std::sync::Arc;
 
 /// The motions, in the order of the table.
 pub const MOTIONS: [Motion; 3] = [Motion::Corridor, Motion::DoorLeft, Motion::DoorRight];
@@ -22,22 +19,6 @@ pub const SPEEDS: [Speed; 2] = [Speed::Slow, Speed::Fast];
 pub const LEAST_PASSAGES: u64 = 10;
 
 const CONFIDENCE: f64 = 0.95;
-const COLUMNS: [&str; 13] = [
-    "world",
-    "motion",
-    "speed",
-    "through",
-    "passages",
-    "reached",
-    "collided",
-    "time-s",
-    "time-low-s",
-    "time-high-s",
-    "failure",
-    "failure-low",
-    "failure-high",
-];
-
 /// The measured times and failures of one maneuver.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pair {
@@ -63,39 +44,6 @@ pub struct Pair {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Calibration {
     pairs: Vec<Pair>,
-}
-
-/// The pairs of every building in which passages were driven.
-#[derive(Debug, Clone)]
-pub struct Calibrations {
-    by_world: Vec<(Arc<World>, Arc<Calibration>)>,
-}
-
-impl Calibrations {
-    /// Creates those of these buildings.
-    pub fn new(by_world: Vec<(Arc<World>, Arc<Calibration>)>) -> Self {
-        Self { by_world }
-    }
-
-    /// Returns the pairs measured in `world`; `None` where no passage was driven there.
-    pub fn of(&self, world: &World) -> Option<Arc<Calibration>> {
-        let found = self.by_world.iter().find(|(measured_in, _)| **measured_in == *world);
-        found.map(|(_, calibration)| Arc::clone(calibration))
-    }
-
-    /// Returns the names of the buildings, in plan order.
-    pub fn worlds(&self) -> impl Iterator<Item = &str> {
-        self.by_world.iter().map(|(world, _)| world.name.as_str())
-    }
-
-    /// Writes the table that is sealed as an input: one row per building and maneuver, numbers of six significant digits.
-    pub fn to_csv(&self) -> String {
-        let mut table = Table::new(COLUMNS);
-        for (world, calibration) in &self.by_world {
-            calibration.pairs.iter().for_each(|pair| table.push(row(&world.name, pair)));
-        }
-        table.to_csv()
-    }
 }
 
 /// One isolated passage.
@@ -216,20 +164,6 @@ impl Calibration {
     }
 }
 
-fn row(world: &str, pair: &Pair) -> Vec<Value> {
-    let whole = |n: u64| Value::from(i64::try_from(n).unwrap_or(i64::MAX));
-    let mut row: Vec<Value> = vec![
-        world.into(),
-        pair.motion.name().into(),
-        pair.speed.name().into(),
-        pair.through.map_or("any", Through::name).into(),
-    ];
-    row.extend([pair.passages, pair.reached, pair.collided].map(whole));
-    row.extend(pair.time_s.map(Value::from));
-    row.extend(pair.failure.map(Value::from));
-    row
-}
-
 fn pair<'a>(
     (motion, speed, through): (Motion, Speed, Option<Through>),
     of: impl Iterator<Item = &'a Driven>,
@@ -277,26 +211,6 @@ pub fn maneuver_name(motion: Motion, speed: Speed) -> String {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::world::{Region, RegionKind, World};
-
-    /// Returns a world with nothing in it.
-    pub(in crate::studies::deadline) fn hall(name: &str) -> World {
-        World {
-            name: name.to_owned(),
-            solids: Vec::new(),
-            regions: Vec::new(),
-            tags: Vec::new(),
-            starts: std::collections::BTreeMap::new(),
-            goals: std::collections::BTreeMap::new(),
-            warnings: Vec::new(),
-        }
-    }
-
-    fn longer(mut world: World) -> World {
-        let (name, kind) = ("C2".to_owned(), RegionKind::Corridor);
-        world.regions.push(Region { name, kind, polygon: Vec::new() });
-        world
-    }
 
     #[test]
     fn a_calibration_is_measured_and_written() {
@@ -323,13 +237,6 @@ pub(super) mod tests {
         for through in Through::OF_DOORS {
             assert_eq!(maneuvers.expect(Motion::DoorLeft, through, Speed::Fast).time_s, 21.0);
         }
-        let (world, elsewhere) = (Arc::new(hall("here")), longer(hall("there")));
-        let calibrations = Calibrations::new(vec![(Arc::clone(&world), Arc::new(calibration))]);
-        let csv = calibrations.to_csv();
-        assert!(csv.contains("\nhere,door-left,fast,any,20,17,3,21,"), "{csv}");
-        assert!(csv.contains("\nhere,door-left,fast,entering,20,17,3,21,"), "{csv}");
-        assert!(calibrations.of(&world).is_some());
-        assert!(calibrations.of(&elsewhere).is_none(), "nothing was measured there");
     }
 
     #[test]

@@ -16,7 +16,6 @@ pub mod intersection_detection;
 mod mission;
 pub mod navigation;
 mod parameters;
-mod passages;
 pub mod planner;
 mod requests;
 mod rules;
@@ -25,12 +24,11 @@ pub mod strategy;
 mod study;
 pub mod toposemantic_map;
 
-pub use calibration::{Calibration, Calibrations};
+pub use calibration::Calibration;
 pub use in_situ::ManeuverRow;
 pub use intersection_detection::{IntersectionDetectionSystem, Perception};
-pub use mission::{run, tag_scheme};
+pub use mission::{Calibrations, run, tag_scheme};
 pub use parameters::{ErrorShape, Hiding, Mission, Parameters, Passage, Sensing, Task};
-use passages::Isolated;
 pub use requests::{ManeuverTable, PolicyGraph};
 pub use rules::{InitialEdges, Rules, UnplannedSpeed};
 pub use study::Deadline;
@@ -39,7 +37,7 @@ use crate::geometry::Pose;
 use crate::robot::Robot;
 use crate::studies::CannotBegin;
 use crate::world::World;
-use mission::Prepared;
+use mission::{Isolated, Prepared};
 use std::sync::{Arc, OnceLock};
 
 /// Everything that a trial of this study needs.

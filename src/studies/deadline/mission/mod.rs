@@ -1,14 +1,19 @@
 //! One trial: the simulator at one end, the mind at the other, and the measures in between.
 
 mod body;
+mod calibrations;
 mod exploration;
 mod graph;
 pub(super) mod lints;
 mod passage;
+mod passages;
 mod policy_chart;
-pub(super) mod tally;
+mod tally;
 #[cfg(test)]
 mod tests;
+
+pub use calibrations::Calibrations;
+pub(super) use passages::Isolated;
 
 use super::{Setup, Task};
 use crate::geometry::Outline;

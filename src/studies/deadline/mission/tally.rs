@@ -126,12 +126,12 @@ fn put_counts<T>(name: &str, count: &Count, put: &mut impl FnMut(String, f64) ->
 }
 
 /// Returns the name of the measure of passages through that.
-pub(in crate::studies::deadline) fn passages_through(through: Through) -> String {
+pub(super) fn passages_through(through: Through) -> String {
     format!("{}-passages", through.name())
 }
 
 /// Returns the name of the measure of collisions on passages through that.
-pub(in crate::studies::deadline) fn collisions_through(through: Through) -> String {
+pub(super) fn collisions_through(through: Through) -> String {
     format!("{}-collisions", through.name())
 }
 

@@ -1,12 +1,13 @@
 //! The isolated passages on which a calibration rests, one row per trial: sealed beside the pairs that follow from
 //! them, so that anyone who doubts a pair can count again, and drive any passage again.
 
-use super::calibration::{Calibration, Calibrations, Driven};
-use super::mission::tally;
-use super::parameters::Task;
+use super::calibrations::Calibrations;
+use super::tally;
 use crate::condition::Condition;
 use crate::digest::Sha256Digest;
 use crate::studies::deadline::build_cmdp::{Motion, Speed, Through};
+use crate::studies::deadline::calibration::{Calibration, Driven};
+use crate::studies::deadline::{Setup as DeadlineSetup, Task};
 use crate::studies::{
     Calibrated, Calibrating, CalibrationError, Design, Expectations, Outcome, PlannedCalibration,
     Setup, TrialRecord,
@@ -26,7 +27,7 @@ const OUTCOMES: [Outcome; 5] =
 
 /// How this study learns from calibrations: by isolated passages.
 #[derive(Debug)]
-pub(super) struct Isolated;
+pub(in crate::studies::deadline) struct Isolated;
 
 impl Calibrating for Isolated {
     fn planned(
@@ -94,7 +95,7 @@ impl PlannedPassages {
     /// Where a condition is something other than isolated passages.
     fn of(design: &Design<'_>, trials: u32) -> Result<Self, CalibrationError> {
         let mut worlds: Vec<Arc<World>> = Vec::new();
-        let maneuver = |(condition, setup): &(&Condition, &Setup)| match setup.of::<super::Setup>()
+        let maneuver = |(condition, setup): &(&Condition, &Setup)| match setup.of::<DeadlineSetup>()
         {
             Some(setup) if setup.parameters.mission.task == Task::Passage => {
                 let known = worlds.iter().position(|world| *world == setup.world);
@@ -271,7 +272,7 @@ fn joined(fields: &[Value]) -> String {
 mod tests {
     use super::*;
     use crate::bundle::sample;
-    use crate::studies::deadline::calibration::tests::hall;
+    use crate::studies::deadline::mission::calibrations::tests::hall;
 
     fn planned() -> PlannedPassages {
         PlannedPassages {
