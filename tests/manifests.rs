@@ -365,6 +365,49 @@ fn generated_buildings_are_named_by_seeds_and_told_apart() {
     assert!(experiment.conditions.iter().all(|c| c.meanings.world.hex() == own(1)));
 }
 
+#[test]
+fn goal_and_starts_lie_where_a_manifest_puts_them() {
+    use reenact::world::generate::{Family, generate};
+    use reenact::world::topology::{TagScheme, Topology};
+    let own = generate(Family::OfficeFloor, 1).unwrap();
+    let graph = Topology::read(&own.tags, &TagScheme::default()).unwrap();
+    let room = |number: &usize| {
+        let vertex = &graph.vertices[*number];
+        vertex.exits.len() == 1
+            && !vertex.is_goal
+            && vertex.kind == reenact::world::RegionKind::Room
+    };
+    let goal = (0..graph.vertices.len()).find(room).unwrap();
+    let at = graph.vertices[goal].at;
+    let text = |place: &str| {
+        format!(
+            "{HEAD}seed: 1\ntrials: 1\nrobot: kobuki.urdf\nstart: B\nfactors: {{x: [1]}}\n\
+             world: {{generate: {{family: office-floor, seed: 1}}, place: {place}}}\n"
+        )
+    };
+    let place = format!(
+        "{{goal: {{x-m: {}, y-m: {}}}, starts: {{B: {{x-m: 1, y-m: 2, heading-deg: 90}}}}}}",
+        at.x, at.y
+    );
+    let (experiment, _) = resolve_text(&text(&place), &[]).map_err(|f| told(&f)).unwrap();
+    let setup = &experiment.conditions[0].setup;
+    let moved = Topology::read(&setup.world().tags, &TagScheme::default()).unwrap();
+    assert_eq!(moved.goals().collect::<Vec<_>>(), [goal]);
+    let (found, start) = (setup.world().goals["goal"], setup.start());
+    assert_eq!((found.x, found.y), (at.x, at.y));
+    assert_eq!((start.x, start.y, start.heading), (1.0, 2.0, std::f64::consts::FRAC_PI_2));
+    assert_eq!(setup.world().starts["A"], own.starts["A"], "what is not placed stays");
+    assert_ne!(setup.world().meaning(), own.meaning());
+
+    let without = text("{goal: {x-m: 1, y-m: 1}}")
+        .replace("generate: {family: office-floor, seed: 1}", "file: basic.yaml");
+    let faults = resolve_text(&without.replace("start: B", "start: {x-m: 3, y-m: 2}"), &[]);
+    assert_eq!(
+        told(&faults.unwrap_err()),
+        "error: the world has no one goal that could be moved\n  --> a.yaml:10:41\n   |\n10 | world: {file: basic.yaml, place: {goal: {x-m: 1, y-m: 1}}}\n   |                                         ^^^^^^^^^^^^^^^^ it has 0 goals\n   |\n   = help: leave the goal out, or give the world one\n"
+    );
+}
+
 fn resolve_text(text: &str, overrides: &[String]) -> Resolved {
     let file = |path: &str| std::fs::read_to_string(repository().join(path)).unwrap();
     let files = InMemory(BTreeMap::from([

@@ -8,7 +8,8 @@ pub use prior::{
     PreviousMapDoc, PreviousMapOf, PriorDoc, PriorFrame, TopoMetricPrior, UnknownAs,
 };
 pub use world::{
-    FactorRef, GenerateDoc, GeneratedWorld, PoseDoc, SeedDoc, StartDoc, WorldDoc, WorldFile,
+    FactorRef, GenerateDoc, GeneratedWorld, PlaceDoc, PointDoc, PoseDoc, SeedDoc, StartDoc,
+    WorldDoc, WorldFile,
 };
 
 use super::choice::{Choice, FactorDoc, Ordered};

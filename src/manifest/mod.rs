@@ -51,9 +51,9 @@ mod worlds;
 pub use choice::{By, Choice, DependentFactor, FactorDoc, Levels, Ordered};
 pub use document::{
     Alpha, Author, BoundingBoxOf, Cite, DerivedFrom, FactorRef, FloorPlanOf, FootprintOf,
-    GenerateDoc, GeneratedWorld, ManifestDoc, MapPrior, OriginDoc, OwnWorld, PoseDoc,
-    PreviousMapDoc, PreviousMapOf, PriorDoc, PriorFrame, PublishedDoc, PublishedFile, SeedDoc,
-    StartDoc, TopoMetricPrior, UnknownAs, WorldDoc, WorldFile,
+    GenerateDoc, GeneratedWorld, ManifestDoc, MapPrior, OriginDoc, OwnWorld, PlaceDoc, PointDoc,
+    PoseDoc, PreviousMapDoc, PreviousMapOf, PriorDoc, PriorFrame, PublishedDoc, PublishedFile,
+    SeedDoc, StartDoc, TopoMetricPrior, UnknownAs, WorldDoc, WorldFile,
 };
 pub use experiment::{
     Assumption, CalibrationRun, Experiment, Meanings, ResolvedCondition, Robustness,

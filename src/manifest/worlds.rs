@@ -1,6 +1,6 @@
 //! The worlds of a manifest's conditions: which file, which layers; or which building of a family.
 
-use super::document::{FactorRef, GenerateDoc, SeedDoc, WorldDoc, WorldFile};
+use super::document::{FactorRef, GenerateDoc, PlaceDoc, PoseDoc, SeedDoc, WorldDoc, WorldFile};
 use super::input::InputKind;
 use super::library::{Known, normalised};
 use super::models::Shelf;
@@ -9,9 +9,11 @@ use super::resolver::Resolver;
 use crate::condition::Condition;
 use crate::digest::MeaningDigest;
 use crate::document::Source;
+use crate::geometry::{Point, Pose};
+use crate::units::Radians;
 use crate::world::sdf::NoModels;
 use crate::world::{World, generate};
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 use std::sync::Arc;
 
 /// The layer of a world that always stands.
@@ -34,12 +36,51 @@ impl Resolver<'_> {
         pointer: &str,
         condition: &Condition,
     ) -> Option<UsedWorld> {
-        match doc {
-            WorldDoc::File(doc) => self.world_of_file(doc, pointer, condition),
+        let (used, place) = match doc {
+            WorldDoc::File(doc) => (self.world_of_file(doc, pointer, condition), &doc.place),
             WorldDoc::Generated(doc) => {
-                self.generated_world(&doc.generate, &format!("{pointer}/generate"), condition)
+                let pointer = format!("{pointer}/generate");
+                (self.generated_world(&doc.generate, &pointer, condition), &doc.place)
             }
+        };
+        match place {
+            Some(place) => self.placed(used?, place, &format!("{pointer}/place")),
+            None => used,
         }
+    }
+
+    /// Returns `used` with goal and starts where `doc`, written at `pointer`, puts them.
+    fn placed(&mut self, used: UsedWorld, doc: &PlaceDoc, pointer: &str) -> Option<UsedWorld> {
+        let UsedWorld { world, mut described, .. } = used;
+        let pose = |at: &PoseDoc| json!([at.x_m, at.y_m, at.heading_deg]);
+        let starts: Map<String, Value> =
+            doc.starts.iter().map(|(name, at)| (name.clone(), pose(at))).collect();
+        let goal = doc.goal.map(|at| [at.x_m, at.y_m]);
+        described["place"] = json!({ "goal": goal, "starts": starts });
+        let (world, meaning) = self.once(
+            |library| &mut library.worlds,
+            described.to_string(),
+            |this| {
+                let mut world = World::clone(&world);
+                for (name, at) in &doc.starts {
+                    let heading = Radians::from_degrees(at.heading_deg).get();
+                    world.starts.insert(name.clone(), Pose::new(at.x_m, at.y_m, heading));
+                }
+                if let Some([x, y]) = goal
+                    && !world.move_goal(Point::new(x, y))
+                {
+                    let message = "the world has no one goal that could be moved".to_owned();
+                    let fault = this.faults.fault(&format!("{pointer}/goal"), message);
+                    let label = format!("it has {} goals", world.goals.len());
+                    this.faults
+                        .push(fault.label(label).help("leave the goal out, or give the world one"));
+                    return None;
+                }
+                let meaning = world.meaning();
+                Some((Arc::new(world), meaning))
+            },
+        )?;
+        Some(UsedWorld { world, meaning, described })
     }
 
     /// Generates a building of a family. No file is sealed for it: the manifest holds what it is made of, and how it is

@@ -108,6 +108,23 @@ impl World {
         self.warnings.iter().filter(|warning| warning.ends_with(MISSING)).count()
     }
 
+    /// Moves the goal to `to`, with the tag that marks it: the one of a colour that no other tag has. Returns whether there is one
+    /// goal.
+    pub fn move_goal(&mut self, to: Point) -> bool {
+        let mut goals = self.goals.values_mut();
+        let (Some(goal), None) = (goals.next(), goals.next()) else { return false };
+        let by = to - *goal;
+        *goal = to;
+        let colors: Vec<String> = self.tags.iter().map(|tag| tag.color.clone()).collect();
+        for tag in &mut self.tags {
+            if colors.iter().filter(|color| **color == tag.color).count() == 1 {
+                let at = tag.pose.position() + by;
+                tag.pose = Pose::new(at.x, at.y, tag.pose.heading);
+            }
+        }
+        true
+    }
+
     /// Returns the outlines of everything cut by the plane at height `z` (m): what a lidar at that height sees.
     pub fn slice(&self, z: f64) -> Vec<Outline> {
         self.solids.iter().flat_map(|solid| solid.body.slice(z)).collect()

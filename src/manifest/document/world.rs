@@ -23,6 +23,31 @@ pub enum WorldDoc {
 pub struct GeneratedWorld {
     /// Which one.
     pub generate: GenerateDoc,
+    /// Where goal and starts lie instead of where the building has them.
+    #[serde(default)]
+    pub place: Option<PlaceDoc>,
+}
+
+/// Where the goal and starts of a world lie instead of where it has them.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct PlaceDoc {
+    /// The goal; the world's own where left out.
+    #[serde(default)]
+    pub goal: Option<PointDoc>,
+    /// Starts by name: new ones, and instead of the world's own of that name.
+    #[serde(default)]
+    pub starts: BTreeMap<String, PoseDoc>,
+}
+
+/// A point in the world's frame.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct PointDoc {
+    /// Position x (m).
+    pub x_m: f64,
+    /// Position y (m).
+    pub y_m: f64,
 }
 
 /// Which building of which family.
@@ -62,6 +87,9 @@ pub struct WorldFile {
     /// the collision. They go before a file.
     #[serde(default)]
     pub stand_ins: BTreeMap<String, LayerDoc>,
+    /// Where goal and starts lie instead of where the world has them.
+    #[serde(default)]
+    pub place: Option<PlaceDoc>,
 }
 
 /// Where the robot begins.
