@@ -8,9 +8,11 @@
 pub mod agreement;
 pub mod bootstrap;
 pub mod compatibility;
+pub mod dirichlet_multinomial;
 pub mod distribution;
 pub mod effect;
 pub mod equivalence;
+pub mod importance;
 pub mod means;
 pub mod multiple;
 pub mod proportion;
