@@ -6,7 +6,7 @@ mod studies;
 pub(super) use bundles::{
     AttestArgs, DiffArgs, DiffFormat, ExportArgs, ReplayArgs, ReportArgs, VerifyArgs,
 };
-pub(super) use studies::{CheckArgs, LockArgs, PlanArgs, RunArgs, VaryArgs};
+pub(super) use studies::{CheckArgs, InferArgs, LockArgs, PlanArgs, RunArgs, VaryArgs};
 
 use clap::{Args, CommandFactory as _, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -42,6 +42,8 @@ pub(super) enum Command {
     Lock(LockArgs),
     /// Try a manifest's claims at the other values that its assumptions state
     Vary(VaryArgs),
+    /// Infer what a paper leaves unsaid from a table that it prints
+    Infer(InferArgs),
     /// Write a bundle as one offline HTML page
     Report(ReportArgs),
     /// Write a bundle in another form
@@ -74,7 +76,7 @@ pub(super) enum Format {
 }
 
 /// Which part of a study, and what is changed in it.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub(super) struct SelectArgs {
     /// Only conditions with these values (repeatable); the bundle says it is partial
     #[arg(long, value_name = "FACTOR=VALUE[,VALUE]")]

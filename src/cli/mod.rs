@@ -84,6 +84,7 @@ fn dispatch(
         Command::Diff(args) => commands::diff::run(&args, terminal),
         Command::Lock(args) => commands::lock::run(&args, environment, terminal),
         Command::Vary(args) => commands::vary::run(&args, environment, terminal),
+        Command::Infer(args) => commands::infer::run(&args, environment, terminal),
         Command::Report(args) => commands::report::run(&args, terminal),
         Command::Export(args) => commands::export::run(&args, terminal),
         Command::Replay(args) => commands::replay::run(&args, terminal),

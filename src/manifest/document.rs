@@ -1,8 +1,10 @@
 //! A manifest exactly as written. What it means is settled in `resolve`.
 
+mod infer;
 mod prior;
 mod world;
 
+pub use infer::{ChoicePriorDoc, InferDoc, LeftOutDoc};
 pub use prior::{
     Alpha, BoundingBoxOf, DerivedFrom, FloorPlanOf, FootprintOf, MapPrior, OriginDoc, OwnWorld,
     PreviousMapDoc, PreviousMapOf, PriorDoc, PriorFrame, TopoMetricPrior, UnknownAs,
@@ -100,6 +102,10 @@ pub struct ManifestDoc {
     /// What `reenact vary` wrote: the claims' verdicts at the other values that the parameters' `range` states.
     #[serde(default)]
     pub sensitivity: Option<String>,
+    /// What is to be inferred from which of the paper's tables: `reenact infer` runs such a manifest. Its trials are proposals at
+    /// graph level, so it asks for no tables, figures and claims of its own.
+    #[serde(default)]
+    pub infer: Option<InferDoc>,
     /// The paper's own numbers by name: tidy CSV files.
     #[serde(default)]
     pub published: BTreeMap<String, PublishedDoc>,

@@ -14,6 +14,7 @@
 //! | `knowledge` `priors` `previous` | its prior knowledge |
 //! | `calibration` `lint` | what trials rest on; what is wrong or suspicious about a condition |
 //! | `numbers` `requests` `figures` `claims` `sensitivity` | what the paper prints, and what is asked of results |
+//! | `infer` | what is not known, and the conditions that become proposals |
 //! | `settings` `overrides` `crossing` | the manifest before its conditions, and those |
 //! | `resolve` | the way through all of them, to an `experiment` |
 
@@ -26,6 +27,7 @@ mod document;
 mod experiment;
 mod faults;
 mod figures;
+mod infer;
 mod input;
 mod knowledge;
 mod library;
@@ -50,10 +52,11 @@ mod worlds;
 
 pub use choice::{By, Choice, DependentFactor, FactorDoc, Levels, Ordered};
 pub use document::{
-    Alpha, Author, BoundingBoxOf, Cite, DerivedFrom, FactorRef, FloorPlanOf, FootprintOf,
-    GenerateDoc, GeneratedWorld, ManifestDoc, MapPrior, OriginDoc, OwnWorld, PlaceDoc, PointDoc,
-    PoseDoc, PreviousMapDoc, PreviousMapOf, PriorDoc, PriorFrame, PublishedDoc, PublishedFile,
-    SeedDoc, StartDoc, TopoMetricPrior, UnknownAs, WorldDoc, WorldFile,
+    Alpha, Author, BoundingBoxOf, ChoicePriorDoc, Cite, DerivedFrom, FactorRef, FloorPlanOf,
+    FootprintOf, GenerateDoc, GeneratedWorld, InferDoc, LeftOutDoc, ManifestDoc, MapPrior,
+    OriginDoc, OwnWorld, PlaceDoc, PointDoc, PoseDoc, PreviousMapDoc, PreviousMapOf, PriorDoc,
+    PriorFrame, PublishedDoc, PublishedFile, SeedDoc, StartDoc, TopoMetricPrior, UnknownAs,
+    WorldDoc, WorldFile,
 };
 pub use experiment::{
     Assumption, CalibrationRun, Experiment, Meanings, ResolvedCondition, Robustness,

@@ -66,6 +66,10 @@ impl<'m> Requests<'m> {
                 TableLayout::OutcomeTable(table) => {
                     self.check_outcomes(table, &pointer, faults);
                 }
+                TableLayout::InferenceTable(_) => {
+                    let message = "only a manifest with `infer` has what an inference found, and has it without asking";
+                    faults.at_key(&pointer, message, "remove this table");
+                }
                 TableLayout::ManeuverTable(table) => {
                     self.check_only(&table.only, &pointer, faults);
                 }

@@ -14,10 +14,11 @@ use super::parts::Parts;
 use super::requests::{self, Requests};
 use super::resolver::Resolver;
 use super::schema::schema;
-use super::{claims, lint, numbers, overrides, previous, sensitivity, settings};
+use super::{claims, infer, lint, numbers, overrides, previous, sensitivity, settings};
 use crate::condition::Condition;
 use crate::document::{Diagnostic, Node, Parsed, Source, parse_tree_by, read};
 use crate::studies::StudyKind;
+use crate::studies::inference::Shown;
 use crate::table::Table;
 use serde_json::json;
 use std::collections::{BTreeMap, BTreeSet};
@@ -84,6 +85,10 @@ pub fn resolve(
     Ok((experiment, faults))
 }
 
+/// What reports say first where trials are those of a model.
+const MODEL: &str = "Trials at graph level: a model of the study on the building's graph, without bodies, sensors or walls. \
+                     They propose and are no result.";
+
 impl Resolver<'_> {
     fn run(&mut self, overrides: &[String]) -> Experiment {
         let doc = self.doc;
@@ -112,14 +117,19 @@ impl Resolver<'_> {
             // What names a file, a map its image, may itself be what is missing.
             self.check_unread();
         }
+        let conditions = infer::propose(self, &published, conditions);
         claims::check(self, &conditions);
+        let is_model = conditions.iter().any(|resolved| resolved.setup.is_model());
+        if is_model {
+            self.refuse_results_of_models();
+        }
         Experiment {
             name: doc.name.clone(),
             title: doc.title.clone(),
             cite: doc.cite.clone(),
             authors: doc.authors.clone(),
             license: doc.license.clone(),
-            limits: doc.limits.clone(),
+            limits: doc.limits.iter().cloned().chain(is_model.then(|| MODEL.to_owned())).collect(),
             kind: doc.study,
             seed: doc.seed,
             trials: doc.trials,
@@ -132,7 +142,10 @@ impl Resolver<'_> {
                 .iter()
                 .map(|(name, file)| (name.clone(), normalised(file.path())))
                 .collect(),
-            tables: doc.tables.clone(),
+            tables: match doc.infer {
+                Some(_) => Shown::requests(),
+                None => doc.tables.clone(),
+            },
             figures: doc.figures.clone(),
             claims: claims::as_judged(self),
             assumptions,
@@ -141,6 +154,22 @@ impl Resolver<'_> {
             overrides: overrides.to_vec(),
             inputs: Vec::new(),
             document: self.faults.tree.clone(),
+        }
+    }
+
+    /// Collects the faults of what would rest on trials of a model.
+    fn refuse_results_of_models(&mut self) {
+        let doc = self.doc;
+        let asked = [
+            ("tables", doc.tables.is_empty()),
+            ("figures", doc.figures.is_empty()),
+            ("claims", doc.claims.is_empty()),
+        ];
+        for (key, _) in asked.iter().filter(|(_, is_empty)| !is_empty) {
+            let message = "no table, figure or claim may rest on trials at graph level: they are proposals, not results";
+            let fault = self.faults.key_fault(&format!("/{key}"), message).label("asks for one");
+            let help = "simulate with `mission: {simulation: physics}`, or remove this key";
+            self.faults.push(fault.help(help));
         }
     }
 
@@ -206,6 +235,8 @@ impl Resolver<'_> {
 
     fn published(&mut self) -> BTreeMap<String, Table> {
         let mut tables = BTreeMap::new();
+        let mut factors = self.factors.clone();
+        factors.extend(self.doc.infer.iter().flat_map(infer::columns));
         for (name, file) in &self.doc.published {
             let pointer = step("/published", name);
             for (i, factor) in file.for_all().iter().enumerate() {
@@ -214,7 +245,7 @@ impl Resolver<'_> {
             }
             if let Some(source) = self.text(file.path(), &pointer, InputKind::PublishedNumbers)
                 && let Some(table) =
-                    numbers::read(&source, self.doc.study, &self.factors, &mut self.faults)
+                    numbers::read(&source, self.doc.study, &factors, &mut self.faults)
             {
                 tables.insert(name.clone(), table);
             }

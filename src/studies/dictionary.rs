@@ -2,7 +2,7 @@
 //! Requested tables declare their own columns.
 
 use super::columns::of_factor;
-use super::{Outcome, StudyKind, deadline};
+use super::{Outcome, StudyKind, deadline, inference};
 use crate::claims::Judgement;
 use crate::claims::metric::WALL_TIME_COLUMNS;
 use crate::factor::Factor;
@@ -31,7 +31,10 @@ impl Dictionary<'_> {
                 .like("^[0-9a-f]{64}$"),
             ),
             "outcome" => Some(self.outcome()),
-            _ => self.trial_or_factor(name).or_else(|| self.kind.measure(name)),
+            _ => self
+                .trial_or_factor(name)
+                .or_else(|| self.kind.measure(name))
+                .or_else(|| inference::measure(name)),
         }
     }
 

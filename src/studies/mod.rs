@@ -14,6 +14,7 @@ mod factor_value;
 mod findings;
 #[cfg(test)]
 pub(crate) mod fixture;
+pub mod inference;
 mod outcome;
 pub mod outcomes;
 pub mod prior_map;

@@ -33,6 +33,12 @@ impl Outcome {
     /// The manifest's own time limit ended the trial.
     pub const TIME_LIMIT: Self =
         Self::new("time-limit", End::TimeUp, "the manifest's time limit was reached");
+    /// An inference's trial held a building against the observed table.
+    pub const PROPOSED: Self = Self::new(
+        "proposed",
+        End::Idle,
+        "a building was held against the observed table; nothing was simulated",
+    );
     /// The program failed inside the trial; the record says how. Never stored.
     pub const PANICKED: Self = Self::new("panicked", End::Fault, "the program failed");
 
@@ -74,7 +80,7 @@ fn every() -> impl Iterator<Item = Outcome> {
     let of_study =
         |study: &&dyn super::Study| [study.outcomes(), study.further_outcomes()].concat();
     let of_studies = super::STUDIES.iter().flat_map(of_study);
-    of_studies.chain([Outcome::PANICKED])
+    of_studies.chain([Outcome::PROPOSED, Outcome::PANICKED])
 }
 
 impl PartialEq for Outcome {
@@ -165,7 +171,7 @@ mod tests {
         assert_eq!(
             serde_json::from_str::<Outcome>("\"won\"").unwrap_err().to_string(),
             "unknown variant `won`, expected one of `reached`, `collided`, `late`, `stalled`, `explored`, `stuck`, \
-             `time-limit`, `covered`, `panicked`"
+             `time-limit`, `covered`, `proposed`, `panicked`"
         );
     }
 }

@@ -1,6 +1,6 @@
 //! What a manifest may ask to see: tables and figures in its study's layouts.
 
-use super::{Drawn, Exhibit, Findings, PublishedScatter, deadline, outcomes, prior_map};
+use super::{Drawn, Exhibit, Findings, PublishedScatter, deadline, inference, outcomes, prior_map};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -62,6 +62,8 @@ table_layouts! {
     OutcomeTable "outcome-table" (outcomes::OutcomeTable),
     /// Deadline: the six maneuvers as calibrated and as they went in the study's own trials.
     ManeuverTable "maneuver-table" (deadline::ManeuverTable),
+    /// What an inference found; every manifest with `infer` has all of them.
+    InferenceTable "inference-table" (inference::InferenceTable),
 }
 
 /// Returns the coverage tables among `tables`, each with its id.

@@ -4,6 +4,7 @@
 //! manifest's condition, how its trials run and end, and what they measure. Nothing outside its folder names it, but for the
 //! layouts of tables and figures that are its own.
 
+use super::inference::Proposing;
 use super::prior_map::{self, CoverageMap, SharedReference, tour::TopoMetricMap};
 use super::recording::Recording;
 use super::{Calibrating, Expectations, Outcome, STUDIES, TrialRecord, TrialSpec};
@@ -76,6 +77,11 @@ pub trait Study: Sync {
 
     /// Returns how it learns from calibrations; `None` where its trials rest on none.
     fn calibrating(&self) -> Option<&'static dyn Calibrating> {
+        None
+    }
+
+    /// Returns how it proposes for an inference; `None` where it does not.
+    fn proposing(&self) -> Option<&'static dyn Proposing> {
         None
     }
 
@@ -198,6 +204,12 @@ pub trait StudySetup: Any + fmt::Debug + Send + Sync {
     /// Returns how trials can end by these parameters, besides the study's own ways.
     fn further_outcomes(&self) -> &'static [Outcome] {
         &[]
+    }
+
+    /// Returns whether its trials are of a model that proposes, never of the study itself: no table, figure or claim may rest on
+    /// them.
+    fn is_model(&self) -> bool {
+        false
     }
 
     /// Runs a trial under the eyes of `watch`, writing everything down in `recording` where there is one: a pure function of

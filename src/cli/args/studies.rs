@@ -98,3 +98,45 @@ pub(in crate::cli) struct VaryArgs {
     #[arg(long)]
     pub(in crate::cli) no_cache: bool,
 }
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct InferArgs {
+    /// A manifest with `infer:`
+    pub(in crate::cli) manifest: PathBuf,
+
+    /// Threads [default: all processors]
+    #[arg(short, long, value_name = "N")]
+    pub(in crate::cli) jobs: Option<usize>,
+
+    /// Where the bundle lands
+    #[arg(short, long, value_name = "DIR", default_value = "artifacts")]
+    pub(in crate::cli) out: PathBuf,
+
+    #[command(flatten)]
+    pub(in crate::cli) select: SelectArgs,
+
+    /// Neither read nor write the store of finished proposals
+    #[arg(long)]
+    pub(in crate::cli) no_cache: bool,
+
+    /// How the answer is written
+    #[arg(long, value_enum, default_value = "human")]
+    pub(in crate::cli) format: Format,
+}
+
+impl From<&InferArgs> for RunArgs {
+    fn from(args: &InferArgs) -> Self {
+        let InferArgs { manifest, jobs, out, select, no_cache, format } = args;
+        Self {
+            manifests: vec![manifest.clone()],
+            jobs: *jobs,
+            out: out.clone(),
+            select: select.clone(),
+            no_cache: *no_cache,
+            lock: AgainstLockArgs { locked: false, probe: false },
+            twice: false,
+            capsule: false,
+            format: *format,
+        }
+    }
+}

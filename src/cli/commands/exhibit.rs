@@ -182,6 +182,7 @@ mod tests {
                 // These have a row where the tidy form has one.
                 TableLayout::AgreementTable(_)
                 | TableLayout::ReadingsTable(_)
+                | TableLayout::InferenceTable(_)
                 | TableLayout::ManeuverTable(_) => {
                     assert_eq!(page.rows.len(), exhibit.tidy.rows.len(), "{id}");
                     return;

@@ -10,6 +10,7 @@ mod building;
 pub mod calibration;
 pub mod columns;
 pub mod exploration;
+mod graph_level;
 mod in_situ;
 pub mod intersection;
 pub mod intersection_detection;
@@ -25,6 +26,7 @@ mod study;
 pub mod toposemantic_map;
 
 pub use calibration::Calibration;
+pub use graph_level::{GraphLevel, Simulation, is_entry};
 pub use in_situ::ManeuverRow;
 pub use intersection_detection::{IntersectionDetectionSystem, Perception};
 pub use mission::{Calibrations, run, tag_scheme};

@@ -1,6 +1,7 @@
 //! Parameters of the deadline study. Those the paper states have its values as default; what it leaves out has a default
 //! here and, in our manifests, a `why`.
 
+use super::graph_level::{GraphLevel, Simulation};
 use super::intersection_detection::Perception;
 use super::rules::Rules;
 use crate::navigation::maneuver::PilotRule;
@@ -24,6 +25,9 @@ parameters!(
         mission: Mission = Mission::default(),
         /// The maneuver of an isolated passage; nothing to an exploration.
         passage: Passage = Passage::default(),
+        /// What maneuvers take at graph level; nothing to a simulation of bodies.
+        #[serde(skip_serializing_if = "is_default")]
+        graph: GraphLevel = GraphLevel::default(),
     }
 );
 
@@ -95,6 +99,9 @@ parameters!(
     Mission {
         /// Exploration towards the goal, or one isolated maneuver.
         task: Task = Task::Exploration,
+        /// What an exploration is simulated by.
+        #[serde(skip_serializing_if = "is_default")]
+        simulation: Simulation = Simulation::Physics,
         /// The global temporal deadline T (s), above 0.
         #[schemars(extend("exclusiveMinimum" = 0))]
         deadline_s: f64 = 680.0,
@@ -123,3 +130,8 @@ parameters!(
         time_limit_s: f64 = 120.0,
     }
 );
+
+/// Returns whether a parameter that came later is as it was before; the keys of trials leave it out then.
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}

@@ -1,9 +1,14 @@
 //! The deadline study behind the interface of a study.
 
+use super::mission::graph_level::MARK;
+use super::mission::proposal::AtGraphLevel;
 use super::mission::{self, lints};
-use super::{Calibrations, Isolated, Parameters, Setup, Task, columns};
+use super::{
+    Calibration, Calibrations, GraphLevel, Isolated, Parameters, Setup, Simulation, Task, columns,
+};
 use crate::geometry::Pose;
 use crate::robot::Robot;
+use crate::studies::inference::Proposing;
 use crate::studies::recording::Recording;
 use crate::studies::study::parameters;
 use crate::studies::{
@@ -14,6 +19,7 @@ use crate::table::Column;
 use crate::world::World;
 use schemars::{Schema, SchemaGenerator};
 use serde_json::{Map, Value, json};
+use std::sync::Arc;
 
 /// Susa Rincon and Carpin 2019.
 #[derive(Debug)]
@@ -47,7 +53,11 @@ impl Study for Deadline {
     }
 
     fn defaults(&self) -> Value {
-        json!(Parameters::default())
+        let mut defaults = json!(Parameters::default());
+        // What came later is left out of a trial's key where it is as before, and can be written nevertheless.
+        defaults["graph"] = json!(GraphLevel::default());
+        defaults["mission"]["simulation"] = json!(Simulation::default());
+        defaults
     }
 
     fn schema(&self, generator: SchemaGenerator) -> Schema {
@@ -75,19 +85,36 @@ impl Study for Deadline {
         Some(&Isolated)
     }
 
+    fn proposing(&self) -> Option<&'static dyn Proposing> {
+        Some(&AtGraphLevel)
+    }
+
     fn measures(&self) -> Vec<String> {
         columns::measures()
     }
 
     fn measure(&self, name: &str) -> Option<Column> {
+        if name == MARK {
+            let meaning =
+                "1: the trial is of a model of the study, on the building's graph, and no result";
+            return Some(
+                Column::count(name, meaning).empty_where("the program failed in the trial"),
+            );
+        }
         columns::measure(name)
+    }
+
+    fn is_further_measure(&self, name: &str) -> bool {
+        name == MARK
     }
 
     fn setup(&self, condition: &mut dyn ConditionAsWritten) -> Option<AnySetup> {
         let parameters: Parameters = parameters(condition)?;
+        let stated =
+            parameters.mission.simulation == Simulation::Graph && parameters.graph.is_complete();
         let calibration = match parameters.mission.task {
-            Task::Exploration => Some(condition.calibration()),
-            Task::Passage => None,
+            Task::Exploration if !stated => Some(condition.calibration()),
+            Task::Exploration | Task::Passage => None,
         };
         let around = condition.surroundings()?;
         let calibration = match calibration {
@@ -98,6 +125,10 @@ impl Study for Deadline {
                     condition.tell(lints::not_measured_in(&around.world, &measured));
                 }
                 Some(here?)
+            }
+            None if stated => {
+                let maneuvers = parameters.graph.stated(parameters.rules.side_corridors);
+                Some(Arc::new(Calibration::assumed(&maneuvers)))
             }
             None => None,
         };
@@ -130,6 +161,15 @@ impl StudySetup for Setup {
     fn further(&self) -> Map<String, Value> {
         let calibration = self.calibration.iter();
         calibration.map(|known| ("maneuvers".to_owned(), known.to_json())).collect()
+    }
+
+    fn is_model(&self) -> bool {
+        self.parameters.mission.task == Task::Exploration
+            && self.parameters.mission.simulation == Simulation::Graph
+    }
+
+    fn further_measures(&self) -> Vec<String> {
+        if self.is_model() { vec![MARK.to_owned()] } else { Vec::new() }
     }
 
     fn run(

@@ -4,10 +4,12 @@ mod body;
 mod calibrations;
 mod exploration;
 mod graph;
+pub(in crate::studies::deadline) mod graph_level;
 pub(super) mod lints;
 mod passage;
 mod passages;
 mod policy_chart;
+pub(in crate::studies::deadline) mod proposal;
 mod tally;
 #[cfg(test)]
 mod tests;
@@ -15,7 +17,7 @@ mod tests;
 pub use calibrations::Calibrations;
 pub(super) use passages::Isolated;
 
-use super::{Setup, Task};
+use super::{Setup, Simulation, Task};
 use crate::geometry::Outline;
 use crate::robot::Lidar;
 use crate::studies::recording::Recording;
@@ -86,7 +88,11 @@ pub fn run(
         Ok(prepared) => prepared,
         Err(why) => return TrialRecord::panicked(spec, why.to_string()),
     };
-    match setup.parameters.mission.task {
+    let mission = &setup.parameters.mission;
+    match mission.task {
+        Task::Exploration if mission.simulation == Simulation::Graph => {
+            graph_level::run(spec, setup, prepared, watch)
+        }
         Task::Exploration => exploration::run(spec, setup, prepared, recording, watch),
         Task::Passage => passage::run(spec, setup, prepared, recording),
     }

@@ -1,0 +1,103 @@
+//! `infer:` as written: the table that is to be explained, and what is not known.
+
+use crate::manifest::choice::Ordered;
+use crate::studies::FactorValue;
+use schemars::JsonSchema;
+use serde::Deserialize;
+use serde_json::Value;
+use std::collections::BTreeMap;
+
+/// What is to be inferred from which of the paper's tables.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct InferDoc {
+    /// The table that is to be explained: two outcomes of trials, each with the published numbers that say in what share (%) they
+    /// end so. Every row says of how many (`n`).
+    #[schemars(extend("minProperties" = 2, "maxProperties" = 2))]
+    pub observed: Ordered<String>,
+    /// The columns that tell its cells apart; rows of different levels of the first are of different starts.
+    #[schemars(length(min = 1))]
+    pub by: Vec<String>,
+    /// Cells that are left out of the likelihood, with the reason for it.
+    #[serde(default)]
+    pub left_out: Vec<LeftOutDoc>,
+    /// What is thought of parameters before the table is looked at, by path as in `rules.frontier.ties`.
+    pub priors: Ordered<ChoicePriorDoc>,
+    /// How much the model is trusted: concentrations of the Dirichlet-multinomial, all as likely before.
+    #[serde(default = "concentration")]
+    #[schemars(length(min = 1), inner(range(min = 0.1, max = 1000.0)))]
+    pub concentration: Vec<f64>,
+    /// Trajectories behind each probability.
+    #[serde(default = "walks")]
+    #[schemars(range(min = 1, max = 1000))]
+    pub walks: u32,
+    /// Draws of the numbers that trajectories can be timed again by, in each trial.
+    #[serde(default = "points")]
+    #[schemars(range(min = 1, max = 10_000))]
+    pub points: u32,
+    /// Posterior draws that each trial hands on.
+    #[serde(default = "draws")]
+    #[schemars(range(min = 1, max = 20))]
+    pub draws: u32,
+    /// Tables made by known draws, to check the inference by.
+    #[serde(default)]
+    #[schemars(range(max = 100))]
+    pub simulated_tables: u32,
+    /// Which parts of the table are held out in turn: `chequerboard`, or a column of which one level is held out at a time.
+    #[serde(default)]
+    pub hold_out: Vec<String>,
+    /// The columns by whose means a baseline predicts what is held out.
+    #[serde(default)]
+    pub baseline: Vec<String>,
+}
+
+/// Cells that are left out.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct LeftOutDoc {
+    /// Their values.
+    #[serde(rename = "where")]
+    #[schemars(extend("minProperties" = 1))]
+    pub only: BTreeMap<String, FactorValue>,
+    /// Why they are left out.
+    #[schemars(length(min = 1))]
+    pub why: String,
+}
+
+/// What is thought of one parameter: one of `values`, `uniform` and `log-uniform`.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct ChoicePriorDoc {
+    /// Several values, all as likely.
+    #[serde(default)]
+    #[schemars(length(min = 1))]
+    pub values: Option<Vec<Value>>,
+    /// A number between two.
+    #[serde(default)]
+    pub uniform: Option<[f64; 2]>,
+    /// A number above 0 whose logarithm is uniform between those of two.
+    #[serde(default)]
+    pub log_uniform: Option<[f64; 2]>,
+    /// The one of the values that is the paper's own words.
+    #[serde(default)]
+    pub literal: Option<Value>,
+    /// Why it is not known.
+    #[serde(default)]
+    pub why: Option<String>,
+}
+
+fn concentration() -> Vec<f64> {
+    vec![6.0, 12.0, 24.0, 48.0]
+}
+
+fn walks() -> u32 {
+    32
+}
+
+fn points() -> u32 {
+    48
+}
+
+fn draws() -> u32 {
+    4
+}

@@ -1,0 +1,245 @@
+//! `infer:`: the table that is to be explained, the priors, and the conditions that become proposals.
+
+use super::document::{ChoicePriorDoc, InferDoc};
+use super::experiment::ResolvedCondition;
+use super::faults::{Faults, step};
+use super::resolver::Resolver;
+use crate::digest::Sha256Digest;
+use crate::factor::Factor;
+use crate::json;
+use crate::studies::Setup;
+use crate::studies::inference::{
+    Distribution, HoldOut, Inference, InferenceSetup, LeftOut, Observed, ObservedCell, Prior,
+    Shared,
+};
+use crate::table::Table;
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+const PLACE: &str = "/infer";
+
+/// Returns the columns of the observed table as factors without values: no condition varies them.
+pub(super) fn columns(doc: &InferDoc) -> impl Iterator<Item = Factor> + '_ {
+    doc.by.iter().map(|name| Factor { name: name.clone(), values: Vec::new() })
+}
+
+/// Makes every one of the `conditions` a proposal; faults where the inference cannot be made.
+pub(super) fn propose(
+    resolver: &mut Resolver<'_>,
+    published: &BTreeMap<String, Table>,
+    conditions: Vec<ResolvedCondition>,
+) -> Vec<ResolvedCondition> {
+    let Some(doc) = &resolver.doc.infer else { return conditions };
+    let (study, seed) = (resolver.doc.study, resolver.doc.seed);
+    let faults = &mut resolver.faults;
+    let Some(proposing) = study.proposing() else {
+        let message = format!("the study `{}` proposes nothing to infer from", study.name());
+        faults.at_key(PLACE, message, "remove this key");
+        return conditions;
+    };
+    let Some(inference) = inference(doc, published, faults) else { return conditions };
+    for condition in &conditions {
+        if !condition.setup.is_model() {
+            let message = "an inference rests on trials at graph level";
+            let fault = faults.key_fault(PLACE, message).label("these are of another kind");
+            faults.push(fault.help("add `mission: {simulation: graph}` to the parameters"));
+        }
+        for (path, why) in proposing.refuses(&condition.setup, &inference) {
+            let place =
+                path.map_or(PLACE.to_owned(), |path| step(&format!("{PLACE}/priors"), &path));
+            faults.at_key(&place, why, &format!("for `{}`", condition.condition));
+        }
+    }
+    if faults.any_error() {
+        return conditions;
+    }
+    let meanings: Vec<Value> = conditions
+        .iter()
+        .map(|c| serde_json::json!([c.condition.to_string(), c.meanings, c.setup.parameters()]))
+        .collect();
+    let meaning = Sha256Digest::of(json::canonical(&Value::Array(meanings)));
+    let buildings: Vec<Setup> = conditions.iter().map(|c| c.setup.clone()).collect();
+    let Some(shared) = Shared::new(inference, study, seed, buildings, meaning) else {
+        return conditions;
+    };
+    let shared = Arc::new(shared);
+    let proposed = |condition: ResolvedCondition| {
+        let setup = InferenceSetup::new(condition.setup, Arc::clone(&shared));
+        ResolvedCondition { setup: Setup::new(setup), ..condition }
+    };
+    conditions.into_iter().map(proposed).collect()
+}
+
+fn inference(
+    doc: &InferDoc,
+    published: &BTreeMap<String, Table>,
+    faults: &mut Faults<'_>,
+) -> Option<Inference> {
+    let observed = observed(doc, published, faults)?;
+    let priors: Vec<Option<Prior>> =
+        doc.priors.0.iter().map(|(path, prior)| self::prior(path, prior, faults)).collect();
+    let priors: Vec<Prior> = priors.into_iter().collect::<Option<_>>()?;
+    let mut hold_outs = vec![HoldOut::nothing(&observed)];
+    for (index, kind) in doc.hold_out.iter().enumerate() {
+        match (kind.as_str(), observed.factor(kind)) {
+            ("chequerboard", _) => hold_outs.extend(HoldOut::chequerboard(&observed)),
+            (_, Some(factor)) => hold_outs.extend(HoldOut::levels_of(&observed, factor)),
+            _ => {
+                let known: Vec<&str> = std::iter::once("chequerboard")
+                    .chain(doc.by.iter().map(String::as_str))
+                    .collect();
+                let message = format!("nothing is held out by `{kind}`");
+                let place = format!("{PLACE}/hold-out/{index}");
+                faults.unknown(&place, message, "no column of the observed table", kind, &known);
+            }
+        }
+    }
+    for (index, name) in doc.baseline.iter().enumerate() {
+        if observed.factor(name).is_none() {
+            let known: Vec<&str> = doc.by.iter().map(String::as_str).collect();
+            let message = format!("the observed table has no column `{name}`");
+            let place = format!("{PLACE}/baseline/{index}");
+            faults.unknown(&place, message, "not one of `by`", name, &known);
+        }
+    }
+    (!faults.any_error()).then(|| Inference {
+        observed,
+        priors,
+        concentration: doc.concentration.clone(),
+        walks: doc.walks,
+        points: doc.points,
+        draws: doc.draws,
+        simulated_tables: doc.simulated_tables,
+        hold_outs,
+        baseline: doc.baseline.clone(),
+    })
+}
+
+/// Reads the counts of the observed table, cell by cell.
+fn observed(
+    doc: &InferDoc,
+    published: &BTreeMap<String, Table>,
+    faults: &mut Faults<'_>,
+) -> Option<Observed> {
+    let mut tables = Vec::new();
+    for (outcome, name) in &doc.observed.0 {
+        let Some(table) = published.get(name) else {
+            let known: Vec<&str> = published.keys().map(String::as_str).collect();
+            let message = format!("unknown published numbers `{name}`");
+            let place = step(&format!("{PLACE}/observed"), outcome);
+            faults.unknown(&place, message, "not a key of `published`", name, &known);
+            continue;
+        };
+        let missing: Vec<&String> =
+            doc.by.iter().filter(|column| table.column(column).is_none()).collect();
+        for column in &missing {
+            let message = format!("the published numbers `{name}` have no column `{column}`");
+            faults.at(&format!("{PLACE}/by"), message, "asked for to tell cells apart");
+        }
+        if missing.is_empty() {
+            tables.push((outcome, table));
+        }
+    }
+    let [(first, firsts), (second, seconds)] = &tables[..] else {
+        if !faults.any_error() {
+            let message = format!("expected two outcomes, found {}", tables.len());
+            faults.at(&format!("{PLACE}/observed"), message, "name two; the rest is the third");
+        }
+        return None;
+    };
+    let levels = |table: &Table, row: &[crate::table::Value]| -> Vec<String> {
+        doc.by.iter().map(|column| table.value(row, column).to_string()).collect()
+    };
+    let mut cells = Vec::new();
+    for row in &firsts.rows {
+        let own = levels(firsts, row);
+        let other = seconds.rows.iter().find(|other| levels(seconds, other) == own);
+        let share = |table: &Table, row: &[crate::table::Value]| {
+            let n = firsts.column("n").and_then(|column| {
+                firsts.rows.iter().find(|r| levels(firsts, r) == own)?.get(column)?.as_f64()
+            });
+            Some((table.value(row, "value").as_f64()?, n?))
+        };
+        let counted = share(firsts, row).zip(other.and_then(|other| share(seconds, other)));
+        let Some(((a, n), (b, _))) = counted else {
+            let message = format!(
+                "the cell `{}` of the observed table does not say what share of how many ended as `{first}` and as `{second}`",
+                own.join(", ")
+            );
+            faults.at(&format!("{PLACE}/observed"), message, "expected `value` and `n` in both");
+            return None;
+        };
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "shares of counts of trials"
+        )]
+        let count = |percent: f64| (percent * n / 100.0).round().clamp(0.0, n) as u32;
+        let (a, b, all) = (count(a), count(b), count(100.0));
+        let b = b.min(all - a);
+        cells.push(ObservedCell { levels: own, counts: [a, b, all - a - b], left_out: false });
+    }
+    let mut left_out = Vec::new();
+    for (index, out) in doc.left_out.iter().enumerate() {
+        let place = format!("{PLACE}/left-out/{index}/where");
+        let mut only = Vec::new();
+        for (name, value) in &out.only {
+            let Some(factor) = doc.by.iter().position(|by| by == name) else {
+                let known: Vec<&str> = doc.by.iter().map(String::as_str).collect();
+                let message = format!("the observed table has no column `{name}`");
+                let place = step(&place, name);
+                faults.unknown_key(&place, message, "not one of `by`", name, &known);
+                continue;
+            };
+            only.push((factor, value.0.clone()));
+        }
+        let fits = |cell: &ObservedCell| only.iter().all(|(f, value)| cell.levels[*f] == *value);
+        let found = cells.iter_mut().filter(|cell| fits(cell));
+        let count = found.map(|cell| cell.left_out = true).count();
+        if count == 0 {
+            faults.at(
+                &place,
+                "no cell of the observed table is left out by this",
+                "has no such cell",
+            );
+        }
+        let only = out.only.iter().map(|(name, value)| (name.clone(), value.0.clone())).collect();
+        left_out.push(LeftOut { only, why: out.why.clone() });
+    }
+    let outcomes = [(*first).clone(), (*second).clone()];
+    Some(Observed { outcomes, factors: doc.by.clone(), cells, left_out })
+}
+
+fn prior(path: &str, doc: &ChoicePriorDoc, faults: &mut Faults<'_>) -> Option<Prior> {
+    let place = step(&format!("{PLACE}/priors"), path);
+    let distribution = match (&doc.values, doc.uniform, doc.log_uniform) {
+        (Some(values), None, None) if !values.is_empty() => Distribution::Values(values.clone()),
+        (None, Some([low, high]), None) if low < high => Distribution::Uniform([low, high]),
+        (None, None, Some([low, high])) if 0.0 < low && low < high => {
+            Distribution::LogUniform([low, high])
+        }
+        _ => {
+            let message = format!("the prior of `{path}` is none");
+            let label =
+                "expected one of `values`, `uniform: [LOW, HIGH]` and `log-uniform: [LOW, HIGH]`";
+            let fault = faults.fault(&place, message).label(label);
+            faults
+                .push(fault.help("LOW is below HIGH, and above 0 where the logarithm is uniform"));
+            return None;
+        }
+    };
+    let literal = match (&doc.literal, &distribution) {
+        (None, _) => None,
+        (Some(literal), Distribution::Values(values)) if values.contains(literal) => {
+            values.iter().position(|value| value == literal)
+        }
+        (Some(literal), _) => {
+            let message =
+                format!("the literal value `{literal}` of `{path}` is not one of its values");
+            faults.at(&format!("{place}/literal"), message, "expected one of `values`");
+            return None;
+        }
+    };
+    Some(Prior { path: path.to_owned(), distribution, literal })
+}

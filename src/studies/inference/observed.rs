@@ -1,0 +1,101 @@
+//! The table that is to be explained: counts of three outcomes in every cell.
+
+use serde::Serialize;
+
+/// Counts by cell.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Observed {
+    /// Names of the two outcomes that are counted; whatever else happens is the third.
+    pub outcomes: [String; 2],
+    /// The columns that tell cells apart.
+    pub factors: Vec<String>,
+    /// The cells, in the order of the table.
+    pub cells: Vec<ObservedCell>,
+    /// What is left out, and why.
+    pub left_out: Vec<LeftOut>,
+}
+
+/// One cell.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct ObservedCell {
+    /// Its values of the factors.
+    pub levels: Vec<String>,
+    /// How many trials ended in the first outcome, the second, and otherwise.
+    pub counts: [u32; 3],
+    /// Whether it is left out.
+    pub left_out: bool,
+}
+
+/// Cells that are left out by declaration.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct LeftOut {
+    /// Their values of factors.
+    #[serde(rename = "where")]
+    pub only: Vec<(String, String)>,
+    /// Why.
+    pub why: String,
+}
+
+impl ObservedCell {
+    /// Returns how many trials there were.
+    pub fn trials(&self) -> u32 {
+        self.counts.iter().sum()
+    }
+
+    /// Returns the share of the first outcome (%).
+    pub fn percent(&self) -> f64 {
+        100.0 * f64::from(self.counts[0]) / f64::from(self.trials().max(1))
+    }
+
+    /// Returns its name: `C, 563, random`.
+    pub fn name(&self) -> String {
+        self.levels.join(", ")
+    }
+}
+
+impl Observed {
+    /// Returns the place of the factor `name` among the levels of a cell.
+    pub fn factor(&self, name: &str) -> Option<usize> {
+        self.factors.iter().position(|factor| factor == name)
+    }
+
+    /// Returns the levels of a factor, in order of appearance.
+    pub fn levels(&self, factor: usize) -> Vec<&str> {
+        let mut levels: Vec<&str> = Vec::new();
+        for cell in &self.cells {
+            if !levels.contains(&cell.levels[factor].as_str()) {
+                levels.push(&cell.levels[factor]);
+            }
+        }
+        levels
+    }
+
+    /// Returns for every cell the rank of its level of `factor`, in order of appearance among the cells that share its level of the
+    /// first factor: deadlines that differ from start to start have ranks nevertheless.
+    pub fn ranks(&self, factor: usize) -> Vec<usize> {
+        let mut known: Vec<(&str, Vec<&str>)> = Vec::new();
+        let mut ranks = Vec::with_capacity(self.cells.len());
+        let overall = self.levels(0);
+        for cell in &self.cells {
+            let (group, level) = (cell.levels[0].as_str(), cell.levels[factor].as_str());
+            if factor == 0 {
+                ranks.push(overall.iter().position(|known| *known == level).unwrap_or(0));
+                continue;
+            }
+            if !known.iter().any(|(name, _)| *name == group) {
+                known.push((group, Vec::new()));
+            }
+            let here = known.iter_mut().find(|(name, _)| *name == group);
+            let Some((_, levels)) = here else { continue };
+            let rank = levels.iter().position(|known| *known == level).unwrap_or_else(|| {
+                levels.push(level);
+                levels.len() - 1
+            });
+            ranks.push(rank);
+        }
+        ranks
+    }
+}

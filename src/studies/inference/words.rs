@@ -1,0 +1,104 @@
+//! What the tables of an inference say in sentences.
+
+use super::tables::Row;
+use crate::table::Value;
+
+/// Below this many buildings' worth, a posterior is a handful of draws.
+const HANDFUL: f64 = 10.0;
+/// Largest weight of one building that goes without a word.
+const HEAVY: f64 = 0.25;
+/// Tail below which a cell counts as never matched.
+const NEVER: f64 = 0.02;
+
+fn value_of(rows: &[Row], what: &str) -> Option<f64> {
+    rows.iter().find(|row| row[0].to_string() == what)?.get(1)?.as_f64()
+}
+
+pub(super) fn summary_in_words(rows: &[Row]) -> Option<String> {
+    let (tried, effective) =
+        (value_of(rows, "proposals")?, value_of(rows, "effective number of proposals")?);
+    let largest = value_of(rows, "largest weight")?;
+    let mut words = format!(
+        "Everything here is at graph level: proposals, no results. {tried} proposals are worth {effective:.1} of equal weight; the \
+         largest has {largest:.3} of it."
+    );
+    if effective < HANDFUL || largest > HEAVY {
+        words.push_str(
+            " WARNING: the posterior is a handful of draws; raise `trials` or list more buildings before anything is built on it.",
+        );
+    }
+    words.push_str(if effective > 2.0 {
+        " The table does not tell the building: several explain it about as well."
+    } else {
+        " Whether the table tells the building cannot be said by so few."
+    });
+    Some(words)
+}
+
+pub(super) fn literal_in_words(rows: &[Row]) -> String {
+    let literal: Vec<String> = rows
+        .iter()
+        .filter(|row| row[5] != Value::Missing)
+        .map(|row| {
+            let after = row[3].as_f64().unwrap_or_default();
+            let odds = row[4].as_f64().map_or("infinite".to_owned(), |odds| format!("{odds:.2}"));
+            format!("{} = {}: {after:.2}, odds {odds}", row[0], row[1])
+        })
+        .collect();
+    if literal.is_empty() {
+        "No value is declared to be the paper's own words.".to_owned()
+    } else {
+        format!(
+            "The paper's own words, where they win and where they lose: {}.",
+            literal.join("; ")
+        )
+    }
+}
+
+pub(super) fn never_matched(rows: &[Row]) -> String {
+    let never: Vec<String> = rows
+        .iter()
+        .filter_map(|row| {
+            let end = row.len();
+            let tail = row[end - 2].as_f64()?;
+            let [printed, expected] = [row[end - 8].as_f64()?, row[end - 7].as_f64()?];
+            let name: Vec<String> = row[..end - 8].iter().map(ToString::to_string).collect();
+            (tail < NEVER).then(|| {
+                format!("{} (printed {printed:.0} %, expected {expected:.0} %)", name.join(" "))
+            })
+        })
+        .collect();
+    if never.is_empty() {
+        format!("Every cell is matched: none has a tail below {NEVER}.")
+    } else {
+        format!("Never matched, with a tail below {NEVER}: {}.", never.join("; "))
+    }
+}
+
+pub(super) fn held_in_words(rows: &[Row]) -> Option<String> {
+    let compared: Vec<&Row> = rows.iter().filter(|row| row[3].as_f64().is_some()).collect();
+    if compared.is_empty() {
+        return None;
+    }
+    let better = compared.iter().filter(|row| row[3].as_f64() < row[4].as_f64()).count();
+    Some(format!(
+        "Rules, numbers, buildings and placements were all learned from the other cells alone. Better than a constant in {better} \
+         of {} parts.",
+        compared.len()
+    ))
+}
+
+pub(super) fn simulated_in_words(rows: &[Row]) -> Option<String> {
+    let (mut covered, mut all) = (0.0, 0.0);
+    for row in rows {
+        let tables = row[1].as_f64()?;
+        covered += row[4].as_f64().unwrap_or_default() * tables / 100.0;
+        all += tables;
+    }
+    (all > 0.0).then(|| {
+        format!(
+            "Of {all} truths {:.0} % lie within the region of 90 %, which is well done between 85 and 95 %.",
+            100.0 * covered / all
+        )
+    })
+}
