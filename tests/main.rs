@@ -14,6 +14,7 @@ mod drift;
 mod faults;
 mod hand_drawn;
 mod hostile;
+mod inference;
 mod interrupted;
 mod maneuvers;
 mod manifests;
