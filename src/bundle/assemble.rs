@@ -4,9 +4,9 @@
 use super::content::{BundleContent, Person, Publication, SealedCondition, SealedInput};
 use super::{format, wall_time};
 use crate::claims::observations::TrialsTableError;
-use crate::claims::{self, ClaimVerdict, Observations};
+use crate::claims::{self, ClaimVerdict, Multiverse, Observations};
 use crate::json::AsWritten;
-use crate::manifest::{Input, InputKind};
+use crate::manifest::InputKind;
 use crate::plan::{Plan, Selection, engine_version};
 use crate::studies::{Dictionary, Exhibit, Findings, Outcome, TrialRecord};
 use crate::table::{DescribedTable, Table};
@@ -56,6 +56,10 @@ pub fn assemble_judged(
         Some(cite) => format!("{}. Re-enacts {}.", experiment.title, cite.paper),
         None => format!("{}.", experiment.title),
     };
+    let sealed_at = |as_written: &str| {
+        let input = experiment.inputs.iter().find(|input| input.as_written == as_written)?;
+        Some(format!("{}{}", format::INPUTS, input.name))
+    };
     let (results, mut tables) = results(plan, records, verdicts);
     tables.extend(described_inputs(plan));
     // What was found before what was given.
@@ -84,11 +88,8 @@ pub fn assemble_judged(
         conditions: sealed_conditions(plan, records),
         results,
         tables,
-        robustness: experiment.sensitivity.as_ref().and_then(|known| {
-            let of_it = |input: &&Input| input.as_written == known.as_written;
-            let input = experiment.inputs.iter().find(of_it)?;
-            Some(format!("{}{}", format::INPUTS, input.name))
-        }),
+        robustness: experiment.sensitivity.as_ref().and_then(|known| sealed_at(&known.as_written)),
+        multiverse: experiment.multiverse.as_ref().and_then(|known| sealed_at(&known.as_written)),
         partial: plan.partial,
     }
 }
@@ -203,6 +204,20 @@ fn results(plan: &Plan, records: &[TrialRecord], verdicts: &[ClaimVerdict]) -> R
         }
     }
     files.push(("claims.json".to_owned(), verdicts_json(verdicts)));
+    if let Some(known) = &experiment.multiverse {
+        let tidy = known.table.tidy();
+        described.push(DescribedTable {
+            key: vec!["claim".to_owned(), "setting".to_owned()],
+            ..DescribedTable::of(
+                &tidy,
+                in_results("multiverse.csv"),
+                ("Claims and choices", "one claim and one choice that all draws change"),
+                Multiverse::tidy_column,
+            )
+        });
+        files.push(("multiverse.csv".to_owned(), tidy.to_csv().into_bytes()));
+        files.push(("multiverse.md".to_owned(), known.table.to_markdown().into_bytes()));
+    }
     (files, described)
 }
 
@@ -280,6 +295,10 @@ fn described_inputs(plan: &Plan) -> Vec<DescribedTable> {
             InputKind::Robustness => {
                 let words = ("Claims at other values of the assumptions", "one claim at one value");
                 DescribedTable::of(&table, path, words, Dictionary::of_sensitivity)
+            }
+            InputKind::Multiverse => {
+                let words = ("Claims at draws of all assumptions together", "one draw");
+                DescribedTable::of(&table, path, words, Dictionary::of_multiverse)
             }
             // Nothing else is read as a CSV; what a calibration reads so are the paper's numbers, too.
             InputKind::PublishedNumbers

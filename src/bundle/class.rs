@@ -40,6 +40,8 @@ enum Which {
     Inputs,
     /// The table of verdicts at other values of the assumptions.
     Robustness,
+    /// The table of verdicts at draws of all assumptions together.
+    Multiverse,
 }
 
 /// A row: which files, what they are, and by what they are derived.
@@ -67,6 +69,11 @@ const TABLE: &[Row] = &[
         Which::Robustness,
         Class::Derived(5),
         "runs at other values of the assumptions: rows that are drawn",
+    ),
+    Row(
+        Which::Multiverse,
+        Class::Derived(5),
+        "runs at draws of all assumptions together: rows that are drawn",
     ),
     Row(
         Which::Made(WrittenIn::Calibration),
@@ -132,6 +139,10 @@ fn fits(which: &Which, bundle: &Bundle, path: &str) -> bool {
             let named = bundle.resolved().sensitivity.read();
             input.is_some_and(|input| named.is_ok_and(|named| input.as_written == named))
         }
+        Which::Multiverse => {
+            let named = bundle.resolved().multiverse.read();
+            input.is_some_and(|input| named.is_ok_and(|named| input.as_written == named))
+        }
         Which::Inputs => bundle.inputs().iter().any(|input| input.path == within),
     }
 }
@@ -151,6 +162,7 @@ pub fn table_in_markdown() -> String {
             Which::Made(_) => "`data/inputs/previous-map-*`".to_owned(),
             Which::Inputs => "other `data/inputs/*`".to_owned(),
             Which::Robustness => "the input that `sensitivity:` names".to_owned(),
+            Which::Multiverse => "the input that `multiverse:` names".to_owned(),
         };
         let level = match class {
             Class::Derived(level) => level.to_string(),

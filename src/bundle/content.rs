@@ -41,6 +41,8 @@ pub struct BundleContent {
     pub tables: Vec<DescribedTable>,
     /// Where the table of verdicts at other values of the assumptions is, relative to the payload.
     pub robustness: Option<String>,
+    /// Where the table of those at draws of all assumptions together is, relative to the payload.
+    pub multiverse: Option<String>,
     /// Whether only part of the study was run.
     pub partial: bool,
 }

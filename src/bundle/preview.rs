@@ -32,13 +32,14 @@ pub(super) fn page(
     fact("Engine", escape(&content.engine));
     fact("Results digest", format!("<code>sha256:{digest}</code>"));
     // The time of the run is its own word; this is the author's.
-    if let Some(path) = &content.robustness {
-        let path = escape(path);
+    let tables = [("Robustness", &content.robustness), ("Multiverse", &content.multiverse)];
+    for (name, path) in tables {
+        let Some(path) = path.as_deref().map(escape) else { continue };
         let words = format!(
             "<a href=\"{path}\">{path}</a> is the author's word until its runs are done again: <code>reenact verify --level 4 \
              --robustness all</code>"
         );
-        fact("Robustness", words);
+        fact(name, words);
     }
 
     let (mut figures, mut files) = (String::new(), String::new());

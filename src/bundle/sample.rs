@@ -146,6 +146,7 @@ pub(crate) fn content_of(
         results: results(&all),
         tables: tables(),
         robustness: None,
+        multiverse: None,
         partial: false,
     }
 }

@@ -6,7 +6,7 @@ use super::exit::Failure;
 use super::terminal::Terminal;
 use crate::bundle::archive::{Archive, Limits};
 use crate::bundle::{Resolved, format, names};
-use crate::document::{Severity, Source};
+use crate::document::{Diagnostic, Severity, Source};
 use crate::manifest::{self, CalibrationTrials, Experiment, InputError, Inputs, WrittenIn};
 use crate::plan::{Plan, Selection};
 use crate::store::{self, reason};
@@ -37,6 +37,29 @@ pub(super) fn manifest(
     calibrator: Calibrator<'_>,
     terminal: Terminal,
 ) -> Result<Loaded, Failure> {
+    let (found, mut faults) = match resolved(manifest, set, calibrator, terminal)? {
+        Ok((loaded, warnings)) => (Some(loaded), warnings),
+        Err(faults) => (None, faults),
+    };
+    faults.sort_by_key(|f| std::cmp::Reverse(f.severity));
+    terminal.diagnostics(&faults);
+    match found {
+        Some(loaded) if faults.iter().all(|f| f.severity == Severity::Warning) => Ok(loaded),
+        _ => Err(Failure::not_understood(format!(
+            "{}: {}",
+            manifest.display(),
+            Terminal::count(&faults)
+        ))),
+    }
+}
+
+/// Reads and resolves `manifest` in the same way; its faults, or warnings, are returned and told nobody.
+pub(super) fn resolved(
+    manifest: &Path,
+    set: &[String],
+    calibrator: Calibrator<'_>,
+    terminal: Terminal,
+) -> Result<Result<(Loaded, Vec<Diagnostic>), Vec<Diagnostic>>, Failure> {
     let source = text(manifest)?;
     let folder = manifest.parent().unwrap_or(Path::new("")).to_owned();
     let sealed = sealed_beside(manifest, &folder)?;
@@ -44,26 +67,9 @@ pub(super) fn manifest(
         let inputs = folder.join(format::INPUTS);
         terminal.note(&format!("inputs are those that the bundle holds in `{}`", inputs.display()));
     }
-    let (found, mut faults) = match manifest::resolve(
-        &source,
-        set,
-        &Folder { path: folder, sealed, calibrator, terminal },
-    ) {
-        Ok((experiment, warnings)) => (Some(experiment), warnings),
-        Err(faults) => (None, faults),
-    };
-    faults.sort_by_key(|f| std::cmp::Reverse(f.severity));
-    terminal.diagnostics(&faults);
-    match found {
-        Some(experiment) if faults.iter().all(|f| f.severity == Severity::Warning) => {
-            Ok(Loaded { source, experiment })
-        }
-        _ => Err(Failure::not_understood(format!(
-            "{}: {}",
-            manifest.display(),
-            Terminal::count(&faults)
-        ))),
-    }
+    let folder = Folder { path: folder, sealed, calibrator, terminal };
+    Ok(manifest::resolve(&source, set, &folder)
+        .map(|(experiment, warnings)| (Loaded { source, experiment }, warnings)))
 }
 
 /// Returns the plan of an experiment, or the part of it that is wanted.

@@ -106,6 +106,9 @@ pub struct ManifestDoc {
     /// graph level, so it asks for no tables, figures and claims of its own.
     #[serde(default)]
     pub infer: Option<InferDoc>,
+    /// What `reenact vary --joint` wrote: the claims' verdicts at draws of all those ranges together.
+    #[serde(default)]
+    pub multiverse: Option<String>,
     /// The paper's own numbers by name: tidy CSV files.
     #[serde(default)]
     pub published: BTreeMap<String, PublishedDoc>,

@@ -2,7 +2,7 @@
 
 use super::document::{Author, Cite};
 use super::input::Input;
-use crate::claims::{Claim, Sensitivity};
+use crate::claims::{Claim, Multiverse, Sensitivity};
 use crate::condition::Condition;
 use crate::digest::MeaningDigest;
 use crate::document::Tree;
@@ -56,6 +56,8 @@ pub struct Experiment {
     pub assumptions: Vec<Assumption>,
     /// What the claims' verdicts were at other values of the assumptions, where that was tried.
     pub sensitivity: Option<Robustness>,
+    /// What they were at draws of all ranges together, where that was tried.
+    pub multiverse: Option<JointDraws>,
     /// The experiment that measured what the planner expects, where one did.
     pub calibration: Option<Arc<CalibrationRun>>,
     /// `PATH=VALUE` from the command line, in order.
@@ -86,6 +88,15 @@ pub struct Robustness {
     pub as_written: String,
     /// What was found.
     pub table: Sensitivity,
+}
+
+/// What `reenact vary --joint` found, and where it is written.
+#[derive(Debug, Clone)]
+pub struct JointDraws {
+    /// The file that holds it, as written.
+    pub as_written: String,
+    /// What was found.
+    pub table: Multiverse,
 }
 
 /// An experiment that others rest on, and what it showed.

@@ -34,6 +34,8 @@ pub enum InputKind {
     PublishedNumbers,
     /// What the claims' verdicts were at other values of the assumptions, as `reenact vary` writes it.
     Robustness,
+    /// What they were at draws of all assumptions together, as `reenact vary --joint` writes it.
+    Multiverse,
     /// The manifest of a calibration, or what it reads, where that has not said what it is.
     Calibration,
     /// The passages of a calibration, one row a trial.

@@ -13,7 +13,7 @@
 //! | `parts` `worlds` `models` | robot, world and start of a condition |
 //! | `knowledge` `priors` `previous` | its prior knowledge |
 //! | `calibration` `lint` | what trials rest on; what is wrong or suspicious about a condition |
-//! | `numbers` `requests` `figures` `claims` `sensitivity` | what the paper prints, and what is asked of results |
+//! | `numbers` `requests` `figures` `claims` `sensitivity` `multiverse` | what the paper prints, and what is asked of results |
 //! | `infer` | what is not known, and the conditions that become proposals |
 //! | `settings` `overrides` `crossing` | the manifest before its conditions, and those |
 //! | `resolve` | the way through all of them, to an `experiment` |
@@ -33,6 +33,7 @@ mod knowledge;
 mod library;
 mod lint;
 mod models;
+mod multiverse;
 mod names;
 mod numbers;
 mod overrides;
@@ -59,7 +60,7 @@ pub use document::{
     WorldDoc, WorldFile,
 };
 pub use experiment::{
-    Assumption, CalibrationRun, Experiment, Meanings, ResolvedCondition, Robustness,
+    Assumption, CalibrationRun, Experiment, JointDraws, Meanings, ResolvedCondition, Robustness,
 };
 pub use input::{Input, InputKind, WrittenIn};
 pub use library::{CalibrationTrials, InputError, Inputs};

@@ -190,6 +190,26 @@ pub(super) fn schema_of(kind: StudyKind) -> Value {
     schema.to_value()
 }
 
+/// Returns whether the parameter of a study at `path` (`parameters.mapping.particles`) takes whole numbers only.
+pub(super) fn is_whole(kind: StudyKind, path: &str) -> bool {
+    let schema = schema_of(kind);
+    let mut found = &schema;
+    for step in path.split('.').skip(1) {
+        match found.get("properties").and_then(|groups| groups.get(step)) {
+            Some(inner) => found = inner,
+            // Below a parameter are the values of a factor, which are all of its kind.
+            None => break,
+        }
+    }
+    let types = match found.pointer("/anyOf/0/type") {
+        Some(Value::Array(types)) => types.clone(),
+        Some(one) => vec![one.clone()],
+        None => Vec::new(),
+    };
+    let has = |name: &str| types.iter().any(|known| known == name);
+    has("integer") && !has("number")
+}
+
 /// How deep values by one factor may lie in those by another.
 const NESTED: usize = 3;
 
@@ -271,6 +291,20 @@ mod tests {
         assert_eq!(parameters.sensing.range_m, Some(30.0));
         assert_eq!(parameters.sensing.range_noise_sd_m, Some(0.1));
         assert_eq!(parameters.mapping.resolution_m, 0.05);
+    }
+
+    #[test]
+    fn whole_numbers_are_told_from_others_by_the_schema() {
+        let whole = |kind: &str, path: &str| is_whole(StudyKind::named(kind).unwrap(), path);
+        assert!(whole("prior-map", "parameters.mapping.particles"));
+        assert!(whole("deadline", "parameters.pilot.back-off-times"));
+        assert!(!whole("deadline", "parameters.rules.schedule.seconds-per-edge"));
+        assert!(!whole(
+            "prior-map",
+            "parameters.mapping.clip-range-m.values.released.values.office"
+        ));
+        assert!(!whole("deadline", "parameters.pilot.heading"));
+        assert!(!whole("deadline", "parameters.no.such"));
     }
 
     #[test]

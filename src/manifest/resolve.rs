@@ -14,7 +14,7 @@ use super::parts::Parts;
 use super::requests::{self, Requests};
 use super::resolver::Resolver;
 use super::schema::schema;
-use super::{claims, infer, lint, numbers, overrides, previous, sensitivity, settings};
+use super::{claims, infer, lint, multiverse, numbers, overrides, previous, sensitivity, settings};
 use crate::condition::Condition;
 use crate::document::{Diagnostic, Node, Parsed, Source, parse_tree_by, read};
 use crate::studies::StudyKind;
@@ -105,6 +105,7 @@ impl Resolver<'_> {
         self.check_study_keys();
         let assumptions = self.assumptions();
         let sensitivity = sensitivity::read(self, &assumptions);
+        let multiverse = multiverse::read(self, &assumptions);
         let published = self.published();
         let requests = Requests { doc, factors: &factors, published: &published };
         requests.check_tables(&mut self.faults);
@@ -150,6 +151,7 @@ impl Resolver<'_> {
             claims: claims::as_judged(self),
             assumptions,
             sensitivity,
+            multiverse,
             calibration: self.calibration_run.take(),
             overrides: overrides.to_vec(),
             inputs: Vec::new(),

@@ -84,6 +84,9 @@ pub struct ResolvedStudy {
     /// The file of the claims' verdicts at other values of the assumptions, as written; absent where that was not tried.
     #[serde(skip_serializing_if = "AsWritten::is_absent")]
     pub sensitivity: AsWritten<String>,
+    /// The file of those at draws of all assumptions together, as written; absent where that was not tried.
+    #[serde(skip_serializing_if = "AsWritten::is_absent")]
+    pub multiverse: AsWritten<String>,
     /// `PATH=VALUE` from the command line, in order.
     #[serde(skip_serializing_if = "AsWritten::is_absent")]
     pub overrides: AsWritten<Vec<String>>,
@@ -195,6 +198,9 @@ impl ResolvedStudy {
         }
         if let Some(known) = &experiment.sensitivity {
             study.sensitivity = AsWritten::of(&known.as_written);
+        }
+        if let Some(known) = &experiment.multiverse {
+            study.multiverse = AsWritten::of(&known.as_written);
         }
         study
     }

@@ -94,6 +94,9 @@ fn role(as_written: &str) -> &'static str {
     if as_written.ends_with(".sensitivity.csv") {
         return "sensitivity";
     }
+    if as_written.ends_with(".multiverse.csv") {
+        return "multiverse";
+    }
     match as_written.rsplit('.').next() {
         Some("urdf") => "robot",
         Some("csv") => "published",
@@ -113,9 +116,11 @@ mod tests {
         let files = [
             "a.maneuvers.csv",
             "manifests/a.sensitivity.csv",
+            "a.multiverse.csv",
             "reference/a.csv",
             "../robots/a.urdf",
         ];
-        assert_eq!(files.map(role), ["calibration", "sensitivity", "published", "robot"]);
+        let roles = ["calibration", "sensitivity", "multiverse", "published", "robot"];
+        assert_eq!(files.map(role), roles);
     }
 }

@@ -13,6 +13,7 @@ pub mod distribution;
 pub mod effect;
 pub mod equivalence;
 pub mod importance;
+pub mod latin_hypercube;
 pub mod means;
 pub mod multiple;
 pub mod proportion;
@@ -20,6 +21,7 @@ pub mod rank;
 pub mod special;
 pub mod summary;
 pub mod unexplained;
+pub mod variance_share;
 
 /// A range that holds a quantity with the stated confidence.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -5,6 +5,7 @@ use super::columns::of_factor;
 use super::{Outcome, StudyKind, deadline, inference};
 use crate::claims::Judgement;
 use crate::claims::metric::WALL_TIME_COLUMNS;
+use crate::claims::multiverse::{Prefix, prefixed};
 use crate::factor::Factor;
 use crate::table::{Column, unit_of};
 
@@ -124,6 +125,36 @@ impl Dictionary<'_> {
                     .empty_where("the table is older than this column")
             }
             _ => return None,
+        })
+    }
+
+    /// Describes a column of what `reenact vary --joint` found.
+    pub fn of_multiverse(name: &str) -> Option<Column> {
+        let verdicts = Judgement::ALL.map(|verdict| verdict.to_string());
+        Some(match (name, prefixed(name)) {
+            (_, Some((Prefix::Verdict, claim))) => {
+                Column::of_values(name, "", &format!("The verdict on the claim {claim}"), &verdicts)
+                    .empty_where("the draw was refused")
+            }
+            (_, Some((Prefix::Estimate, claim))) => {
+                let meaning =
+                    format!("Mean effect of the comparisons by which the claim {claim} was judged");
+                Column::number(name, "", &meaning)
+                    .empty_where("the draw was refused, or these have no effect of one kind")
+            }
+            ("draw", _) => Column::text(
+                name,
+                "Number of the draw, from 0; `chosen` for the run at the values that the manifest chose",
+            ),
+            ("seed", _) => Column::count(name, "Seed of the Latin hypercube that was drawn"),
+            ("trials", _) => Column::count(name, "Trials per condition of every draw"),
+            ("refused", _) => {
+                Column::text(name, "Why the manifest's own checks refuse these values together")
+                    .empty_where("they were run")
+            }
+            ("records", _) => Column::text(name, "SHA-256 of the records of the run, in hex")
+                .empty_where("the draw was refused"),
+            _ => Column::text(name, "The value of the assumption of this path"),
         })
     }
 

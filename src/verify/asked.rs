@@ -11,14 +11,14 @@ pub struct Options {
     pub level: Level,
     /// How many trials level 4 executes.
     pub sample: usize,
-    /// How many rows of the robustness table are run again; as many as the level takes where nothing is said.
+    /// How many rows of the robustness and of the multiverse table are run again; as many as the level takes where nothing is said.
     pub rows: Option<Rows>,
     /// The reviewer's seed for drawing them, and for level 6 the experiment's; the bundle's author must not know it
     /// beforehand.
     pub seed: u64,
 }
 
-/// Rows of a robustness table: each is a run of the study at another value of one setting.
+/// Rows of a robustness or multiverse table: each is a run of the study at other values of its settings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Rows {
     /// So many, drawn with the reviewer's seed.

@@ -1,5 +1,6 @@
-//! What a study rests on and runs before it made: the passages of its calibration, the runs behind its robustness table. They
-//! are executed again like trials: a sample at level 4, all passages at level 5, rows of the robustness table as many as asked.
+//! What a study rests on and runs before it made: the passages of its calibration, the runs behind its tables of
+//! robustness and of a multiverse. They are executed again like trials: a sample at level 4, all passages at level 5, rows of these
+//! tables as many as asked.
 
 use super::asked::{Options, Rows};
 use super::{Level, Replanned, reexecution};
@@ -15,6 +16,19 @@ pub enum Made {
     Passages,
     /// Verdicts at other values of the assumptions.
     Robustness,
+    /// Verdicts at draws of all assumptions together.
+    Multiverse,
+}
+
+impl Made {
+    /// Returns the name of the table, where it is one whose rows are runs of the whole study; passages are judged like records.
+    fn table(self) -> Option<&'static str> {
+        match self {
+            Self::Passages => None,
+            Self::Robustness => Some("robustness table"),
+            Self::Multiverse => Some("multiverse table"),
+        }
+    }
 }
 
 /// An input that runs before the study's own made, of units that can be executed again one by one.
@@ -48,9 +62,9 @@ impl EarlierAgain {
     /// Says in words what it means.
     pub fn in_words(&self) -> String {
         let (executed, of, equal) = (self.executed, self.of, self.equal);
-        let what = match self.made {
-            Made::Passages => "passages of the calibration",
-            Made::Robustness => "rows of the robustness table",
+        let what = match self.made.table() {
+            None => "passages of the calibration".to_owned(),
+            Some(table) => format!("rows of the {table}"),
         };
         if equal == executed && executed == of {
             format!("all {of} {what} gave the same again")
@@ -65,7 +79,7 @@ impl EarlierAgain {
     }
 }
 
-/// Rows of the robustness table that a level runs again where nothing is said.
+/// Rows of such a table that a level runs again where nothing is said.
 const ROWS: [(Level, usize); 2] = [(Level::Sampled, 1), (Level::Full, 3)];
 
 /// What executing some of an input again brought.
@@ -82,8 +96,7 @@ pub(super) struct Again {
 impl Earlier {
     /// Says in words what is the author's word before anything is executed; passages are judged like records.
     pub(super) fn on_trust(&self) -> Option<String> {
-        (self.made == Made::Robustness)
-            .then(|| "the robustness table is the author's word".to_owned())
+        self.made.table().map(|table| format!("the {table} is the author's word"))
     }
 
     /// Executes at `level` what it takes of this, from `replanned`.
@@ -94,11 +107,11 @@ impl Earlier {
         options: &Options,
     ) -> Again {
         let of = self.units.len();
-        let count = match (self.made, level, options.rows) {
-            (Made::Passages, Level::Full, _) | (Made::Robustness, _, Some(Rows::All)) => of,
-            (Made::Passages, ..) => options.sample.min(of),
-            (Made::Robustness, _, Some(Rows::Drawn(rows))) => rows.min(of),
-            (Made::Robustness, ..) => {
+        let count = match (self.made.table(), level, options.rows) {
+            (None, Level::Full, _) | (Some(_), _, Some(Rows::All)) => of,
+            (None, ..) => options.sample.min(of),
+            (Some(_), _, Some(Rows::Drawn(rows))) => rows.min(of),
+            (Some(_), ..) => {
                 let rows = ROWS.iter().find(|(of, _)| *of == level).map_or(0, |(_, rows)| *rows);
                 rows.min(of)
             }
@@ -106,6 +119,7 @@ impl Earlier {
         let label = match self.made {
             Made::Passages => "verify-passages",
             Made::Robustness => "verify-robustness",
+            Made::Multiverse => "verify-multiverse",
         };
         let drawn = Seeds::new(options.seed, Vec::new()).stream(label).places(count, of);
         if drawn.is_empty() {
@@ -125,13 +139,9 @@ impl Earlier {
         };
         let faults: Vec<Fault> = compared.into_iter().flatten().collect();
         let equal = drawn.len() - faults.len();
-        let on_trust = match self.on_trust() {
-            Some(_) if drawn.len() < of => Some(format!(
-                "the robustness table is the author's word but for {} of its {of} rows",
-                drawn.len()
-            )),
-            _ => None,
-        };
+        let on_trust = self.on_trust().filter(|_| drawn.len() < of);
+        let on_trust =
+            on_trust.map(|words| format!("{words} but for {} of its {of} rows", drawn.len()));
         let executed = EarlierAgain {
             made: self.made,
             path: self.path.clone(),

@@ -80,6 +80,9 @@ pub enum MakeAgainError {
     /// The table has no such row.
     #[error("no row {0}")]
     NoRow(usize),
+    /// A run of the table makes no plan, for another reason than its values.
+    #[error("no plan {0}: {1}")]
+    Unplanned(String, ReplanError),
     /// The trials could not be executed.
     #[error(transparent)]
     Run(#[from] RunError),

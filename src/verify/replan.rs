@@ -1,16 +1,18 @@
 //! The pipeline that `run` goes, gone again from a bundle: manifest, plan, trials, results.
 
+mod varied;
+
 use super::pipeline::{ContentError, MakeAgainError, ReplanError, ReplicateError};
 use super::{Earlier, Made, Pipeline, PlannedTrial, Replanned};
 use crate::bundle::{Bundle, BundleContent, BundlePath, Fault, assemble, format};
-use crate::claims::sensitivity::{Run, in_words};
+use crate::claims::multiverse::Found;
 use crate::digest::Sha256Digest;
 use crate::document::Source;
 use crate::manifest::{self, CalibrationTrials, Experiment, InputError, Inputs, WrittenIn};
 use crate::plan::{ENGINE_VERSION, Plan, Selection, engine_version};
 use crate::rng::Seeds;
 use crate::runner::{Observer, RunError, Scheduler, Silent};
-use crate::studies::{self, TrialRecord, TrialSpec, planned_calibration, records_digest};
+use crate::studies::{self, TrialRecord, TrialSpec, planned_calibration};
 use std::cell::RefCell;
 
 /// This program's own pipeline.
@@ -251,46 +253,6 @@ impl Study<'_> {
         });
         compared.collect()
     }
-
-    /// Runs the rows at `indices` of the robustness table again.
-    fn vary_again(&self, indices: &[usize]) -> Result<Vec<Option<Fault>>, MakeAgainError> {
-        let known = self.plan.experiment.sensitivity.as_ref();
-        let known = known.ok_or(MakeAgainError::NoTable)?;
-        let path = BundlePath::input(file_name(&known.as_written));
-        let runs = known.table.runs();
-        let compared = indices.iter().map(|&index| {
-            let run = runs.get(index).ok_or(MakeAgainError::NoRow(index))?;
-            let (expected, found) = match self.varied_plan(run) {
-                Err(problem) => ("a run that can be planned again".to_owned(), problem.to_string()),
-                Ok(plan) => {
-                    let records = self.run(&plan.trials)?;
-                    let verdicts = assemble::verdicts(&plan, &records)?;
-                    match run.difference(&run.with(&verdicts, records_digest(&records))) {
-                        Some(difference) => difference,
-                        None => return Ok(None),
-                    }
-                }
-            };
-            let fault = Fault::new(&path, format!("{expected}, {run}"), found);
-            let hint = "the robustness table was not made by these runs: `reenact vary` makes it";
-            Ok(Some(fault.hint(hint)))
-        });
-        compared.collect()
-    }
-
-    /// Makes the plan of a run of the robustness table.
-    fn varied_plan(&self, run: &Run) -> Result<Plan, ReplanError> {
-        let (source, mut overrides) = written(self.bundle)?;
-        let value_of = |path: &str, tried: &str| {
-            let assumptions = &self.plan.experiment.assumptions;
-            let of_it = assumptions.iter().filter(|assumption| assumption.path == path);
-            let stated = of_it.flat_map(|a| &a.range).find(|value| in_words(value) == tried);
-            // JSON is YAML too.
-            stated.map_or_else(|| tried.to_owned(), ToString::to_string)
-        };
-        overrides.extend(run.overrides(&value_of));
-        Ok(Plan::of(resolve(&source, &overrides, &Sealed(self.bundle))?))
-    }
 }
 
 /// Returns the last part of a path.
@@ -350,7 +312,17 @@ impl Replanned for Study<'_> {
             let units = runs.iter().map(|run| conditions * u64::from(run.trials)).collect();
             Earlier { made: Made::Robustness, path: path(&known.as_written), units }
         });
-        passages.chain(robustness).collect()
+        let multiverse = self.plan.experiment.multiverse.iter().map(|known| {
+            let conditions = self.plan.experiment.conditions.len() as u64;
+            let trials = conditions * u64::from(known.table.trials);
+            let units = known.table.runs().map(|draw| match draw.found {
+                Found::Judged { .. } => trials,
+                Found::Refused(_) => 0,
+            });
+            let path = path(&known.as_written);
+            Earlier { made: Made::Multiverse, path, units: units.collect() }
+        });
+        passages.chain(robustness).chain(multiverse).collect()
     }
 
     fn make_again(
@@ -361,6 +333,7 @@ impl Replanned for Study<'_> {
         match made {
             Made::Passages => self.drive_again(indices),
             Made::Robustness => self.vary_again(indices),
+            Made::Multiverse => self.draw_again(indices),
         }
     }
 

@@ -62,7 +62,8 @@ impl Run {
 
     /// Returns what `run --set` needs to do it again; `value_of` gives a setting's value as YAML by its path and its words.
     pub fn overrides(&self, value_of: &dyn Fn(&str, &str) -> String) -> Vec<String> {
-        let mut set = vec!["sensitivity=null".to_owned(), format!("trials={}", self.trials)];
+        let trials = format!("trials={}", self.trials);
+        let mut set = vec!["sensitivity=null".to_owned(), "multiverse=null".to_owned(), trials];
         if let Some((setting, tried)) = &self.moved {
             set.push(format!("{setting}={}", value_of(setting, tried)));
         }
@@ -225,6 +226,7 @@ mod tests {
             runs[2].overrides(&words),
             [
                 "sensitivity=null",
+                "multiverse=null",
                 "trials=15",
                 "parameters.sensing.drive-noise=<parameters.sensing.drive-noise gaussian>"
             ]

@@ -39,8 +39,8 @@ pub(in crate::cli) struct VerifyArgs {
     /// Trials to draw at level 4, 1 or more
     #[arg(long, value_name = "N", default_value_t = 59)]
     pub(in crate::cli) sample: usize,
-    /// Rows of the robustness table (`sensitivity:`) to run again from level 4 on, each a run of the study at another value
-    /// of one setting: a number or `all` [default: 1 at level 4, 3 at level 5]
+    /// Rows of the robustness table (`sensitivity:`) and of the multiverse table (`multiverse:`) to run again from level 4 on,
+    /// each a run of the study at other values of its settings: a number or `all` [default: 1 at level 4, 3 at level 5]
     #[arg(long, value_name = "N|all", value_parser = rows)]
     pub(in crate::cli) robustness: Option<Rows>,
     /// The reviewer's seed for drawing them, and the experiment's at level 6 [default: a fresh one, printed]

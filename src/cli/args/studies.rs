@@ -86,8 +86,14 @@ pub(in crate::cli) struct LockArgs {
 
 #[derive(Debug, Args)]
 pub(in crate::cli) struct VaryArgs {
-    /// The manifest; what is found is written beside it, as NAME.sensitivity.csv
+    /// The manifest; what is found is written beside it, as NAME.sensitivity.csv (with `--joint`, NAME.multiverse.csv)
     pub(in crate::cli) manifest: PathBuf,
+    /// Change all these settings at once instead of one at a time, in N draws of a Latin hypercube over their ranges
+    #[arg(long, value_name = "N")]
+    pub(in crate::cli) joint: Option<usize>,
+    /// Seed of the draws, which the table records; the trials keep the manifest's [default: the manifest's]
+    #[arg(long, value_name = "S", requires = "joint")]
+    pub(in crate::cli) seed: Option<u64>,
     /// Trials per condition, of the values chosen too [default: the manifest's]
     #[arg(long, value_name = "N")]
     pub(in crate::cli) trials: Option<u32>,

@@ -1,5 +1,7 @@
 //! `reenact vary`: the claims of a manifest, judged again with one assumption at a time moved to each other value that
-//! its `range` states.
+//! its `range` states, or with all of them drawn together.
+
+mod joint;
 
 use super::execution::{Execution, Times, jobs};
 use crate::bundle::assemble;
@@ -30,21 +32,14 @@ pub(in crate::cli) fn run(
     let execution = Execution::new(args.jobs, args.no_cache, environment)?;
     let study = Study { args, execution, terminal };
     let chosen = study.experiment(&[])?;
+    study.check(&chosen)?;
+    if let Some(draws) = args.joint {
+        return study.draw(chosen, draws);
+    }
     let assumptions: Vec<Assumption> =
         chosen.assumptions.iter().filter(|a| !a.range.is_empty()).cloned().collect();
-    let name = args.manifest.display();
-    if assumptions.is_empty() {
-        return Err(Failure::not_understood(format!(
-            "{name}: no assumption states a `range`; write other values that could as well have been chosen, as in \
-             `{{value: 0.05, why: ..., range: [0.02, 0.1]}}`"
-        )));
-    }
-    if chosen.claims.is_empty() {
-        return Err(Failure::not_understood(format!("{name}: there is no claim to judge")));
-    }
     let trials = chosen.trials;
     let values: usize = assumptions.iter().map(|a| a.range.len()).sum();
-    let named = study.names_its_sensitivity()?;
     let (at_chosen, chosen_records) = study.verdicts(chosen)?;
     let mut found = Sensitivity::default();
     for assumption in &assumptions {
@@ -68,15 +63,7 @@ pub(in crate::cli) fn run(
         }
     }
     let path = args.manifest.with_extension("sensitivity.csv");
-    load::write(&path, found.to_csv().as_bytes())?;
-    let advice = if named {
-        String::new()
-    } else {
-        format!(
-            "\nadd `sensitivity: {}` to the manifest, so that bundles and reports tell it",
-            file_name(&path)
-        )
-    };
+    let advice = study.write(&path, &found.to_csv(), "sensitivity")?;
     terminal.result(&format!(
         "wrote {}: {} judged at {} of {}, {} per condition{advice}\n",
         path.display(),
@@ -96,13 +83,34 @@ struct Study<'a> {
 }
 
 impl Study<'_> {
-    /// Reads the experiment with these values replaced. What an earlier call found is not read: it may not exist yet.
+    /// Refuses a manifest in which nothing is left open, or nothing claimed.
+    fn check(&self, chosen: &Experiment) -> Result<(), Failure> {
+        let name = self.args.manifest.display();
+        if chosen.assumptions.iter().all(|assumption| assumption.range.is_empty()) {
+            return Err(Failure::not_understood(format!(
+                "{name}: no assumption states a `range`; write other values that could as well have been chosen, as in \
+                 `{{value: 0.05, why: ..., range: [0.02, 0.1]}}`"
+            )));
+        }
+        if chosen.claims.is_empty() {
+            return Err(Failure::not_understood(format!("{name}: there is no claim to judge")));
+        }
+        Ok(())
+    }
+
+    /// Reads the experiment with these values replaced.
     fn experiment(&self, set: &[String]) -> Result<Experiment, Failure> {
-        let mut set = set.to_vec();
-        set.push("sensitivity=null".to_owned());
-        set.extend(self.args.trials.map(|n| format!("trials={n}")));
         let calibrator = self.execution.calibrator();
-        load::manifest(&self.args.manifest, &set, calibrator, self.terminal).map(|l| l.experiment)
+        load::manifest(&self.args.manifest, &self.overrides(set), calibrator, self.terminal)
+            .map(|loaded| loaded.experiment)
+    }
+
+    /// Adds what holds for every run. What an earlier call found is not read: it may not exist yet.
+    fn overrides(&self, set: &[String]) -> Vec<String> {
+        let mut set = set.to_vec();
+        set.extend(["sensitivity=null", "multiverse=null"].map(str::to_owned));
+        set.extend(self.args.trials.map(|n| format!("trials={n}")));
+        set
     }
 
     /// Returns the verdicts on the claims of `experiment`, and the digest of the records that they follow from.
@@ -116,10 +124,18 @@ impl Study<'_> {
         Ok((verdicts, records_digest(&records)))
     }
 
-    fn names_its_sensitivity(&self) -> Result<bool, Failure> {
+    /// Writes what was found beside the manifest; returns what to do where the manifest does not name it under `key`.
+    fn write(&self, path: &Path, table: &str, key: &str) -> Result<String, Failure> {
         let source = load::text(&self.args.manifest)?;
         let tree = crate::document::read(&source);
-        Ok(tree.is_ok_and(|tree| tree.root.get("sensitivity").is_some()))
+        let is_named = tree.is_ok_and(|tree| tree.root.get(key).is_some());
+        load::write(path, table.as_bytes())?;
+        Ok(if is_named {
+            String::new()
+        } else {
+            let name = file_name(path);
+            format!("\nadd `{key}: {name}` to the manifest, so that bundles and reports tell it")
+        })
     }
 }
 
