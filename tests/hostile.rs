@@ -135,14 +135,14 @@ fn nothing_is_shown_of_files_of_another_kind() {
     let as_part = |part: &str| match part {
         "robot" => TINY.replace("robots/kobuki.urdf", "secret.urdf"),
         "world" => TINY.replace("{file: worlds/basic.yaml, layers: [walls]}", "{file: secret}"),
-        "sensitivity" => format!("{TINY}sensitivity: secret\n"),
+        "sensitivity" | "multiverse" => format!("{TINY}{part}: secret\n"),
         _ => format!("{TINY}published:\n  numbers: secret\n"),
     };
     for secret in secrets {
         for name in ["secret", "secret.urdf", "secret.lock"] {
             sandbox.write(name, secret);
         }
-        for part in ["robot", "world", "sensitivity", "published"] {
+        for part in ["robot", "world", "sensitivity", "multiverse", "published"] {
             sandbox.write("part.yaml", as_part(part));
             let answer = sandbox.run_reading(&["check", "part.yaml"]);
             let told = refused(&answer).to_lowercase();

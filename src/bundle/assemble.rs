@@ -3,8 +3,9 @@
 
 use super::content::{BundleContent, Person, Publication, SealedCondition, SealedInput};
 use super::{format, wall_time};
+use crate::claims::multiverse::Explanation;
 use crate::claims::observations::TrialsTableError;
-use crate::claims::{self, ClaimVerdict, Multiverse, Observations};
+use crate::claims::{self, ClaimVerdict, Observations};
 use crate::json::AsWritten;
 use crate::manifest::InputKind;
 use crate::plan::{Plan, Selection, engine_version};
@@ -205,18 +206,19 @@ fn results(plan: &Plan, records: &[TrialRecord], verdicts: &[ClaimVerdict]) -> R
     }
     files.push(("claims.json".to_owned(), verdicts_json(verdicts)));
     if let Some(known) = &experiment.multiverse {
-        let tidy = known.table.tidy();
+        let explanation = known.table.explanation();
+        let tidy = explanation.tidy();
         described.push(DescribedTable {
             key: vec!["claim".to_owned(), "setting".to_owned()],
             ..DescribedTable::of(
                 &tidy,
                 in_results("multiverse.csv"),
                 ("Claims and choices", "one claim and one choice that all draws change"),
-                Multiverse::tidy_column,
+                Explanation::tidy_column,
             )
         });
         files.push(("multiverse.csv".to_owned(), tidy.to_csv().into_bytes()));
-        files.push(("multiverse.md".to_owned(), known.table.to_markdown().into_bytes()));
+        files.push(("multiverse.md".to_owned(), explanation.to_markdown().into_bytes()));
     }
     (files, described)
 }

@@ -4,7 +4,7 @@ use super::claims::as_judged;
 use super::experiment::{Assumption, Experiment, JointDraws};
 use super::input::InputKind;
 use super::library::normalised;
-use super::parameters::is_whole;
+use super::parameters::{is_whole, schema_of};
 use super::resolver::Resolver;
 use crate::claims::Multiverse;
 use crate::claims::multiverse::Choice;
@@ -19,10 +19,11 @@ impl Experiment {
 }
 
 fn choices(kind: StudyKind, assumptions: &[Assumption]) -> Vec<Choice> {
+    let schema = schema_of(kind);
     let open = assumptions.iter().filter(|assumption| !assumption.range.is_empty());
     open.map(|assumption| {
         let Assumption { path, value, range, .. } = assumption;
-        Choice::new(path, value, range, is_whole(kind, path))
+        Choice::new(path, value, range, is_whole(&schema, path))
     })
     .collect()
 }

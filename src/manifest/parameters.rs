@@ -190,10 +190,10 @@ pub(super) fn schema_of(kind: StudyKind) -> Value {
     schema.to_value()
 }
 
-/// Returns whether the parameter of a study at `path` (`parameters.mapping.particles`) takes whole numbers only.
-pub(super) fn is_whole(kind: StudyKind, path: &str) -> bool {
-    let schema = schema_of(kind);
-    let mut found = &schema;
+/// Returns whether the parameter at `path` (`parameters.mapping.particles`) takes whole numbers only, by the `schema` of its study
+/// ([`schema_of`]).
+pub(super) fn is_whole(schema: &Value, path: &str) -> bool {
+    let mut found = schema;
     for step in path.split('.').skip(1) {
         match found.get("properties").and_then(|groups| groups.get(step)) {
             Some(inner) => found = inner,
@@ -295,7 +295,8 @@ mod tests {
 
     #[test]
     fn whole_numbers_are_told_from_others_by_the_schema() {
-        let whole = |kind: &str, path: &str| is_whole(StudyKind::named(kind).unwrap(), path);
+        let whole =
+            |kind: &str, path: &str| is_whole(&schema_of(StudyKind::named(kind).unwrap()), path);
         assert!(whole("prior-map", "parameters.mapping.particles"));
         assert!(whole("deadline", "parameters.pilot.back-off-times"));
         assert!(!whole("deadline", "parameters.rules.schedule.seconds-per-edge"));

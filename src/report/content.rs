@@ -37,6 +37,8 @@ pub struct ReportContent {
     /// How other values of the assumptions were tried: `15 trials per condition, one setting at a time, same noise`;
     /// `None` where none were.
     pub tried_with: Option<String>,
+    /// The claims where all choices change at once; `None` where that was not tried.
+    pub multiverse: Option<Matrix>,
     /// Where it all comes from.
     pub provenance: Provenance,
     /// What an evaluator checks, and how.
@@ -207,4 +209,76 @@ pub struct FlipRow {
     pub from: String,
     /// Its verdict at the value tried.
     pub to: String,
+}
+
+/// Claims and choices: what holds where all choices change at once, and which of them explains it.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct Matrix {
+    /// How the draws were made, in words.
+    pub made: String,
+    /// How to read it.
+    pub rules: String,
+    /// The file of the draws, as the manifest names it.
+    pub file: String,
+    /// The choices.
+    pub columns: Vec<MatrixColumn>,
+    /// The claims.
+    pub rows: Vec<MatrixRow>,
+    /// Draws that were not run.
+    pub refused: Vec<RefusedDraw>,
+}
+
+/// One choice.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct MatrixColumn {
+    /// Where it stands in the manifest: `parameters.pilot.lookahead-m`.
+    pub path: String,
+    /// The same without what stands before all of them.
+    pub name: String,
+}
+
+/// One claim.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct MatrixRow {
+    /// Its id.
+    pub claim: String,
+    /// Its verdict at the values chosen.
+    pub chosen: String,
+    /// How many draws give each verdict.
+    pub counts: Vec<(String, u64)>,
+    /// How many draws support it: `16 of 23 (49 to 85 %)`.
+    pub support: String,
+    /// The same in percent; `None` where no draw was judged.
+    pub percent: Option<f64>,
+    /// What of it is explained: `estimate` or `support`.
+    pub explained: String,
+    /// Which choice explains most, or why none does.
+    pub most: String,
+    /// What each choice explains.
+    pub cells: Vec<MatrixCell>,
+}
+
+/// What one choice explains of one claim.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct MatrixCell {
+    /// `62 %*`; empty where there is nothing to explain.
+    pub text: String,
+    /// How dark it is drawn, 0 to 4.
+    pub shade: usize,
+    /// Whether it is more than chance would make it.
+    pub stands_out: bool,
+}
+
+/// A draw that the manifest's own checks refuse.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub struct RefusedDraw {
+    /// Its number.
+    pub draw: usize,
+    /// Why.
+    pub reason: String,
 }

@@ -217,6 +217,7 @@ pub(super) fn content() -> ReportContent {
         }],
         assumptions: assumptions(),
         tried_with: Some("15 trials per condition, one setting at a time, same noise".into()),
+        multiverse: Some(multiverse::tests::sample()),
         provenance: Provenance {
             facts: vec![("engine version".into(), "1".into()), ("sealed by".into(), "reenact 0.1.0".into())],
             overrides: vec!["seed=7".into()],

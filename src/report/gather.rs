@@ -6,7 +6,7 @@ use super::content::{
 };
 use super::evaluation::{Evaluated, evaluation};
 use super::origin::provenance;
-use super::{claim, limits};
+use super::{claim, limits, multiverse};
 use crate::bundle::{Bundle, Fault, assemble};
 use crate::plan::{Plan, Selection};
 use crate::studies::{Exhibit, Findings, TrialRecord};
@@ -87,6 +87,7 @@ pub fn content_of(
         machine_claims,
         assumptions: assumptions(experiment),
         tried_with: tried_with(experiment),
+        multiverse: multiverse::matrix(experiment),
         provenance: provenance(bundle, plan),
     })
 }

@@ -15,6 +15,7 @@ mod gather;
 mod graph_still;
 mod inline_svg;
 mod limits;
+mod multiverse;
 mod origin;
 mod pack;
 pub mod page;
@@ -28,8 +29,8 @@ pub use bag::{Bag, BagError, bag, bag_under_banner};
 pub use banner::{drawing_under_banner, page_under_banner};
 pub use claim::{ClaimRow, ComparisonRow, NoVerdicts};
 pub use content::{
-    Answer, Assumption, Citation, Figure, FlipRow, Headline, OutcomeCount, ReportContent,
-    ReportTable, Tried,
+    Answer, Assumption, Citation, Figure, FlipRow, Headline, Matrix, MatrixCell, MatrixColumn,
+    MatrixRow, OutcomeCount, RefusedDraw, ReportContent, ReportTable, Tried,
 };
 pub use difference::difference_page;
 pub use evaluation::{Badge, Command, Evaluation};

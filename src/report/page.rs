@@ -141,9 +141,10 @@ const SCRIPT: &str =
     concat!(include_str!("templates/page.js"), include_str!("templates/report/report.js"));
 
 /// The page's own parts, by the name under which it includes them.
-const PARTS: [(&str, &str); 4] = [
+const PARTS: [(&str, &str); 5] = [
     ("claims", include_str!("templates/report/claims.html")),
     ("tables", include_str!("templates/report/tables.html")),
+    ("multiverse", include_str!("templates/report/multiverse.html")),
     ("provenance", include_str!("templates/report/provenance.html")),
     ("evaluation", include_str!("templates/report/evaluation.html")),
 ];
@@ -195,6 +196,7 @@ mod tests {
             "id=\"table-1\"",
             "id=\"coverage\"",
             "id=\"assumptions\"",
+            "id=\"multiverse\"",
             "id=\"provenance\"",
             "id=\"evaluation\"",
         ];
@@ -220,6 +222,9 @@ mod tests {
             "class=\"wide\">gains here go with those printed",
             "Apart from them, of <strong>1</strong>",
             "15 trials per condition, one setting at a time, same noise",
+            "24 draws of 2 choices, 15 trials per condition, seed 7; 1 draw was refused",
+            "<td class=\"choice shade-4 out\">",
+            "draw 3: it is too fast",
         ] {
             at(text);
         }
@@ -253,6 +258,7 @@ mod tests {
             "id=\"tables\"",
             "id=\"figures\"",
             "id=\"assumptions\"",
+            "id=\"multiverse\"",
             "id=\"limits\"",
             "id=\"evaluation\"",
         ] {

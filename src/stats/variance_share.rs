@@ -62,20 +62,21 @@ impl Groups {
         if k < 2.0 || n <= k || values.iter().all(|value| value == first) {
             return None;
         }
-        let centre = mean(values);
-        let total: f64 = values.iter().map(|value| (value - centre) * (value - centre)).sum();
-        let between = self.between(values, centre);
-        let within = (total - between).max(0.0) / (n - k);
-        Some(((between - (k - 1.0) * within) / total).clamp(0.0, 1.0))
+        let deviations = deviations(values);
+        Some(self.share_of(&deviations, sum_of_squares(&deviations)))
     }
 
-    /// Returns the sum of squares between the groups.
-    fn between(&self, values: &[f64], centre: f64) -> f64 {
+    /// Computes the same of deviations from the mean, whose squares add up to `total`; there must be something to explain.
+    fn share_of(&self, deviations: &[f64], total: f64) -> f64 {
+        let (n, k) = (length(deviations), length(&self.sizes));
         let mut sums = vec![0.0; self.sizes.len()];
-        for (group, value) in self.of.iter().zip(values) {
-            sums[*group] += value - centre;
+        for (group, deviation) in self.of.iter().zip(deviations) {
+            sums[*group] += deviation;
         }
-        sums.iter().zip(&self.sizes).map(|(sum, size)| sum * sum / real(*size)).sum()
+        let between: f64 =
+            sums.iter().zip(&self.sizes).map(|(sum, size)| sum * sum / real(*size)).sum();
+        let within = (total - between).max(0.0) / (n - k);
+        ((between - (k - 1.0) * within) / total).clamp(0.0, 1.0)
     }
 }
 
@@ -100,16 +101,17 @@ pub fn shares(
     stream: &mut Stream,
 ) -> Vec<Option<Share>> {
     let found: Vec<Option<f64>> = factors.iter().map(|groups| groups.share(values)).collect();
-    let largest = |values: &[f64]| {
-        factors.iter().filter_map(|groups| groups.share(values)).fold(0.0, f64::max)
-    };
+    let able: Vec<&Groups> =
+        factors.iter().zip(&found).filter(|(_, share)| share.is_some()).map(|(f, _)| f).collect();
     let mut reached = vec![1_u64; factors.len()];
-    if found.iter().any(Option::is_some) {
-        let mut shuffled = values.to_vec();
+    if !able.is_empty() {
+        let mut shuffled = deviations(values);
+        let total = sum_of_squares(&shuffled);
         for _ in 0..orders {
             stream.shuffle(&mut shuffled);
+            let shares = able.iter().map(|groups| groups.share_of(&shuffled, total));
             // Sums in another order differ in their last bits.
-            let largest = largest(&shuffled) + 1e-12;
+            let largest = shares.fold(0.0, f64::max) + 1e-12;
             for (count, share) in reached.iter_mut().zip(&found) {
                 *count += u64::from(share.is_some_and(|share| largest >= share));
             }
@@ -119,6 +121,15 @@ pub fn shares(
     let of =
         |(share, count): (Option<f64>, u64)| Some(Share { share: share?, p: real(count) / all });
     found.into_iter().zip(reached).map(of).collect()
+}
+
+fn deviations(values: &[f64]) -> Vec<f64> {
+    let centre = mean(values);
+    values.iter().map(|value| value - centre).collect()
+}
+
+fn sum_of_squares(values: &[f64]) -> f64 {
+    values.iter().map(|value| value * value).sum()
 }
 
 #[cfg(test)]

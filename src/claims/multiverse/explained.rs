@@ -17,7 +17,7 @@ pub const STANDS_OUT: f64 = 0.05;
 const ORDERS: u32 = 999;
 
 /// Draws in a bin of a choice that is a number, at least.
-const IN_A_BIN: usize = 8;
+const IN_A_BIN: usize = 4;
 
 /// Bins of a choice that is a number, at most.
 const MOST_BINS: usize = 8;
@@ -93,10 +93,20 @@ impl Explained {
     }
 }
 
+/// What the draws say of every claim.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Explanation<'a> {
+    /// The draws.
+    pub multiverse: &'a Multiverse,
+    /// What they say, claim by claim.
+    pub claims: Vec<Explained>,
+}
+
 impl Multiverse {
     /// Returns what the draws say of every claim.
-    pub fn explained(&self) -> Vec<Explained> {
-        self.claims.iter().enumerate().map(|(i, id)| self.explain(i, id)).collect()
+    pub fn explanation(&self) -> Explanation<'_> {
+        let claims = self.claims.iter().enumerate().map(|(i, id)| self.explain(i, id));
+        Explanation { multiverse: self, claims: claims.collect() }
     }
 
     fn explain(&self, place: usize, id: &str) -> Explained {
@@ -140,24 +150,18 @@ impl Multiverse {
             let mut stream = Seeds::new(self.seed, coordinates).stream("multiverse-orders");
             shares(&found, &factors, ORDERS, &mut stream)
         };
-        let chosen = self.chosen_verdict(place);
+        let chosen = match &self.chosen.found {
+            Found::Judged { verdicts, .. } => verdict(verdicts).map(|verdict| verdict.judgement),
+            Found::Refused(_) => None,
+        };
         Explained {
             claim: id.to_owned(),
-            chosen,
+            chosen: chosen.unwrap_or(Judgement::CannotBeTested),
             counts,
             support,
             quantity,
             known: known.len(),
             shares,
-        }
-    }
-
-    fn chosen_verdict(&self, place: usize) -> Judgement {
-        match &self.chosen.found {
-            Found::Judged { verdicts, .. } => {
-                verdicts.get(place).map_or(Judgement::CannotBeTested, |verdict| verdict.judgement)
-            }
-            Found::Refused(_) => Judgement::CannotBeTested,
         }
     }
 }
@@ -229,7 +233,7 @@ pub(super) mod tests {
 
     #[test]
     fn what_decides_a_claim_explains_most_of_it() {
-        let explained = known(48).explained();
+        let explained = known(48).explanation().claims;
         let [speed, mode, always] = &explained[..] else { panic!("three claims") };
         assert_eq!((speed.count(Judgement::Supported), speed.judged()), (24, 48));
         assert_eq!(speed.share(), Some(0.5));
@@ -251,10 +255,10 @@ pub(super) mod tests {
 
     #[test]
     fn few_draws_explain_nothing() {
-        let explained = known(7).explained();
+        let explained = known(7).explanation().claims;
         assert!(explained.iter().all(|claim| claim.shares == [None, None, None]));
         assert_eq!(explained[0].judged(), 7);
-        let none = known(0).explained();
+        let none = known(0).explanation().claims;
         assert_eq!((none[0].support, none[0].share()), (None, None));
         assert_eq!(none[0].chosen, Judgement::Supported);
     }
@@ -265,7 +269,7 @@ pub(super) mod tests {
         for draw in &mut study.draws[..8] {
             draw.found = Found::refused("too fast");
         }
-        let explained = study.explained();
+        let explained = study.explanation().claims;
         assert!(explained.iter().all(|claim| claim.judged() == 40 && claim.known == 40));
         assert_eq!(explained[0].most().unwrap().0, 0);
     }
@@ -274,7 +278,8 @@ pub(super) mod tests {
     fn numbers_are_binned_and_names_are_not() {
         let numbers: Vec<String> = (0..40).map(|i| format!("{}", f64::from(i) / 7.0)).collect();
         let numbers: Vec<&str> = numbers.iter().map(String::as_str).collect();
-        assert_eq!(groups(&numbers).count(), 5);
+        assert_eq!(groups(&numbers).count(), 8);
+        assert_eq!(groups(&numbers[..20]).count(), 5);
         let few: Vec<&str> = (0..40).map(|i| ["1", "2", "3"][i % 3]).collect();
         assert_eq!(groups(&few).count(), 3);
         let names: Vec<&str> = (0..16).map(|i| ["a", "b", "c"][i % 3]).collect();

@@ -1,7 +1,7 @@
 //! What the draws say, as tables: claims down, choices across.
 
 use super::draws::Multiverse;
-use super::explained::{Explained, LEAST_DRAWS, STANDS_OUT};
+use super::explained::{Explained, Explanation, LEAST_DRAWS, STANDS_OUT};
 use crate::claims::verdict::{Judgement, rounded};
 use crate::stats::variance_share::Share;
 use crate::table::{Column, Table, Value};
@@ -10,12 +10,12 @@ use crate::table::{Column, Table, Value};
 const PARAMETERS: &str = "parameters.";
 
 /// Returns the name by which a table's column or a line knows the setting at `path`.
-pub(super) fn short(path: &str) -> &str {
+pub fn short(path: &str) -> &str {
     path.strip_prefix(PARAMETERS).unwrap_or(path)
 }
 
 /// Writes a share as a whole percentage; what stands out has a mark.
-pub(super) fn percent(share: f64) -> String {
+fn percent(share: f64) -> String {
     format!("{:.0} %", 100.0 * share)
 }
 
@@ -99,13 +99,15 @@ impl Multiverse {
             100.0 * STANDS_OUT
         )
     }
+}
 
+impl Explanation<'_> {
     /// Returns the matrix as a document shows it: a row a claim, a column a choice.
     pub fn matrix(&self) -> Table {
         let first = ["claim", "as chosen", "draws that support it", "contradict it", "explained"];
-        let settings = self.settings.iter().map(|path| short(path).to_owned());
+        let settings = self.multiverse.settings.iter().map(|path| short(path).to_owned());
         let mut table = Table::new(first.into_iter().map(str::to_owned).chain(settings));
-        for claim in self.explained() {
+        for claim in &self.claims {
             let mut row: Vec<Value> = vec![
                 claim.claim.as_str().into(),
                 claim.chosen.to_string().into(),
@@ -113,7 +115,9 @@ impl Multiverse {
                 i64::try_from(claim.count(Judgement::Contradicted)).ok().into(),
                 claim.quantity.name().into(),
             ];
-            row.extend((0..self.settings.len()).map(|place| Value::from(claim.cell(place))));
+            row.extend(
+                (0..self.multiverse.settings.len()).map(|place| Value::from(claim.cell(place))),
+            );
             table.push(row);
         }
         table
@@ -123,18 +127,18 @@ impl Multiverse {
     pub fn to_markdown(&self) -> String {
         let mut text = format!(
             "# Claims where all choices change at once\n\n{}.\n\n{}\n",
-            self.in_words(),
+            self.multiverse.in_words(),
             self.matrix().to_markdown()
         );
-        for claim in self.explained() {
+        for claim in &self.claims {
             text.push_str(&format!(
                 "- {}: {}.\n",
                 claim.claim,
-                claim.most_in_words(&self.settings)
+                claim.most_in_words(&self.multiverse.settings)
             ));
         }
-        text.push_str(&format!("\n{}.\n", self.rules()));
-        for (draw, reason) in self.refused() {
+        text.push_str(&format!("\n{}.\n", self.multiverse.rules()));
+        for (draw, reason) in self.multiverse.refused() {
             text.push_str(&format!("\nRefused {draw}: {reason}.\n"));
         }
         text
@@ -145,8 +149,8 @@ impl Multiverse {
         let mut table = Table::new(COLUMNS);
         let number = |x: f64| Value::from(rounded(x).as_f64());
         let count = |n: u64| Value::from(i64::try_from(n).ok());
-        for claim in self.explained() {
-            for (place, setting) in self.settings.iter().enumerate() {
+        for claim in &self.claims {
+            for (place, setting) in self.multiverse.settings.iter().enumerate() {
                 let share = claim.shares[place];
                 let mut row: Vec<Value> =
                     vec![claim.claim.as_str().into(), claim.chosen.to_string().into()];
@@ -166,7 +170,7 @@ impl Multiverse {
         table
     }
 
-    /// Describes a column of [`Self::tidy`].
+    /// Describes a column of [`Explanation::tidy`].
     pub fn tidy_column(name: &str) -> Option<Column> {
         let verdicts = Judgement::ALL.map(|verdict| verdict.to_string());
         let nothing = "there is nothing to explain, or too few draws to explain it by";
@@ -209,7 +213,7 @@ impl Multiverse {
     }
 }
 
-/// The columns of [`Multiverse::tidy`].
+/// The columns of [`Explanation::tidy`].
 const COLUMNS: [&str; 13] = [
     "claim",
     "as-chosen",
@@ -234,15 +238,15 @@ mod tests {
 
     #[test]
     fn a_matrix_has_claims_down_and_choices_across() {
-        insta::assert_snapshot!(known(48).matrix().to_markdown());
+        insta::assert_snapshot!(known(48).explanation().matrix().to_markdown());
     }
 
     #[test]
     fn every_column_for_programs_is_described() {
-        let table = known(48).tidy();
+        let table = known(48).explanation().tidy();
         assert_eq!(table.rows.len(), 9);
         for column in &table.columns {
-            assert!(Multiverse::tidy_column(column).is_some(), "{column}");
+            assert!(Explanation::tidy_column(column).is_some(), "{column}");
         }
         let csv = table.to_csv();
         assert!(csv.contains("\nby-mode,supported,24,24,0,0,"), "{csv}");
@@ -252,7 +256,12 @@ mod tests {
     fn what_explains_most_is_said_or_why_nothing_does() {
         let mut study = known(48);
         let words = |study: &Multiverse| -> Vec<String> {
-            study.explained().iter().map(|claim| claim.most_in_words(&study.settings)).collect()
+            study
+                .explanation()
+                .claims
+                .iter()
+                .map(|claim| claim.most_in_words(&study.settings))
+                .collect()
         };
         let [speed, mode, always] = &words(&study)[..] else { panic!("three claims") };
         assert!(speed.starts_with("drive.speed-m-s explains 9"), "{speed}");

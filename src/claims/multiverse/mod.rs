@@ -17,5 +17,6 @@ mod table;
 
 pub use choice::{Choice, Domain, Scale};
 pub use draws::{Draw, Found, Multiverse, Verdict};
-pub use explained::{Explained, LEAST_DRAWS, Quantity, STANDS_OUT};
+pub use explained::{Explained, Explanation, LEAST_DRAWS, Quantity, STANDS_OUT};
+pub use matrix::short;
 pub use table::{MOST_CELLS, MultiverseError, Prefix, prefixed};

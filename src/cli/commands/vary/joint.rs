@@ -2,7 +2,7 @@
 
 use super::Study;
 use crate::claims::Judgement;
-use crate::claims::multiverse::{Choice, Explained, Found, MOST_CELLS, Multiverse};
+use crate::claims::multiverse::{Choice, Found, MOST_CELLS, Multiverse};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::load;
 use crate::cli::terminal::counted;
@@ -106,7 +106,7 @@ fn in_words(choices: &[Choice], found: &Multiverse) -> String {
             text.push_str(&format!("  {draw}: {reason}\n"));
         }
     }
-    let claims = found.explained();
+    let claims = found.explanation().claims;
     let id = claims.iter().map(|claim| claim.claim.chars().count()).max().unwrap_or(0).max(5);
     text.push_str("\nDraws that support each claim (95 % interval)\n");
     text.push_str(&format!(
@@ -122,7 +122,7 @@ fn in_words(choices: &[Choice], found: &Multiverse) -> String {
             claim.support_in_words(),
             claim.count(Judgement::Contradicted),
         ));
-        let words = Explained::most_in_words(claim, &found.settings);
+        let words = claim.most_in_words(&found.settings);
         text.push_str(&format!("  {:id$}  {words}\n", ""));
     }
     text.push('\n');
