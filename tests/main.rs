@@ -18,6 +18,7 @@ mod inference;
 mod interrupted;
 mod maneuvers;
 mod manifests;
+mod multiverse;
 mod original_worlds;
 mod sandbox;
 mod standards;
