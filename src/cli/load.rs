@@ -30,6 +30,9 @@ pub(super) struct Loaded {
     pub(super) experiment: Experiment,
 }
 
+/// A manifest that was understood with its warnings, or all faults of one that was not.
+pub(super) type Understood = Result<(Loaded, Vec<Diagnostic>), Vec<Diagnostic>>;
+
 /// Reads and resolves `manifest` with the values of `set` replaced; every fault goes to stderr.
 pub(super) fn manifest(
     manifest: &Path,
@@ -59,7 +62,7 @@ pub(super) fn resolved(
     set: &[String],
     calibrator: Calibrator<'_>,
     terminal: Terminal,
-) -> Result<Result<(Loaded, Vec<Diagnostic>), Vec<Diagnostic>>, Failure> {
+) -> Result<Understood, Failure> {
     let source = text(manifest)?;
     let folder = manifest.parent().unwrap_or(Path::new("")).to_owned();
     let sealed = sealed_beside(manifest, &folder)?;

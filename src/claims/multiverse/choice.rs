@@ -54,24 +54,21 @@ impl Choice {
     pub fn new(setting: &str, chosen: &Value, range: &[Value], whole: bool) -> Self {
         let stated: Vec<&Value> = std::iter::once(chosen).chain(range).collect();
         let numbers: Option<Vec<f64>> = stated.iter().map(|value| value.as_f64()).collect();
-        let domain = match numbers {
-            Some(numbers) => {
-                let low = numbers.iter().copied().fold(f64::INFINITY, f64::min);
-                let high = numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-                // 0.2 to 0.6 is threefold, though not in binary.
-                let is_wide = low > 0.0 && high >= WIDE * low * (1.0 - 1e-9);
-                let scale = if is_wide { Scale::Logarithmic } else { Scale::Linear };
-                Domain::Interval { low, high, scale, whole }
-            }
-            None => {
-                let mut values: Vec<Value> = Vec::new();
-                for value in stated {
-                    if !values.contains(value) {
-                        values.push(value.clone());
-                    }
+        let domain = if let Some(numbers) = numbers {
+            let low = numbers.iter().copied().fold(f64::INFINITY, f64::min);
+            let high = numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            // 0.2 to 0.6 is threefold, though not in binary.
+            let is_wide = low > 0.0 && high >= WIDE * low * (1.0 - 1e-9);
+            let scale = if is_wide { Scale::Logarithmic } else { Scale::Linear };
+            Domain::Interval { low, high, scale, whole }
+        } else {
+            let mut values: Vec<Value> = Vec::new();
+            for value in stated {
+                if !values.contains(value) {
+                    values.push(value.clone());
                 }
-                Domain::OneOf(values)
             }
+            Domain::OneOf(values)
         };
         Self { setting: setting.to_owned(), chosen: chosen.clone(), domain }
     }

@@ -137,7 +137,7 @@ impl Multiverse {
                 "line 2: expected draw `{CHOSEN}`, found nothing"
             )));
         };
-        let first = Line { header: &header, line, fields };
+        let first = Line { header: &header, number: line, fields };
         first.is_draw(CHOSEN)?;
         let seed = first.text(1).parse().map_err(|_| first.fault(1, "a seed"))?;
         let trials = first.text(2).parse().map_err(|_| first.fault(2, "a number of trials"))?;
@@ -147,7 +147,7 @@ impl Multiverse {
         }
         let mut draws = Vec::new();
         for (line, fields) in rows {
-            let row = Line { header: &header, line, fields };
+            let row = Line { header: &header, number: line, fields };
             // A draw that is left out would be one that nobody counts.
             row.is_draw(&draws.len().to_string())?;
             for (column, name) in [(1, "seed"), (2, "trials")] {
@@ -166,7 +166,7 @@ impl Multiverse {
 /// One line of the table.
 struct Line<'a> {
     header: &'a Header,
-    line: usize,
+    number: usize,
     fields: &'a [Value],
 }
 
@@ -177,7 +177,7 @@ impl Line<'_> {
 
     fn fault(&self, column: usize, expected: &str) -> MultiverseError {
         let name = self.header.columns().nth(column).unwrap_or_default();
-        let (line, found) = (self.line, self.text(column));
+        let (line, found) = (self.number, self.text(column));
         MultiverseError(format!("line {line}: expected {expected} as {name}, found `{found}`"))
     }
 
@@ -303,9 +303,11 @@ pub(in crate::claims) mod tests {
             "line 2: expected nothing for a draw that is refused as records, found \
              `a000000000000000000000000000000000000000000000000000000000000000`"
         );
-        let header = |letter| (0..400).map(|i| format!(",{letter}{i}")).collect::<String>();
-        let claims: String = (0..2).map(|i| format!(",verdict:{i},estimate:{i}")).collect();
-        let wide = format!("draw,seed,trials,refused,records{}{claims}\n", header('p'));
+        let settings: Vec<String> = (0..400).map(|i| format!("p{i}")).collect();
+        let settings = settings.join(",");
+        let wide = format!(
+            "draw,seed,trials,refused,records,{settings},verdict:0,estimate:0,verdict:1,estimate:1\n"
+        );
         let row = format!("{}\n", ",".repeat(5 + 400 + 4 - 1));
         let wide = wide + &row.repeat(MOST_CELLS / 800 + 1);
         assert_eq!(

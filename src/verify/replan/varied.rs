@@ -64,12 +64,12 @@ impl Study<'_> {
         let drawn = table.drawn_again(&choices);
         let compared = indices.iter().map(|&index| {
             let draw = table.runs().nth(index).ok_or(MakeAgainError::NoRow(index))?;
-            let difference = match table.misdrawn(draw, &drawn) {
-                Some(difference) => Some(difference),
-                None => {
-                    let found = self.found_at(draw, table.overrides(draw, &choices))?;
-                    table.difference(draw, &found)
-                }
+            let misdrawn = table.misdrawn(draw, &drawn);
+            let difference = if misdrawn.is_some() {
+                misdrawn
+            } else {
+                let found = self.found_at(draw, table.overrides(draw, &choices))?;
+                table.difference(draw, &found)
             };
             Ok(difference.map(|(expected, found)| {
                 // Below the header.

@@ -17,7 +17,7 @@ impl Study<'_> {
     pub(super) fn draw(&self, chosen: Experiment, draws: usize) -> Result<Exit, Failure> {
         let choices = chosen.choices();
         let seed = self.seed(&chosen)?;
-        self.check_draws(draws, choices.len(), chosen.claims.len())?;
+        check_draws(draws, choices.len(), chosen.claims.len())?;
         let drawn: Vec<Vec<Value>> =
             choices.iter().map(|choice| choice.draw(seed, draws)).collect();
         let trials = chosen.trials;
@@ -58,21 +58,6 @@ impl Study<'_> {
         Ok(seed)
     }
 
-    fn check_draws(&self, draws: usize, choices: usize, claims: usize) -> Result<(), Failure> {
-        if draws == 0 {
-            return Err(Failure::not_understood("`--joint` must be at least 1, found 0"));
-        }
-        let most = MOST_CELLS / (choices * claims).max(1);
-        if draws >= most {
-            return Err(Failure::not_understood(format!(
-                "`--joint` must be less than {most} for {} and {}, found {draws}",
-                counted(choices, "choice"),
-                counted(claims, "claim")
-            )));
-        }
-        Ok(())
-    }
-
     /// Returns what is found where each of `choices` has the value beside it.
     fn found_at(&self, choices: &[Choice], values: &[Value]) -> Result<Found, Failure> {
         // JSON is YAML too.
@@ -91,6 +76,22 @@ impl Study<'_> {
             }
         }
     }
+}
+
+/// Refuses no draw at all, and more than a table may have.
+fn check_draws(draws: usize, choices: usize, claims: usize) -> Result<(), Failure> {
+    if draws == 0 {
+        return Err(Failure::not_understood("`--joint` must be at least 1, found 0"));
+    }
+    let most = MOST_CELLS / (choices * claims).max(1);
+    if draws >= most {
+        return Err(Failure::not_understood(format!(
+            "`--joint` must be less than {most} for {} and {}, found {draws}",
+            counted(choices, "choice"),
+            counted(claims, "claim")
+        )));
+    }
+    Ok(())
 }
 
 /// Writes what was drawn, and for every claim how many draws support it and which choice explains most.
