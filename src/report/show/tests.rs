@@ -120,9 +120,9 @@ fn a_world_with_tags_is_drawn_as_building_and_graph() {
             "regions: 20 rooms, 4 corridors",
             "tags: 148",
             "graph: 49 vertices (26 corridor, 23 room), 49 edges (24 through doors), 1 loop",
-            "start A: (10.5, 37.8) m, heading -90.0 deg, at C2c, 2 edges from the goal",
-            "start B: (24.1, 22.9) m, heading 0.0 deg, at C1f, 6 edges from the goal",
-            "start C: (47, 40.3) m, heading -90.0 deg, at C4d, 15 edges from the goal",
+            "start A: (10.5, 27.9) m, heading -90.0 deg, at C2a, 2 edges from the goal",
+            "start B: (19.6, 22.9) m, heading 0.0 deg, at C1e, 5 edges from the goal",
+            "start C: (37.8, 22.9) m, heading 0.0 deg, at C1i, 9 edges from the goal",
         ]
     );
     assert!(world.warnings.is_empty(), "{:?}", world.warnings);
