@@ -136,7 +136,13 @@ fn module_of(file: &str) -> Vec<String> {
     stem.split('/').map(str::to_owned).collect()
 }
 
+/// What studies may share: it infers from their proposals and has no robot of its own, so no mind either.
+const INFERENCE: &str = "inference";
+
 fn is_mind(file: &str) -> bool {
+    if file.strip_prefix("studies/").is_some_and(|rest| rest.starts_with(INFERENCE)) {
+        return false;
+    }
     let in_study = file.strip_prefix("studies/").and_then(|rest| rest.split_once('/'));
     MIND.iter().any(|part| file.starts_with(part))
         || in_study.is_some_and(|(_, part)| {
@@ -352,6 +358,7 @@ fn studies() -> Vec<String> {
         .map(|entry| entry.unwrap().path())
         .filter(|path| path.is_dir())
         .map(|path| path.file_name().unwrap().to_str().unwrap().to_owned())
+        .filter(|name| name != INFERENCE)
         .collect()
 }
 

@@ -14,7 +14,7 @@ use crate::studies::inference::{
 };
 use crate::table::Table;
 use serde_json::Value;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 const PLACE: &str = "/infer";
@@ -39,16 +39,25 @@ pub(super) fn propose(
         return conditions;
     };
     let Some(inference) = inference(doc, published, faults) else { return conditions };
+    if conditions.iter().any(|condition| !condition.setup.is_model()) {
+        let message = "an inference rests on trials at graph level";
+        let fault = faults.key_fault(PLACE, message).label("these are of another kind");
+        faults.push(fault.help("add `mission: {simulation: graph}` to the parameters"));
+    }
+    // What is refused in many buildings is told of the first one.
+    let mut told = BTreeSet::new();
     for condition in &conditions {
-        if !condition.setup.is_model() {
-            let message = "an inference rests on trials at graph level";
-            let fault = faults.key_fault(PLACE, message).label("these are of another kind");
-            faults.push(fault.help("add `mission: {simulation: graph}` to the parameters"));
-        }
         for (path, why) in proposing.refuses(&condition.setup, &inference) {
-            let place =
-                path.map_or(PLACE.to_owned(), |path| step(&format!("{PLACE}/priors"), &path));
-            faults.at_key(&place, why, &format!("for `{}`", condition.condition));
+            let place = path
+                .as_ref()
+                .map_or(PLACE.to_owned(), |path| step(&format!("{PLACE}/priors"), path));
+            let label = match condition.condition.to_string().as_str() {
+                "" => "cannot be inferred".to_owned(),
+                name => format!("for `{name}`"),
+            };
+            if told.insert((path, why.clone())) {
+                faults.at_key(&place, why, &label);
+            }
         }
     }
     if faults.any_error() {
@@ -76,34 +85,37 @@ fn inference(
     published: &BTreeMap<String, Table>,
     faults: &mut Faults<'_>,
 ) -> Option<Inference> {
-    let observed = observed(doc, published, faults)?;
+    // Each part is read whatever the others are, so that all faults are told at once.
+    let observed = observed(doc, published, faults);
     let priors: Vec<Option<Prior>> =
         doc.priors.0.iter().map(|(path, prior)| self::prior(path, prior, faults)).collect();
-    let priors: Vec<Prior> = priors.into_iter().collect::<Option<_>>()?;
-    let mut hold_outs = vec![HoldOut::nothing(&observed)];
+    let columns: Vec<&str> = doc.by.iter().map(String::as_str).collect();
+    let kinds: Vec<&str> = std::iter::once(HoldOut::CHEQUERBOARD).chain(columns.clone()).collect();
     for (index, kind) in doc.hold_out.iter().enumerate() {
-        match (kind.as_str(), observed.factor(kind)) {
-            ("chequerboard", _) => hold_outs.extend(HoldOut::chequerboard(&observed)),
-            (_, Some(factor)) => hold_outs.extend(HoldOut::levels_of(&observed, factor)),
-            _ => {
-                let known: Vec<&str> = std::iter::once("chequerboard")
-                    .chain(doc.by.iter().map(String::as_str))
-                    .collect();
-                let message = format!("nothing is held out by `{kind}`");
-                let place = format!("{PLACE}/hold-out/{index}");
-                faults.unknown(&place, message, "no column of the observed table", kind, &known);
-            }
+        if !kinds.contains(&kind.as_str()) {
+            let message = format!("nothing is held out by `{kind}`");
+            let place = format!("{PLACE}/hold-out/{index}");
+            let label = "neither `chequerboard` nor one of `by`";
+            faults.unknown(&place, message, label, kind, &kinds);
         }
     }
     for (index, name) in doc.baseline.iter().enumerate() {
-        if observed.factor(name).is_none() {
-            let known: Vec<&str> = doc.by.iter().map(String::as_str).collect();
+        if !columns.contains(&name.as_str()) {
             let message = format!("the observed table has no column `{name}`");
             let place = format!("{PLACE}/baseline/{index}");
-            faults.unknown(&place, message, "not one of `by`", name, &known);
+            faults.unknown(&place, message, "not one of `by`", name, &columns);
         }
     }
-    (!faults.any_error()).then(|| Inference {
+    let observed = observed?;
+    let priors: Vec<Prior> = priors.into_iter().collect::<Option<_>>()?;
+    let mut hold_outs = vec![HoldOut::nothing(&observed)];
+    for kind in &doc.hold_out {
+        match observed.factor(kind) {
+            Some(factor) => hold_outs.extend(HoldOut::levels_of(&observed, factor)),
+            None => hold_outs.extend(HoldOut::chequerboard(&observed)),
+        }
+    }
+    Some(Inference {
         observed,
         priors,
         concentration: doc.concentration.clone(),
@@ -197,12 +209,20 @@ fn observed(
         let fits = |cell: &ObservedCell| only.iter().all(|(f, value)| cell.levels[*f] == *value);
         let found = cells.iter_mut().filter(|cell| fits(cell));
         let count = found.map(|cell| cell.left_out = true).count();
-        if count == 0 {
-            faults.at(
-                &place,
-                "no cell of the observed table is left out by this",
-                "has no such cell",
-            );
+        if count == 0 && only.len() == out.only.len() {
+            let has = only.iter().map(|(factor, _)| {
+                let mut levels: Vec<&str> = Vec::new();
+                for cell in &cells {
+                    if !levels.contains(&cell.levels[*factor].as_str()) {
+                        levels.push(&cell.levels[*factor]);
+                    }
+                }
+                format!("`{}`: {}", doc.by[*factor], levels.join(", "))
+            });
+            let help = format!("the table has {}", has.collect::<Vec<_>>().join("; "));
+            let fault = faults.fault(&place, "nothing is left out by this");
+            let fault = fault.label("expected values of a cell of the observed table");
+            faults.push(fault.help(help));
         }
         let only = out.only.iter().map(|(name, value)| (name.clone(), value.0.clone())).collect();
         left_out.push(LeftOut { only, why: out.why.clone() });
@@ -220,12 +240,12 @@ fn prior(path: &str, doc: &ChoicePriorDoc, faults: &mut Faults<'_>) -> Option<Pr
             Distribution::LogUniform([low, high])
         }
         _ => {
-            let message = format!("the prior of `{path}` is none");
+            let message = format!("nothing can be drawn from the prior of `{path}`");
             let label =
                 "expected one of `values`, `uniform: [LOW, HIGH]` and `log-uniform: [LOW, HIGH]`";
             let fault = faults.fault(&place, message).label(label);
-            faults
-                .push(fault.help("LOW is below HIGH, and above 0 where the logarithm is uniform"));
+            let help = "give one of them; LOW is below HIGH, and above 0 where it is log-uniform";
+            faults.push(fault.help(help));
             return None;
         }
     };

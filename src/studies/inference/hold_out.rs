@@ -16,10 +16,10 @@ pub struct HoldOut {
     pub held: Vec<bool>,
 }
 
-/// The name of the hold-out by every second cell.
-pub(super) const CHEQUERBOARD: &str = "chequerboard";
-
 impl HoldOut {
+    /// The name of the hold-out by every second cell.
+    pub const CHEQUERBOARD: &str = "chequerboard";
+
     /// Returns the one that holds out nothing.
     pub fn nothing(observed: &Observed) -> Self {
         let held = vec![false; observed.cells.len()];
@@ -35,7 +35,7 @@ impl HoldOut {
             }
         }
         let half = |odd: usize, name: &str| Self {
-            kind: CHEQUERBOARD.to_owned(),
+            kind: Self::CHEQUERBOARD.to_owned(),
             name: name.to_owned(),
             held: sums.iter().map(|sum| sum % 2 == odd).collect(),
         };

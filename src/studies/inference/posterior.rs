@@ -1,6 +1,5 @@
 //! All proposals together: what the observed table says of what was not known.
 
-use super::hold_out::CHEQUERBOARD;
 use super::setup::draw_counts;
 use super::{Drawn, HoldOut, Inference, InferenceSetup, Proposal, Shared};
 use crate::condition::Condition;
@@ -243,16 +242,6 @@ impl<'a> Posterior<'a> {
             .collect()
     }
 
-    /// Returns the effective number of buildings behind the posterior of each simulated table.
-    pub fn simulated_sizes(&self) -> Vec<f64> {
-        let size = |table: usize| {
-            let logarithms: Vec<f64> =
-                self.tried.iter().map(|t| t.proposal.simulated[table].ln_evidence).collect();
-            effective_size(&weights(&logarithms))
-        };
-        (0..self.inference().simulated_tables as usize).map(size).collect()
-    }
-
     /// Returns the share of tables made by prior draws that are farther from the other prior draws than the observed one is, in the
     /// mean; NaN where there are too few.
     pub fn prior_tail(&self) -> f64 {
@@ -372,11 +361,4 @@ pub struct Held {
     pub means: Option<f64>,
     /// The number of buildings that the weights are worth.
     pub effective: f64,
-}
-
-impl Held {
-    /// Returns whether it is half of a chequerboard.
-    pub fn is_chequerboard(&self) -> bool {
-        self.kind == CHEQUERBOARD
-    }
 }

@@ -45,13 +45,22 @@ impl Layout for InferenceTable {
         for row in cells.iter().take(most) {
             lines.push(row.iter().map(brief).collect());
         }
-        let left = (0..declared.len())
-            .filter(|at| cells.iter().any(|row| matches!(row.get(*at), Some(Value::Text(_)))));
+        let left: Vec<usize> = (0..declared.len())
+            .filter(|at| cells.iter().any(|row| matches!(row.get(*at), Some(Value::Text(_)))))
+            .collect();
+        // A page has numbers in its cells, so that all words name the row.
+        let naming: Vec<usize> =
+            (0..declared.len()).filter(|at| *at < keys || left.contains(at)).collect();
         let numeric: Vec<usize> = (keys..declared.len())
             .filter(|at| cells.iter().any(|row| row[*at].as_f64().is_some()))
             .collect();
         let row = |row: &Row| GridRow {
-            label: row[..keys].iter().map(ToString::to_string).collect::<Vec<_>>().join(", "),
+            label: naming
+                .iter()
+                .filter(|at| row[**at] != Value::Missing)
+                .map(|at| in_label(&declared[*at].name, &row[*at]))
+                .collect::<Vec<_>>()
+                .join(", "),
             cells: numeric
                 .iter()
                 .map(|at| GridCell {
@@ -60,12 +69,16 @@ impl Layout for InferenceTable {
                 })
                 .collect(),
         };
+        let meanings = numeric.iter().map(|at| {
+            let Column { name, meaning, .. } = &declared[*at];
+            format!("; {name}: {}{}", meaning[..1].to_lowercase(), &meaning[1..])
+        });
         let grid = Grid {
-            quantity: "at graph level".to_owned(),
-            decimals: 2,
-            row_header: declared[..keys]
+            quantity: std::iter::once("At graph level".to_owned()).chain(meanings).collect(),
+            decimals: if matches!(self.show, Shown::Numbers | Shown::Posterior) { 4 } else { 2 },
+            row_header: naming
                 .iter()
-                .map(|column| column.name.as_str())
+                .map(|at| declared[*at].name.as_str())
                 .collect::<Vec<_>>()
                 .join(", "),
             columns: numeric.iter().map(|at| declared[*at].name.clone()).collect(),
@@ -91,6 +104,12 @@ impl Layout for InferenceTable {
             Shown::Numbers | Shown::Posterior => None,
         }
     }
+}
+
+/// Returns a word as it stands in the name of a row: a bare `yes` says what is so.
+fn in_label(column: &str, value: &Value) -> String {
+    let word = value.to_string();
+    if word == "yes" { column.to_owned() } else { word }
 }
 
 fn brief(value: &Value) -> Value {

@@ -63,9 +63,9 @@ fn points_are_one_in_every_stratum() {
     let mut stream = Seeds::new(3, Vec::new()).stream("points");
     let points = stratified(2, 8, &mut stream);
     for prior in 0..2 {
-        let mut strata: Vec<u32> = points.iter().map(|p| (p[prior] * 8.0) as u32).collect();
-        strata.sort_unstable();
-        assert_eq!(strata, [0, 1, 2, 3, 4, 5, 6, 7]);
+        let mut strata: Vec<f64> = points.iter().map(|p| (p[prior] * 8.0).floor()).collect();
+        strata.sort_by(f64::total_cmp);
+        assert_eq!(strata, [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
     }
 }
 

@@ -18,9 +18,11 @@ pub(super) fn summary_in_words(rows: &[Row]) -> Option<String> {
     let (tried, effective) =
         (value_of(rows, "proposals")?, value_of(rows, "effective number of proposals")?);
     let largest = value_of(rows, "largest weight")?;
+    let proposals =
+        if tried > 1.0 { format!("{tried} proposals are") } else { "1 proposal is".to_owned() };
     let mut words = format!(
-        "Everything here is at graph level: proposals, no results. {tried} proposals are worth {effective:.1} of equal weight; the \
-         largest has {largest:.3} of it."
+        "Everything here is at graph level: proposals, no results. {proposals} worth {effective:.1} of equal weight; the largest has \
+         {largest:.3} of it."
     );
     if effective < HANDFUL || largest > HEAVY {
         words.push_str(

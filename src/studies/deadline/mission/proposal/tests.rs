@@ -29,7 +29,9 @@ fn trees(count: usize) -> Vec<Topology> {
 
 fn without_goals(topology: &Topology) -> Vec<Intersection> {
     let mut places = places(topology);
-    places.iter_mut().for_each(|place| place.is_goal = false);
+    for place in &mut places {
+        place.is_goal = false;
+    }
     places
 }
 
