@@ -10,7 +10,7 @@ use crate::json::AsWritten;
 use crate::manifest::InputKind;
 use crate::plan::{Plan, Selection, engine_version};
 use crate::studies::{Dictionary, Exhibit, Findings, Outcome, TrialRecord};
-use crate::table::{DescribedTable, Table};
+use crate::table::{Column, DescribedTable, Table};
 use serde_json::json;
 
 /// Makes the content of the bundle of `plan`, whose trials yielded `records` (in plan order).
@@ -310,11 +310,20 @@ fn described_inputs(plan: &Plan) -> Vec<DescribedTable> {
             | InputKind::World
             | InputKind::Prior => {
                 let words = ("Numbers that the paper prints", "one printed number");
-                DescribedTable::of(&table, path, words, |name| dictionary.of_published(name))
+                DescribedTable::of(&table, path, words, |name| {
+                    dictionary.of_published(name).or_else(|| cell_of_observed(plan, name))
+                })
             }
         });
     }
     described
+}
+
+/// Describes a column that tells apart the cells of the table that an inference observes.
+fn cell_of_observed(plan: &Plan, name: &str) -> Option<Column> {
+    let by = plan.experiment.document.node("/infer/by")?.to_json();
+    let is_level = by.as_array()?.iter().any(|level| level == name);
+    is_level.then(|| Column::text(name, "Level of the paper's table: tells its cells apart"))
 }
 
 /// Writes a list of verdicts as bundles hold it.
