@@ -316,15 +316,9 @@ impl Explorer {
         Some(Came { from: last.from, direction: last.leave.exit, opening: last.leave.opening })
     }
 
-    /// Returns how to pass `edge` at that speed. A plan knows no heading; the robot does: an edge across the corridor by
-    /// which it came leads into another corridor, whatever else comes up to the vertex.
+    /// Returns how to pass `edge` at that speed.
     fn leave(&self, edge: Edge, speed: Speed) -> Leave {
-        let turns =
-            |came: Came| came.opening == Opening::Corridor && came.direction.axis() != edge.axis();
-        let through = match self.map.through(&edge) {
-            Through::Corridor if self.came().is_some_and(turns) => Through::SideCorridor,
-            through => through,
-        };
+        let through = Came::through(self.came(), &self.map, &edge);
         let motion = self.expectations.motion(through, edge.side());
         Leave { exit: edge.direction, opening: edge.opening, through, motion, speed }
     }

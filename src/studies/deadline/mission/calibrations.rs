@@ -70,27 +70,13 @@ fn row(world: &str, pair: &Pair) -> Vec<Value> {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+mod tests {
     use super::*;
     use crate::world::{Region, RegionKind};
-    use std::collections::BTreeMap;
-
-    /// Returns a world with nothing in it.
-    pub(in super::super) fn hall(name: &str) -> World {
-        World {
-            name: name.to_owned(),
-            solids: Vec::new(),
-            regions: Vec::new(),
-            tags: Vec::new(),
-            starts: BTreeMap::new(),
-            goals: BTreeMap::new(),
-            warnings: Vec::new(),
-        }
-    }
 
     #[test]
     fn a_calibration_is_that_of_the_building_in_which_it_was_measured() {
-        let (world, mut other) = (Arc::new(hall("here")), hall("here"));
+        let (world, mut other) = (Arc::new(World::empty()), World::empty());
         let (name, kind) = ("C2".to_owned(), RegionKind::Corridor);
         other.regions.push(Region { name, kind, polygon: Vec::new() });
         let measured = Arc::new(Calibration::stand_in());
@@ -98,6 +84,6 @@ pub(super) mod tests {
         assert!(calibrations.of(&world).is_some());
         assert!(calibrations.of(&other).is_none(), "its name is not what it is");
         let csv = calibrations.to_csv();
-        assert!(csv.contains("\nhere,door-left,fast,any,0,0,0,6,6,6,0.02,0.02,0.02\n"), "{csv}");
+        assert!(csv.contains("\nempty,door-left,fast,any,0,0,0,6,6,6,0.02,0.02,0.02\n"), "{csv}");
     }
 }

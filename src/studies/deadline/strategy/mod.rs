@@ -16,9 +16,10 @@ pub use corridors_first::CorridorsFirst;
 pub use frontier::{Frontier, Ties};
 pub use normalized_frontier::NormalizedFrontier;
 
+use super::build_cmdp::Through;
 use super::intersection::Opening;
 use super::rules::Rules;
-use super::toposemantic_map::{ToposemanticMap, VertexId};
+use super::toposemantic_map::{Edge, ToposemanticMap, VertexId};
 use crate::geometry::Cardinal;
 use crate::rng::Stream;
 use complete_corridor::CompletingCorridors;
@@ -66,6 +67,19 @@ pub struct Came {
     pub direction: Cardinal,
     /// What the exit led through.
     pub opening: Opening,
+}
+
+impl Came {
+    /// Returns what `edge` leads through for a robot that `came` so to where it begins. A plan knows no heading; the robot does:
+    /// an edge across the corridor by which it came leads into another corridor, whatever else comes up to the vertex.
+    pub fn through(came: Option<Self>, map: &ToposemanticMap, edge: &Edge) -> Through {
+        let turns =
+            |came: Self| came.opening == Opening::Corridor && came.direction.axis() != edge.axis();
+        match map.through(edge) {
+            Through::Corridor if came.is_some_and(turns) => Through::SideCorridor,
+            through => through,
+        }
+    }
 }
 
 /// 𝒱 of section 5, the vertices with edges (v, v∅), relative to the current vertex.

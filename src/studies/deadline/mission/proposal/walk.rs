@@ -7,8 +7,8 @@
 
 use crate::geometry::Cardinal;
 use crate::rng::Stream;
-use crate::studies::deadline::build_cmdp::{Maneuvers, Motion, Through};
-use crate::studies::deadline::intersection::{Intersection, Opening};
+use crate::studies::deadline::build_cmdp::{Maneuvers, Motion};
+use crate::studies::deadline::intersection::Intersection;
 use crate::studies::deadline::is_entry;
 use crate::studies::deadline::rules::{InitialEdges, Rules};
 use crate::studies::deadline::strategy::{Came, Chooser};
@@ -144,13 +144,7 @@ impl Walker<'_> {
     }
 
     fn step(&mut self, edge: Edge, leg: &mut Leg) -> Option<()> {
-        // As the mind does: an edge across the corridor by which it came leads into another corridor.
-        let turns =
-            |came: Came| came.opening == Opening::Corridor && came.direction.axis() != edge.axis();
-        let through = match self.map.through(&edge) {
-            Through::Corridor if self.came.is_some_and(turns) => Through::SideCorridor,
-            through => through,
-        };
+        let through = Came::through(self.came, &self.map, &edge);
         let maneuvers = self.site.maneuvers;
         match maneuvers.motion(through, edge.side()) {
             Motion::Corridor => leg.corridors += 1,
