@@ -136,17 +136,18 @@ fn module_of(file: &str) -> Vec<String> {
     stem.split('/').map(str::to_owned).collect()
 }
 
-/// What studies may share: it infers from their proposals and has no robot of its own, so no mind either.
+/// What studies share: it infers from what they propose, and is none.
 const INFERENCE: &str = "inference";
+/// Its setup hands on the world and the robot of a study's own.
+const INFERENCE_SETUP: &str = "studies/inference/setup.rs";
 
 fn is_mind(file: &str) -> bool {
-    if file.strip_prefix("studies/").is_some_and(|rest| rest.starts_with(INFERENCE)) {
-        return false;
-    }
     let in_study = file.strip_prefix("studies/").and_then(|rest| rest.split_once('/'));
     MIND.iter().any(|part| file.starts_with(part))
         || in_study.is_some_and(|(_, part)| {
-            !["mod.rs", "study.rs", "mission.rs"].contains(&part) && !part.starts_with("mission/")
+            !["mod.rs", "study.rs", "mission.rs"].contains(&part)
+                && !part.starts_with("mission/")
+                && file != INFERENCE_SETUP
         })
 }
 

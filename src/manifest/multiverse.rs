@@ -6,6 +6,7 @@ use super::input::InputKind;
 use super::library::normalised;
 use super::parameters::{is_whole, schema_of};
 use super::resolver::Resolver;
+use super::sensitivity::warn_of_age;
 use crate::claims::Multiverse;
 use crate::claims::multiverse::Choice;
 use crate::claims::sensitivity::in_words;
@@ -45,15 +46,8 @@ pub(super) fn read(resolver: &mut Resolver<'_>, assumptions: &[Assumption]) -> O
     let claims: Vec<String> = as_judged(resolver).into_iter().map(|claim| claim.id).collect();
     let gone = table.claims.iter().filter(|id| !claims.contains(id));
     stale.extend(gone.map(|id| format!("it judges `{id}`, which is no claim of this manifest")));
-    if let Some(first) = stale.first() {
-        let more = match stale.len() - 1 {
-            0 => String::new(),
-            more => format!(" (and {more} more)"),
-        };
-        let fault = resolver.faults.fault(PLACE, format!("`{path}` is out of date: {first}{more}"));
-        let help = "`reenact vary --joint` on this manifest writes it anew";
-        resolver.faults.push(fault.warning().help(help));
-    }
+    let help = "`reenact vary --joint` on this manifest writes it anew";
+    warn_of_age(resolver, (PLACE, path), &stale, help);
     Some(JointDraws { as_written: normalised(path), table })
 }
 

@@ -44,14 +44,24 @@ pub(super) fn read(resolver: &mut Resolver<'_>, assumptions: &[Assumption]) -> O
     let gone = sensitivity.claims();
     let gone = gone.into_iter().filter(|id| !claims.iter().any(|claim| claim == id));
     stale.extend(gone.map(|id| format!("it judges `{id}`, which is no claim of this manifest")));
-    if let Some(first) = stale.first() {
-        let more = match stale.len() - 1 {
-            0 => String::new(),
-            more => format!(" (and {more} more)"),
-        };
-        let fault = resolver.faults.fault(PLACE, format!("`{path}` is out of date: {first}{more}"));
-        let help = "`reenact vary` on this manifest writes it anew; a report shows what still fits";
-        resolver.faults.push(fault.warning().help(help));
-    }
+    let help = "`reenact vary` on this manifest writes it anew; a report shows what still fits";
+    warn_of_age(resolver, (PLACE, path), &stale, help);
     Some(Robustness { as_written: normalised(path), table: sensitivity })
+}
+
+/// Warns that the file `path`, named at `place`, is out of date, where something of it is `stale`: the first in words, the others
+/// counted.
+pub(super) fn warn_of_age(
+    resolver: &mut Resolver<'_>,
+    (place, path): (&'static str, &str),
+    stale: &[String],
+    help: &str,
+) {
+    let Some(first) = stale.first() else { return };
+    let more = match stale.len() - 1 {
+        0 => String::new(),
+        more => format!(" (and {more} more)"),
+    };
+    let fault = resolver.faults.fault(place, format!("`{path}` is out of date: {first}{more}"));
+    resolver.faults.push(fault.warning().help(help));
 }

@@ -132,12 +132,15 @@ impl ReportTable {
     pub(crate) fn of(exhibit: Exhibit, section: &str, trials: usize) -> Self {
         let Exhibit { id, title, set, .. } = exhibit;
         let grid = set.grid;
+        // Cells over several conditions hold more than the trials of one.
+        let cells = grid.rows.iter().flat_map(|row| &row.cells);
+        let most = cells.filter_map(|cell| cell.ours.as_ref()?.n).max().unwrap_or(0);
         Self {
             id,
-            title: if grid.of_trials {
-                format!("{title} (n = {trials} trials a cell)")
-            } else {
-                title
+            title: match (grid.of_trials, most > trials as u64) {
+                (true, true) => format!("{title} (n = {most} trials a cell at most)"),
+                (true, false) => format!("{title} (n = {trials} trials a cell)"),
+                (false, _) => title,
             },
             source: match grid.source {
                 Source::Nowhere => String::new(),
