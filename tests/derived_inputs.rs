@@ -125,9 +125,8 @@ fn poison(honest: &Path, other: &Path, keys: &[reenact::digest::TrialKey]) {
     let (from, to) = (DirectoryStore::new(honest), DirectoryStore::new(other));
     for key in keys {
         let mut record = from.get(key).unwrap().unwrap();
-        for value in record.measures.values_mut().filter_map(Option::as_mut) {
-            *value *= 0.5;
-        }
+        let halved = record.measures.iter().map(|(name, value)| (name, value.map(|v| 0.5 * v)));
+        record.measures = halved.collect();
         to.put(&record).unwrap();
     }
 }

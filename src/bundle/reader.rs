@@ -29,7 +29,7 @@ fn list(faults: &[Fault]) -> String {
 
 /// The most memory (bytes) that a bundle's records may take: honest ones take about as much as their text, of which
 /// [`Limits`] leaves less.
-const HEAVIEST_RECORDS: usize = 128 << 20;
+const HEAVIEST_RECORDS: usize = 80 << 20;
 
 /// A readable bundle. That it is what it says is for `verify` to find out.
 ///

@@ -4,7 +4,7 @@ use super::Settings;
 use crate::bundle::{Bundle, BundlePath, Fault};
 use crate::claims::{ClaimVerdict, Judgement};
 use crate::digest::{FileDigest, ResultsDigest, Sha256Digest, TrialKey};
-use crate::studies::TrialRecord;
+use crate::studies::{Measures, TrialRecord};
 use serde::Deserialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -61,7 +61,7 @@ pub struct TrialAccount {
     /// How, in words, where the outcome alone does not say.
     pub cause: String,
     /// Its measures with their units in the names, and `sim-seconds`.
-    pub measures: BTreeMap<String, Option<f64>>,
+    pub measures: Measures,
     /// Its state hashes.
     pub chain: Vec<String>,
     /// Digest of its record's line.
@@ -84,7 +84,7 @@ impl TrialAccount {
     /// Returns the account of a record.
     fn of(record: TrialRecord, line: &str) -> Self {
         let mut measures = record.measures;
-        measures.insert(SIM_SECONDS.to_owned(), Some(record.sim_seconds));
+        measures.insert(SIM_SECONDS, Some(record.sim_seconds));
         Self {
             key: record.key,
             number: record.trial,

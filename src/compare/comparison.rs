@@ -170,7 +170,7 @@ fn metrics<'a>(a: &'a Account, b: &'a Account) -> BTreeSet<&'a str> {
     let mut names: BTreeSet<&str> = BTreeSet::new();
     for side in [a, b] {
         for trial in side.conditions.iter().flat_map(|c| &c.known) {
-            names.extend(trial.measures.keys().map(String::as_str));
+            names.extend(trial.measures.names());
         }
         for (_, file) in side.results.iter().filter(|(path, _)| path.starts_with("tables/")) {
             let header = file.text.as_deref().and_then(|text| text.lines().next());

@@ -9,7 +9,7 @@ use crate::claims::Judgement;
 use crate::digest::{FileDigest, ResultsDigest, Sha256Digest, TrialKey};
 use crate::document::{self, Content, Diagnostic, Source};
 use crate::json;
-use crate::studies::Outcome;
+use crate::studies::{Measures, Outcome};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -125,7 +125,8 @@ struct LockedTrial {
     #[schemars(with = "String")]
     sha256: Sha256Digest,
     /// Its measures.
-    measures: BTreeMap<String, Option<f64>>,
+    #[schemars(with = "BTreeMap<String, Option<f64>>")]
+    measures: Measures,
     /// Its state hashes, a minute of simulated time in a line.
     chain: Vec<String>,
 }

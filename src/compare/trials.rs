@@ -81,17 +81,17 @@ impl Trials {
         if is_same {
             return;
         }
-        let names: BTreeSet<&String> = a.measures.keys().chain(b.measures.keys()).collect();
+        let names: BTreeSet<&str> = a.measures.names().chain(b.measures.names()).collect();
         let mut measures = Vec::new();
         for name in names {
-            let value = |trial: &TrialAccount| trial.measures.get(name).copied().flatten();
+            let value = |trial: &TrialAccount| trial.measures.number(name);
             let (from, to) = (value(a), value(b));
             let admitted = match (from, to) {
                 (Some(from), Some(to)) => tolerances.admits(name, from, to),
                 (from, to) => from == to,
             };
             if !admitted {
-                measures.push(MeasureChange { name: name.clone(), change: Change { from, to } });
+                measures.push(MeasureChange { name: name.to_owned(), change: Change { from, to } });
             }
         }
         let outcome = (outcomes.0 != outcomes.1).then(|| Change::new(outcomes.0, outcomes.1));

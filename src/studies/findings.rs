@@ -44,7 +44,7 @@ impl<'a> Findings<'a> {
     /// Returns one row a trial: key, factors, number, outcome, then every measure.
     pub fn trials(&self) -> Table {
         let measures: BTreeSet<&str> =
-            self.records.iter().flat_map(|r| r.measures.keys().map(String::as_str)).collect();
+            self.records.iter().flat_map(|r| r.measures.names()).collect();
         let mut measures: Vec<&str> = measures.into_iter().collect();
         // `...-at-95` after `...-at-50`, and the whole trial's measures after those.
         measures.sort_by_key(|name| (!name.contains("-at-"), *name));
@@ -58,7 +58,7 @@ impl<'a> Findings<'a> {
             row.extend(self.factor_values(&record.condition));
             row.push(i64::from(record.trial).into());
             row.push(record.outcome.name().into());
-            row.extend(measures.iter().map(|&m| record.measures.get(m).copied().flatten().into()));
+            row.extend(measures.iter().map(|&m| record.measures.number(m).into()));
             table.push(row);
         }
         table

@@ -15,6 +15,7 @@ mod findings;
 #[cfg(test)]
 pub(crate) mod fixture;
 pub mod inference;
+mod measures;
 mod outcome;
 pub mod outcomes;
 pub mod prior_map;
@@ -37,6 +38,7 @@ pub use drawn::Drawn;
 pub use exhibit::{Exhibit, Grid, GridCell, GridRow, Layout, Lines, Measured, Set, Source};
 pub use factor_value::FactorValue;
 pub use findings::Findings;
+pub use measures::Measures;
 pub use outcome::{End, Outcome};
 pub use published_scatter::{PublishedScatter, Scale};
 pub use record::{

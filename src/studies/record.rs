@@ -1,13 +1,10 @@
 //! What a trial yields: one canonical JSON line.
 
-use super::Outcome;
+use super::{Measures, Outcome};
 use crate::condition::Condition;
 use crate::digest::{Hasher, Sha256Digest, TrialKey};
 use crate::json;
-use serde::de::{Error, MapAccess, Visitor};
-use serde::{Deserialize, Deserializer, Serialize};
-use std::collections::BTreeMap;
-use std::fmt;
+use serde::{Deserialize, Serialize};
 
 /// One point of a trial's curve.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -23,33 +20,6 @@ pub struct SeriesPoint {
 
 /// Bytes of the longest line that is read as a record: a day of simulated time takes half of that.
 const LONGEST_LINE: usize = 4 << 20;
-
-/// Measures that are read of one record: ten times what any study of ours has.
-const MOST_MEASURES: usize = 4096;
-
-/// Reads measures, and no more of them than a record has: a map takes many times what its text does.
-fn measures<'de, D: Deserializer<'de>>(
-    deserializer: D,
-) -> Result<BTreeMap<String, Option<f64>>, D::Error> {
-    struct Few;
-    impl<'de> Visitor<'de> for Few {
-        type Value = BTreeMap<String, Option<f64>>;
-        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-            f.write_str("measures by name")
-        }
-        fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
-            let mut measures = BTreeMap::new();
-            while let Some((name, value)) = map.next_entry()? {
-                measures.insert(name, value);
-                if measures.len() > MOST_MEASURES {
-                    return Err(Error::custom(format!("more than {MOST_MEASURES} measures")));
-                }
-            }
-            Ok(measures)
-        }
-    }
-    deserializer.deserialize_map(Few)
-}
 
 /// Computes the digest of records in plan order: of their lines, each ended by a line feed.
 pub fn records_digest(records: &[TrialRecord]) -> Sha256Digest {
@@ -88,8 +58,7 @@ pub struct TrialRecord {
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub cause: String,
     /// Named measures with their unit in the name; `null` where a trial never got there.
-    #[serde(deserialize_with = "measures")]
-    pub measures: BTreeMap<String, Option<f64>>,
+    pub measures: Measures,
     /// The trial's curve, at the first crossing of every whole percent and at every 10 s.
     pub series: Vec<SeriesPoint>,
     /// Simulated time the trial took (s).
@@ -128,7 +97,7 @@ impl TrialRecord {
             trial: spec.trial,
             outcome: Outcome::PANICKED,
             cause,
-            measures: BTreeMap::new(),
+            measures: Measures::new(),
             series: Vec::new(),
             sim_seconds: 0.0,
             chain: Vec::new(),
@@ -167,7 +136,7 @@ impl TrialRecord {
             + text(&self.cause)
             + self.chain.iter().map(text).sum::<usize>()
             + self.condition.iter().map(|(name, value)| text(name) + text(value)).sum::<usize>()
-            + self.measures.keys().map(|name| text(name) + ALLOCATION).sum::<usize>()
+            + self.measures.weight(ALLOCATION)
             + self.series.len() * size_of::<SeriesPoint>()
     }
 

@@ -139,8 +139,9 @@ fn shorten(text: &str) -> String {
 /// program itself.
 fn forged() -> Tree {
     let mut records = sample::records();
-    let distance = records[0].1[1].measures.get_mut("distance-m-at-90").unwrap();
-    *distance = Some(0.25);
+    let measures = &mut records[0].1[1].measures;
+    assert!(measures.number("distance-m-at-90").is_some());
+    measures.insert("distance-m-at-90", Some(0.25));
     let content = sample::content_of(sample::STUDY.as_bytes(), 7, &records);
     crate::bundle::seal(&content, &sample::circumstance()).unwrap().tree
 }

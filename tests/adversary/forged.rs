@@ -125,7 +125,7 @@ pub(crate) fn results() -> Vec<Case> {
             );
             reseal(tree);
         }),
-        resealed("state hashes of ninety megabytes", |tree| {
+        resealed("state hashes that fill the memory", |tree| {
             let hashes = format!("\"{}\",", "0".repeat(16)).repeat(219_000);
             for path in ["data/trials/none.jsonl", "data/trials/floor-plan.jsonl"] {
                 replace(tree, path, "{\"chain\":[", &format!("{{\"chain\":[{hashes}"));

@@ -37,7 +37,7 @@ mod tests {
     use crate::report::ReportTable;
     use crate::studies::fixture::with_findings;
     use crate::studies::outcomes::{OutcomeTable, Quantity};
-    use crate::studies::{Findings, Outcome, TableLayout, TableRequest, TrialRecord};
+    use crate::studies::{Findings, Measures, Outcome, TableLayout, TableRequest, TrialRecord};
     use crate::table::{Table, Value};
     use std::collections::BTreeMap;
 
@@ -55,7 +55,7 @@ mod tests {
             trial,
             outcome,
             cause: String::new(),
-            measures: BTreeMap::new(),
+            measures: Measures::new(),
             series: Vec::new(),
             sim_seconds: 1.0,
             chain: Vec::new(),

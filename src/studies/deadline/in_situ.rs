@@ -213,7 +213,7 @@ fn lines(rows: &[ManeuverRow]) -> Table {
 fn row(name: String, pair: Option<Pair>, trials: &[&TrialRecord]) -> ManeuverRow {
     let sum = |kind: &str| -> f64 {
         let measure = format!("{name}-{kind}");
-        trials.iter().filter_map(|r| r.measures.get(&measure).copied().flatten()).sum()
+        trials.iter().filter_map(|r| r.measures.number(&measure)).sum()
     };
     #[expect(
         clippy::cast_possible_truncation,

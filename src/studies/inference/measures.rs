@@ -1,13 +1,9 @@
 //! A proposal as the measures of a trial, and back.
 
 use super::{Below, Drawn, Inference, Proposal};
-use crate::studies::TrialRecord;
 use crate::studies::findings::rounded;
+use crate::studies::{Measures, TrialRecord};
 use crate::table::Column;
-use std::collections::BTreeMap;
-
-/// Measures by name, as a record holds them.
-type Measures = BTreeMap<String, Option<f64>>;
 
 /// What the beginnings of the names of measures mean.
 const MEANINGS: [(&str, &str); 9] = [
@@ -100,11 +96,11 @@ impl Proposal {
         quantities: usize,
     ) -> Option<Self> {
         let measures = &record.measures;
-        let ln = |name: String| measures.get(&name).copied().flatten().unwrap_or(f64::NEG_INFINITY);
+        let ln = |name: String| measures.number(&name).unwrap_or(f64::NEG_INFINITY);
         measures.get("evidence-00")?;
         let cells = inference.observed.cells.len();
         let drawn = |beginning: &str, d: usize| {
-            let value = |name: String| measures.get(&name).copied().flatten();
+            let value = |name: String| measures.number(&name);
             let values = (0..quantities).map(|q| value(format!("{beginning}-{d:02}-{q:02}")));
             let outcome = |c: usize, o: usize| value(format!("{beginning}-cell-{d:02}-{c:03}-{o}"));
             Some(Drawn {

@@ -10,7 +10,6 @@ use crate::studies::recording::Recording;
 use crate::studies::{Outcome, Setup, Stopwatch, StudyKind, StudySetup, TrialRecord, TrialSpec};
 use crate::world::World;
 use serde_json::{Map, Value, json};
-use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::{Arc, OnceLock};
 
@@ -201,7 +200,7 @@ impl StudySetup for InferenceSetup {
                 trial: spec.trial,
                 outcome: Outcome::PROPOSED,
                 cause: String::new(),
-                measures: BTreeMap::from_iter(proposal.measures()),
+                measures: proposal.measures(),
                 series: Vec::new(),
                 sim_seconds: 0.0,
                 chain: Vec::new(),

@@ -175,7 +175,7 @@ pub(in crate::studies) fn measured(trials: &[&TrialRecord], measure: &str) -> Ve
 }
 
 fn value_of(record: &TrialRecord, measure: &str) -> Option<f64> {
-    record.measures.get(measure).copied().flatten()
+    record.measures.number(measure)
 }
 
 /// Computes the ratio estimator and its linearised interval (Cochran 1977, Sampling Techniques, section 2.11), in

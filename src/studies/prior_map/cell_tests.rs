@@ -134,8 +134,7 @@ impl Findings<'_> {
         let fixed = cell.rows.clone().with(&request.by, &cell.by);
         let measure = request.metric.measure_at(cell.percent);
         let first = self.matching(&fixed).into_iter().filter(|r| u64::from(r.trial) < n);
-        let reached: Vec<f64> =
-            first.filter_map(|r| r.measures.get(&measure).copied().flatten()).collect();
+        let reached: Vec<f64> = first.filter_map(|r| r.measures.number(&measure)).collect();
         Summary::of(&reached)
     }
 }

@@ -178,7 +178,7 @@ impl Findings<'_> {
             let others = record.condition.iter().filter(|pair| !fixed.contains(pair)).cloned();
             let group = groups.entry(others.collect()).or_default();
             group.trials += 1;
-            let value = record.measures.get(&measure).copied().flatten();
+            let value = record.measures.number(&measure);
             group.logs.extend(value.filter(|value| *value > 0.0).map(ln));
         }
         groups

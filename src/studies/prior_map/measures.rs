@@ -40,7 +40,7 @@ impl Findings<'_> {
             let here = self.matching(rows);
             let recorded = least_of(measure).unwrap_or(measure);
             let values: Vec<f64> =
-                here.iter().filter_map(|r| r.measures.get(recorded).copied().flatten()).collect();
+                here.iter().filter_map(|r| r.measures.number(recorded)).collect();
             let published = request.published.as_ref().and_then(|name| {
                 let fixed = rows.clone().with("measure", measure);
                 let (table, row) = self.published_row(name, &fixed)?;
@@ -198,7 +198,7 @@ mod tests {
             trial,
             outcome: Outcome::EXPLORED,
             cause: String::new(),
-            measures: BTreeMap::from([("distance-m".to_owned(), distance)]),
+            measures: [("distance-m", distance)].into(),
             series: Vec::new(),
             sim_seconds: 1.0,
             chain: Vec::new(),

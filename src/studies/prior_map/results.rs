@@ -116,8 +116,7 @@ impl Findings<'_> {
     ) -> CoverageCell {
         let measure = request.metric.measure_at(percent);
         let here = self.matching(fixed);
-        let reached: Vec<f64> =
-            here.iter().filter_map(|r| r.measures.get(&measure).copied().flatten()).collect();
+        let reached: Vec<f64> = here.iter().filter_map(|r| r.measures.number(&measure)).collect();
         let published = request.published.as_ref().and_then(|name| {
             let fixed = fixed.clone().with("coverage-percent", percent.to_string());
             let (table, row) = self.published_row(name, &fixed)?;

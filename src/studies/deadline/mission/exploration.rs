@@ -15,9 +15,8 @@ use crate::studies::deadline::build_cmdp::Maneuvers;
 use crate::studies::deadline::exploration::{Explorer, Leave, Next};
 use crate::studies::deadline::planner::Plan;
 use crate::studies::recording::{Recording, SolvedPlan};
-use crate::studies::{Outcome, Stopwatch, TrialRecord, TrialSpec};
+use crate::studies::{Measures, Outcome, Stopwatch, TrialRecord, TrialSpec};
 use crate::units::{Seconds, Tick};
-use std::collections::BTreeMap;
 
 /// Explores until the goal is reached, the body touches something or the time is up.
 pub(super) fn run(
@@ -34,7 +33,7 @@ pub(super) fn run(
     let mut exploration = Exploration::new(spec, setup, prepared, expectations, recording);
     let ending = exploration.run(watch);
     exploration.write_plans_down();
-    let mut measures = BTreeMap::new();
+    let mut measures = Measures::new();
     measures.insert("distance-m".to_owned(), Some(exploration.body.travelled()));
     measures.insert("turning-rad".to_owned(), Some(exploration.body.turned()));
     exploration.tally.measures(&mut measures);

@@ -16,11 +16,10 @@ use crate::studies::deadline::build_cmdp::{Maneuvers, Place};
 use crate::studies::deadline::exploration::{Explorer, Leave, Next};
 use crate::studies::deadline::intersection::{Exit, Intersection, Opening};
 use crate::studies::state_chain::StateChain;
-use crate::studies::{Outcome, Stopwatch, TrialRecord, TrialSpec};
+use crate::studies::{Measures, Outcome, Stopwatch, TrialRecord, TrialSpec};
 use crate::units::{Seconds, Tick};
 use crate::world::RegionKind;
 use crate::world::topology::{self, Topology};
-use std::collections::BTreeMap;
 
 /// The measure that marks a trial of this level.
 pub(in crate::studies::deadline) const MARK: &str = "graph-level";
@@ -55,7 +54,7 @@ pub(super) fn run(
     };
     let began = Tick::at_or_after(Seconds(parameters.graph.look_around_s));
     let ending = walk.run(start, began, spec, watch);
-    let mut measures = BTreeMap::new();
+    let mut measures = Measures::new();
     measures.insert(MARK.to_owned(), Some(1.0));
     measures.insert("distance-m".to_owned(), None);
     measures.insert("turning-rad".to_owned(), None);

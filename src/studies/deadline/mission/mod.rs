@@ -22,10 +22,9 @@ use crate::geometry::Outline;
 use crate::robot::Lidar;
 use crate::studies::recording::Recording;
 use crate::studies::state_chain::StateChain;
-use crate::studies::{CannotBegin, Outcome, Stopwatch, TrialRecord, TrialSpec};
+use crate::studies::{CannotBegin, Measures, Outcome, Stopwatch, TrialRecord, TrialSpec};
 use crate::units::{Seconds, Tick};
 use crate::world::topology::{TagScheme, Topology};
-use std::collections::BTreeMap;
 
 /// The data that all trials of a setup share: computed once, from the setup alone.
 #[derive(Debug)]
@@ -118,7 +117,7 @@ fn record(
     spec: &TrialSpec,
     ending: Ending,
     began: Tick,
-    mut measures: BTreeMap<String, Option<f64>>,
+    mut measures: Measures,
     chain: &StateChain,
 ) -> TrialRecord {
     let Seconds(seconds) = ending.at.seconds();

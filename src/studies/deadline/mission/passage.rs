@@ -11,11 +11,10 @@ use crate::studies::deadline::build_cmdp::{Motion, SideCorridors, Through, motio
 use crate::studies::deadline::intersection::Opening;
 use crate::studies::deadline::toposemantic_map::side;
 use crate::studies::recording::Recording;
-use crate::studies::{Outcome, TrialRecord, TrialSpec};
+use crate::studies::{Measures, Outcome, TrialRecord, TrialSpec};
 use crate::units::{Radians, Seconds, Tick};
 use crate::world::RegionKind;
 use crate::world::topology::{self, Topology};
-use std::collections::BTreeMap;
 
 /// Control periods that a passage stands still before it begins.
 const SETTLING: u32 = 10;
@@ -78,7 +77,7 @@ pub(super) fn run(
             Happening::OnTheWay | Happening::Lost => {}
         }
     };
-    let mut measures = BTreeMap::new();
+    let mut measures = Measures::new();
     tally.passed(&mut measures);
     measures.insert("distance-m".to_owned(), Some(body.travelled()));
     measures.insert("turning-rad".to_owned(), Some(body.turned()));

@@ -139,7 +139,7 @@ impl PlannedPassages {
             return Err(CalibrationError::of(what));
         }
         let rows = self.each().zip(records).map(|((world, motion, speed, trial), record)| {
-            let time_s = record.measures.get("time-s").copied().flatten();
+            let time_s = record.measures.number("time-s");
             let through = through_of(record);
             let passage = Driven { motion, speed, through, outcome: record.outcome, time_s };
             Row { world, trial, passage, record: Sha256Digest::of(record.to_line()) }
@@ -216,7 +216,7 @@ impl Calibrated for Passages {
     }
 
     fn told_of(&self, record: &TrialRecord) -> String {
-        let time: Value = record.measures.get("time-s").copied().flatten().into();
+        let time: Value = record.measures.number("time-s").into();
         joined(&[
             through_of(record).name().into(),
             record.outcome.name().into(),
@@ -259,7 +259,7 @@ fn planned(world: &str, motion: Motion, speed: Speed, trial: u32) -> [Value; PLA
 fn through_of(record: &TrialRecord) -> Through {
     let passed = |through: &Through| {
         let measure = tally::passages_through(*through);
-        record.measures.get(&measure).copied().flatten().is_some_and(|count| count > 0.0)
+        record.measures.number(&measure).is_some_and(|count| count > 0.0)
     };
     Through::ALL.into_iter().find(passed).unwrap_or(Through::Corridor)
 }
@@ -272,11 +272,10 @@ fn joined(fields: &[Value]) -> String {
 mod tests {
     use super::*;
     use crate::bundle::sample;
-    use crate::studies::deadline::mission::calibrations::tests::hall;
 
     fn planned() -> PlannedPassages {
         PlannedPassages {
-            worlds: vec![Arc::new(hall("here"))],
+            worlds: vec![Arc::new(World::empty())],
             maneuvers: vec![(0, Motion::Corridor, Speed::Slow)],
             trials: 2,
         }
@@ -300,8 +299,8 @@ mod tests {
             text,
             format!(
                 "world,motion,speed,trial,through,outcome,time-s,record\n\
-                 here,corridor,slow,0,corridor,reached,12.5,{}\n\
-                 here,corridor,slow,1,corridor,collided,,{}\n",
+                 empty,corridor,slow,0,corridor,reached,12.5,{}\n\
+                 empty,corridor,slow,1,corridor,collided,,{}\n",
                 digest(0),
                 digest(1)
             )
@@ -316,7 +315,7 @@ mod tests {
         let refused = |text: &str| planned().read(text).unwrap_err().to_string();
         assert_eq!(
             refused(&text.replace("slow,1", "fast,1")),
-            "calibration: line 3: expected `here,corridor,slow,1`, found `here,corridor,fast,1`"
+            "calibration: line 3: expected `empty,corridor,slow,1`, found `empty,corridor,fast,1`"
         );
         assert_eq!(
             refused(&text.replace("12.5", "soon")),

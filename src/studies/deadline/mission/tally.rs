@@ -1,11 +1,11 @@
 //! Counts over a trial: maneuvers by motion, speed and what they led through, and plans by how they meet their deadlines.
 
+use crate::studies::Measures;
 use crate::studies::deadline::build_cmdp::{Motion, Speed, Through};
 use crate::studies::deadline::calibration::{MOTIONS, SPEEDS, maneuver_name};
 use crate::studies::deadline::exploration::Explorer;
 use crate::studies::deadline::planner::{Plan, Status};
 use crate::units::{Seconds, Tick};
-use std::collections::BTreeMap;
 use std::ops::AddAssign;
 
 /// The counts of one maneuver over a trial.
@@ -75,7 +75,7 @@ impl Tally {
     }
 
     /// Adds the measures of an exploration's maneuvers to `measures`.
-    pub(super) fn measures(&self, measures: &mut BTreeMap<String, Option<f64>>) {
+    pub(super) fn measures(&self, measures: &mut Measures) {
         self.passed(measures);
         let mut put = |name: String, value: f64| measures.insert(name, Some(value));
         let mut totals = [(0, 0); 2];
@@ -108,7 +108,7 @@ impl Tally {
     }
 
     /// Adds the counts by what was passed, over all motions and speeds, to `measures`.
-    pub(super) fn passed(&self, measures: &mut BTreeMap<String, Option<f64>>) {
+    pub(super) fn passed(&self, measures: &mut Measures) {
         for (depth, through) in Through::ALL.into_iter().enumerate() {
             let mut all = Count::default();
             self.counts.iter().flatten().for_each(|by_through| all += by_through[depth]);
@@ -136,7 +136,7 @@ pub(super) fn collisions_through(through: Through) -> String {
 }
 
 /// Adds the measures of the mind's decisions and discoveries to `measures`.
-pub(super) fn decided(mind: &Explorer, measures: &mut BTreeMap<String, Option<f64>>) {
+pub(super) fn decided(mind: &Explorer, measures: &mut Measures) {
     #[expect(clippy::cast_precision_loss, reason = "counts of one trial")]
     let mut put = |name: &str, count: usize| measures.insert(name.to_owned(), Some(count as f64));
     put("vertices", mind.map().len());

@@ -325,10 +325,10 @@ fn later_choices_and_further_measures_are_written_down_when_asked_for() {
     let further = studies::execute(&spec(0, true, parameters.clone()));
     let measure = |record: &TrialRecord, name: &str| record.measures[name].unwrap();
     for (name, value) in &usual.measures {
-        assert_eq!(further.measures[name], *value, "{name}");
+        assert_eq!(further.measures[name], value, "{name}");
     }
     assert_eq!(further.chain, usual.chain, "looking changes nothing");
-    let undescribed = further.measures.keys().find(|name| columns::measure(name).is_none());
+    let undescribed = further.measures.names().find(|name| columns::measure(name).is_none());
     assert_eq!(undescribed, None, "the data dictionary knows every measure");
     let (early, late) =
         (measure(&further, "decisions-at-50"), measure(&further, "decisions-at-95"));
@@ -336,10 +336,10 @@ fn later_choices_and_further_measures_are_written_down_when_asked_for() {
     assert!(measure(&further, "open-frontiers-at-50") >= 1.0);
     let per_metre = measure(&further, "turning-rad") / measure(&further, "distance-m");
     assert_eq!(measure(&further, "turning-rad-per-m"), per_metre);
-    assert!(!usual.measures.contains_key("turning-rad-per-m"));
+    assert!(usual.measures.get("turning-rad-per-m").is_none());
     let mean_speed = measure(&further, "distance-m") / measure(&further, "time-s");
     assert_eq!(measure(&further, "mean-speed-m-s"), mean_speed);
-    assert!(!usual.measures.contains_key("mean-speed-m-s"));
+    assert!(usual.measures.get("mean-speed-m-s").is_none());
     parameters.measurement.crossing = Crossing::Decision;
     let decided = studies::execute(&spec(0, true, parameters.clone()));
     parameters.measurement.crossing = Crossing::Interpolated;
@@ -413,7 +413,7 @@ fn a_robot_that_estimates_its_pose_explores_where_one_that_trusts_odometry_is_lo
     }
     let trusting = Parameters { mapping: Parameters::default().mapping, ..lost() };
     let record = studies::execute(&spec(0, false, trusting));
-    assert!(!record.measures.contains_key("pose-error-m-rms"), "nothing was estimated");
+    assert!(record.measures.get("pose-error-m-rms").is_none(), "nothing was estimated");
 }
 
 /// Checks the golden trial of a mind that estimates its pose, also on other threads.

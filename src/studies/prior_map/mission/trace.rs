@@ -3,7 +3,7 @@
 use crate::geometry::Pose;
 use crate::studies::prior_map::Crossing;
 use crate::studies::state_chain::StateChain;
-use crate::studies::{Outcome, SeriesPoint, TrialRecord, TrialSpec};
+use crate::studies::{Measures, Outcome, SeriesPoint, TrialRecord, TrialSpec};
 use crate::units::Tick;
 use std::collections::BTreeMap;
 
@@ -189,7 +189,7 @@ impl Trace {
         cause: String,
         now: Tick,
     ) -> TrialRecord {
-        let mut measures = BTreeMap::new();
+        let mut measures = Measures::new();
         for percent in MILESTONES {
             let crossing = self.crossings.get(&percent);
             measures.insert(format!("time-s-at-{percent}"), crossing.map(|c| c.0));
