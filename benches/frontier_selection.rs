@@ -7,7 +7,7 @@
 use reenact::document::Source;
 use reenact::geometry::{Outline, Point, Pose};
 use reenact::grid::{Cell, GridFrame, Occupancy, OccupancyGrid};
-use reenact::mapping::{OccupancyMap, ScanRule};
+use reenact::mapping::{NoReturn, OccupancyMap, ScanRule};
 use reenact::navigation::{CostGrid, Wavefront, inflate};
 use reenact::rng::Seeds;
 use reenact::robot::{Lidar, Robot, urdf};
@@ -105,7 +105,12 @@ impl Office {
         };
         let walls = walls();
         let visible: Vec<Outline> = walls.iter().map(outline).collect();
-        let rule = ScanRule { resolution: 0.1, clip_range: 25.0, hit_ratio: 0.25 };
+        let rule = ScanRule {
+            resolution: 0.1,
+            clip_range: 25.0,
+            hit_ratio: 0.25,
+            no_return: NoReturn::Nothing,
+        };
         let mut map = OccupancyMap::new(rule);
         let mut pose = Pose::default();
         for (number, place) in places().into_iter().enumerate() {

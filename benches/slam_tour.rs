@@ -17,7 +17,9 @@
 mod shipped;
 
 use reenact::geometry::{Outline, Point, Pose};
-use reenact::mapping::{FilterRule, KeyframeRule, Mapper, MatchRule, MotionNoise, ScanRule};
+use reenact::mapping::{
+    FilterRule, KeyframeRule, Mapper, MatchRule, MotionNoise, NoReturn, ScanRule,
+};
 use reenact::rng::Seeds;
 use reenact::robot::{Lidar, Robot, Twist};
 use reenact::sim::{DriveNoise, OdometryNoise, Scene, Simulator};
@@ -114,7 +116,12 @@ fn drive(tour: &Tour, range_noise: f64, filter: FilterRule, seed: u64) -> Drive 
     let mut scan = sim.blank_scan();
     let mut mapper = Mapper::new(
         KeyframeRule { distance: 1.0, turn: 0.5 },
-        ScanRule { resolution: RESOLUTION, clip_range: RANGE, hit_ratio: 0.25 },
+        ScanRule {
+            resolution: RESOLUTION,
+            clip_range: RANGE,
+            hit_ratio: 0.25,
+            no_return: NoReturn::Nothing,
+        },
         filter,
         seeds.stream("slam"),
     );

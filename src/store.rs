@@ -2,10 +2,12 @@
 
 mod directory;
 mod partial;
+mod prune;
 mod segments;
 
 pub use directory::{DirectoryStore, Looked};
 pub use partial::abandon;
+pub use prune::Pruned;
 
 use crate::bundle::{Archive, Fault, archive};
 use fs_err as fs;

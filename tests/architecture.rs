@@ -60,7 +60,7 @@ const DOORS: &[(&str, &[&str])] = &[
     ("indicatif", &["cli/"]),
     ("libc", &["store.rs"]),
     ("libm", &["math.rs"]),
-    ("mcap", &["report/bag/writer.rs"]),
+    ("mcap", &["report/bag/writer.rs", "world/map_server/bag.rs"]),
     ("mesh_loader", &["world/mesh/files.rs"]),
     ("minijinja", &["report/template.rs"]),
     ("minisign_verify", &["verify/signature/minisign.rs"]),

@@ -22,5 +22,6 @@ mod multiverse;
 mod original_worlds;
 mod sandbox;
 mod standards;
+mod tutorial;
 mod verification;
 mod worlds;

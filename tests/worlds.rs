@@ -16,7 +16,7 @@ use reenact::geometry::{Outline, Point};
 use reenact::grid::Occupancy;
 use reenact::provenance::Environment;
 use reenact::studies::prior_map::tour;
-use reenact::world::map_server::{self, Options};
+use reenact::world::map_server::{self, Descriptor, Options};
 use reenact::world::{World, document, sdf};
 use std::path::{Path, PathBuf};
 
@@ -329,7 +329,7 @@ fn the_department_has_the_walls_and_rooms_of_the_map_made_of_it() {
         return;
     };
     let yaml = text(&folder.join("maps/ed21.yaml"));
-    let image = map_server::image_path(&yaml).unwrap();
+    let image = Descriptor::read(&yaml).unwrap().image().to_owned();
     let bytes = std::fs::read(folder.join("maps").join(&image)).unwrap();
     let map = map_server::read(&yaml, &image, &bytes, Options::default()).unwrap();
     // GMapping rounds to cells' centres, and walls seem to lie 0.1 m up and right.
@@ -387,7 +387,7 @@ fn the_maps_of_the_comparison_have_the_walls_of_the_originals() {
     let our = ours("map-4", &[]);
     let path = folder.join("maps/map4.yaml");
     let source = text(&path);
-    let image = map_server::image_path(&source).unwrap();
+    let image = Descriptor::read(&source).unwrap().image().to_owned();
     let bytes = std::fs::read(path.parent().unwrap().join(&image)).unwrap();
     let map = map_server::read(&source, &image, &bytes, Options { average_alpha: true }).unwrap();
     let map = &map;
@@ -458,7 +458,7 @@ fn the_released_priors_are_read_as_map_server_reads_them() {
     assert!(names.len() >= 14, "{names:?}");
     for path in names {
         let source = text(&path);
-        let image = map_server::image_path(&source).unwrap();
+        let image = Descriptor::read(&source).unwrap().image().to_owned();
         let bytes = std::fs::read(path.parent().unwrap().join(&image)).unwrap();
         let counts = |average_alpha: bool| {
             let map = map_server::read(&source, &image, &bytes, Options { average_alpha })

@@ -59,12 +59,6 @@ impl Claim {
                 "",
                 "expected `says` with the paper's words, or `ours` with a check of your own, found neither".to_owned(),
             ),
-            (Some(_), None) if self.paper_table.is_none() => faults.add(
-                "",
-                "expected `paper-table:` with `supports`, `contradicts` or `silent` beside `says`, found nothing; say what the \
-                 paper's own numbers show of its sentence"
-                    .to_owned(),
-            ),
             _ => {}
         }
         for (key, words) in [("/says", &self.says), ("/ours", &self.ours)] {

@@ -58,6 +58,8 @@ pub(super) enum Command {
     Schema(SchemaArgs),
     /// Print shell completions
     Completions(CompletionsArgs),
+    /// Write a Gazebo world or a `map_server` map as world YAML
+    Import(ImportArgs),
     /// Write a working starter manifest
     Init(InitArgs),
     /// Look after the store of finished trials
@@ -73,6 +75,15 @@ pub(super) enum Format {
     Json,
     /// JUnit XML, for CI
     Junit,
+}
+
+/// How answers are written that are no tests.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum DataFormat {
+    /// For people
+    Human,
+    /// One compact line of JSON
+    Json,
 }
 
 /// Which part of a study, and what is changed in it.
@@ -137,6 +148,36 @@ pub(super) struct ShowArgs {
     pub(super) start: Option<Vec<f64>>,
 }
 
+#[derive(Debug, Args)]
+pub(super) struct ImportArgs {
+    /// A Gazebo world (`.world`, `.sdf`) or the YAML of a `map_server` map
+    pub(super) file: PathBuf,
+    /// The world YAML to write [default: the file's name with .world.yaml, in this folder]
+    #[arg(short, long, value_name = "FILE")]
+    pub(super) output: Option<PathBuf>,
+    /// Write over a file that is there
+    #[arg(long)]
+    pub(super) force: bool,
+    /// Where meshes and what leans are cut (m): the height of the scanner
+    #[arg(long, value_name = "METRES", default_value_t = 0.2)]
+    pub(super) height: f64,
+    /// The folder of a model that a Gazebo world's meshes are named by (repeatable)
+    #[arg(long, value_name = "NAME=FOLDER")]
+    pub(super) models: Vec<String>,
+    /// What the unknown cells of a map are
+    #[arg(long, value_enum, value_name = "AS", default_value = "occupied")]
+    pub(super) unknown: UnknownArg,
+}
+
+/// What the unknown cells of a map are.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum UnknownArg {
+    /// Walls where they border on free floor
+    Occupied,
+    /// Floor
+    Free,
+}
+
 /// Prior knowledge derived from a world.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub(super) enum DerivedArg {
@@ -186,6 +227,33 @@ pub(super) struct CompletionsArgs {
 pub(super) struct InitArgs {
     /// Name of the study: lower-case letters, digits and hyphens
     pub(super) name: String,
+    /// A robot of your own (URDF, xacro or SDF) instead of the starter's
+    #[arg(long, value_name = "FILE")]
+    pub(super) robot: Option<PathBuf>,
+    /// A world of your own: world YAML, a Gazebo world or the YAML of a `map_server` map
+    #[arg(long, value_name = "FILE")]
+    pub(super) world: Option<PathBuf>,
+    /// The YAML of a `map_server` map that the robot knows beforehand, in the world's frame
+    #[arg(long, value_name = "FILE")]
+    pub(super) map: Option<PathBuf>,
+    /// Where the robot begins: x,y (m) or x,y,heading (degrees) [default: in the largest room]
+    #[arg(
+        long,
+        value_delimiter = ',',
+        num_args = 1,
+        value_name = "X,Y[,HEADING]",
+        allow_hyphen_values = true
+    )]
+    pub(super) start: Option<Vec<f64>>,
+    /// A folder of models that a Gazebo world includes (repeatable)
+    #[arg(long, value_name = "FOLDER", requires = "world")]
+    pub(super) model_path: Vec<PathBuf>,
+    /// The folder of one model (repeatable)
+    #[arg(long, value_name = "NAME=FOLDER", requires = "world")]
+    pub(super) models: Vec<String>,
+    /// The folder of a package that the robot's files name (repeatable)
+    #[arg(long, value_name = "NAME=FOLDER", requires = "robot")]
+    pub(super) packages: Vec<String>,
 }
 
 #[derive(Debug, Args)]
@@ -200,6 +268,19 @@ pub(super) enum CacheAction {
     Dir,
     /// Print how many trials it holds and how large it is
     Size,
+    /// Remove what no run wrote to for some days: trials that are wanted again are simulated again
+    Prune(PruneArgs),
+}
+
+#[derive(Debug, Clone, Copy, Args)]
+#[group(required = true)]
+pub(super) struct PruneArgs {
+    /// What nothing was written to for this many days
+    #[arg(long, value_name = "DAYS")]
+    pub(super) older_than: Option<u32>,
+    /// Everything
+    #[arg(long)]
+    pub(super) all: bool,
 }
 
 #[cfg(test)]

@@ -63,7 +63,33 @@ pub(super) fn resolved(
     calibrator: Calibrator<'_>,
     terminal: Terminal,
 ) -> Result<Understood, Failure> {
-    let source = text(manifest)?;
+    understood(text(manifest)?, manifest, set, calibrator, terminal)
+}
+
+/// Resolves a manifest that is yet to be written to `manifest`; its faults go to stderr, warnings nowhere.
+pub(super) fn draft(
+    manifest: &Path,
+    text: String,
+    terminal: Terminal,
+) -> Result<Experiment, Failure> {
+    let source = Source::new(manifest.display().to_string(), text);
+    match understood(source, manifest, &[], Calibrator::StandIn, terminal)? {
+        Ok((loaded, _)) => Ok(loaded.experiment),
+        Err(mut faults) => {
+            faults.sort_by_key(|f| std::cmp::Reverse(f.severity));
+            terminal.diagnostics(&faults);
+            Err(Failure::not_understood(Terminal::count(&faults)))
+        }
+    }
+}
+
+fn understood(
+    source: Source,
+    manifest: &Path,
+    set: &[String],
+    calibrator: Calibrator<'_>,
+    terminal: Terminal,
+) -> Result<Understood, Failure> {
     let folder = manifest.parent().unwrap_or(Path::new("")).to_owned();
     let sealed = sealed_beside(manifest, &folder)?;
     if !sealed.is_empty() {

@@ -10,6 +10,7 @@ mod estimate;
 mod exit;
 mod fold;
 mod interrupt;
+mod junit;
 mod load;
 mod progress;
 mod terminal;
@@ -92,6 +93,7 @@ fn dispatch(
         Command::SolveCmdp(args) => commands::solve_cmdp::run(&args, terminal),
         Command::Schema(args) => Ok(commands::schema::run(&args, terminal)),
         Command::Completions(args) => Ok(commands::completions::run(&args, terminal)),
+        Command::Import(args) => commands::import::run(&args, terminal),
         Command::Init(args) => commands::init::run(&args, terminal),
         Command::Cache(args) => commands::cache::run(&args, environment, terminal),
     }

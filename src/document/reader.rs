@@ -15,6 +15,8 @@ const MOST_NODES: usize = 250_000;
 const MOST_REPEATED: usize = 1 << 22;
 /// Deeper than any document we define; keeps every recursion over a tree shallow.
 const MOST_NESTING: usize = 48;
+/// What some editors put before a text.
+const BYTE_ORDER_MARK: char = '\u{feff}';
 /// How faults of the syntax begin.
 const INVALID: &str = "not valid YAML: ";
 
@@ -27,7 +29,10 @@ pub fn read(source: &Source) -> Result<Tree, Vec<Diagnostic>> {
         let message = format!("`{}`: expected a YAML mapping, found {found}", source.name);
         return Err(vec![Diagnostic::placeless(message)]);
     }
-    let mut reader = Reader::new(source, 0, 0);
+    // Editors of some systems begin a file with a byte order mark, which is no part of the text.
+    let begins =
+        if source.text.starts_with(BYTE_ORDER_MARK) { BYTE_ORDER_MARK.len_utf8() } else { 0 };
+    let mut reader = Reader::new(source, 0, begins);
     let root = reader.document();
     match reader.finish(root) {
         Ok(root) => Ok(Tree { sources: vec![source.clone()], root }),

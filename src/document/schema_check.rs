@@ -247,12 +247,24 @@ fn unknown_key(
         path => format!("not a key of `{path}`"),
     };
     let names: Vec<&str> = known.iter().copied().collect();
+    // A path, as `--set` takes it.
+    let path = key.split_once('.').filter(|(first, _)| known.contains(first));
+    let nested = path.map(|(first, rest)| {
+        let steps: Vec<&str> = rest.split('.').collect();
+        let inside =
+            steps.iter().rev().fold("...".to_owned(), |inner, step| match inner.as_str() {
+                "..." => format!("{}: ...", quoted(step)),
+                _ => format!("{}: {{{inner}}}", quoted(step)),
+            });
+        format!("nest it: `{first}: {{{inside}}}`")
+    });
     let key = quoted(key);
-    spot.fault(format!("unknown key `{key}`"), label).at(place).help(match near {
+    let help = nested.unwrap_or_else(|| match near {
         Some(near) => format!("did you mean `{near}`?"),
         None if names.is_empty() => "remove it: nothing is expected here".to_owned(),
         None => format!("known keys: {}", names.join(", ")),
-    })
+    });
+    spot.fault(format!("unknown key `{key}`"), label).at(place).help(help)
 }
 
 fn unknown_value(known: &[&Value], spot: &Spot<'_>) -> Fault {

@@ -143,6 +143,15 @@ fn every_fault_is_told_where_it_is() {
 }
 
 #[test]
+fn a_path_as_a_key_is_told_to_be_nested() {
+    insta::assert_snapshot!(faults("name: a\ntrials: 1\nworld.file: x\nnested.circle.radius-m: 2\nwrold.file: x\n"), @"
+    3:1 unknown key `world.file` | not a key of this document | nest it: `world: {file: ...}`
+    4:1 unknown key `nested.circle.radius-m` | not a key of this document | nest it: `nested: {circle: {radius-m: ...}}`
+    5:1 unknown key `wrold.file` | not a key of this document | known keys: at, color, factors, name, nested, range-m, raw, sensor, strategy, trials, world
+    ");
+}
+
+#[test]
 fn missing_and_wrong_things_say_what_was_expected() {
     insta::assert_snapshot!(faults(""), @" `a.yaml`: expected a YAML mapping with `name` and `trials`, found nothing |  | -");
     insta::assert_snapshot!(faults("trials: ten\nname: 1.10\nrange-m: '3'\nat: [1, 2, 3]\nfactors: {a: 1}\n"), @r#"

@@ -1,5 +1,7 @@
 //! What is well-formed and still wrong: starts inside walls, priors that lie elsewhere, slips of units.
 
+mod surroundings;
+
 use super::faults::Faults;
 use super::knowledge::UsedPrior;
 use super::worlds::WALLS;
@@ -18,11 +20,15 @@ const ALIGNED_WITHIN: f64 = 0.3;
 /// The share of walls below which a prior is taken to lie elsewhere.
 const ALIGNED_SHARE: f64 = 0.5;
 
-/// Collects what is wrong or suspicious about one condition of whatever study; about its start where that `is_new`.
-pub(super) fn check(setup: &Setup, is_new: bool, faults: &mut Faults<'_>) {
+/// Collects what is wrong or suspicious about one condition of whatever study; about its start where that `is_new`, and about
+/// what surrounds it where the world is somebody's, `from_file`.
+pub(super) fn check(setup: &Setup, is_new: bool, from_file: bool, faults: &mut Faults<'_>) {
     scanner(setup.robot(), faults);
     if is_new {
         start(setup.world(), setup.robot(), setup.start(), faults);
+        if from_file {
+            surroundings::check(setup, faults);
+        }
     }
     units(&setup.parameters(), faults);
 }
@@ -143,10 +149,16 @@ pub(super) fn alignment(robot: &Robot, world: &World, prior: &UsedPrior, faults:
             "the prior map fits the world badly: {percent} % of the walls have one of its own within {ALIGNED_WITHIN} m"
         )
     };
-    let fault =
-        faults.fault(&prior.pointer, message).label("shifted, scaled or of another building");
-    let help = "check `origin` and `frame`; `reenact show` draws the map";
-    faults.push(fault.help(help).warning());
+    let scaled = surroundings::scale(&drawn, &walls);
+    let label = match scaled {
+        Some(factor) => format!("it is {factor:.2} times as large as the world"),
+        None => "shifted, scaled or of another building".to_owned(),
+    };
+    let help = match scaled {
+        Some(_) => "check `resolution`; `reenact show --over` lays the map over the world",
+        None => "check `origin` and `frame`; `reenact show --over` lays the map over the world",
+    };
+    faults.push(faults.fault(&prior.pointer, message).label(label).help(help).warning());
 }
 
 fn share(points: &[Point], holds: impl Fn(Point) -> bool) -> f64 {

@@ -13,12 +13,13 @@ use super::readers::{self, Derived};
 use super::resolver::Resolver;
 use super::worlds::UsedWorld;
 use crate::condition::Condition;
-use crate::document::suggestion;
+use crate::document::{Source, suggestion};
 use crate::geometry::{Point, Pose};
 use crate::grid::{GridFrame, OccupancyGrid};
 use crate::robot::Robot;
 use crate::studies::prior_map::{MapFrame, Parameters};
-use crate::world::{floor_plan::FloorPlanSettings, map_server};
+use crate::world::floor_plan::FloorPlanSettings;
+use crate::world::map_server::{Descriptor, bag};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -202,6 +203,7 @@ impl<'a> Resolver<'a> {
         };
         let doc = MapPrior {
             map: path.to_owned(),
+            topic: None,
             frame,
             origin: None,
             alpha: Alpha::default(),
@@ -235,23 +237,67 @@ impl<'a> Resolver<'a> {
     }
 
     fn read_map(&mut self, doc: &MapPrior, place: &str, shift: Point) -> Known<OccupancyGrid> {
-        let source = self.text(&doc.map, place, InputKind::Prior)?;
-        let image = self.told(map_server::image_path(&source))?;
-        let path = joined(&normalised(&doc.map), &image);
-        let bytes = self.bytes(&path, InputKind::Prior, &path, place)?;
-        let grid = self.told(readers::map(&source, &path, &bytes, doc.alpha))?;
+        let grid = if doc.map.ends_with(".mcap") {
+            self.grid_of_bag(doc, place)?
+        } else {
+            let source = self.text(&doc.map, place, InputKind::Prior)?;
+            if doc.topic.is_some() {
+                let fault = self.faults.fault(place, format!("`{}` has no topics", doc.map));
+                let label = "`topic` chooses among those of a bag (.mcap)";
+                self.faults.push(fault.label(label).help("leave `topic` out"));
+            }
+            self.grid(&source, &doc.map, place, InputKind::Prior, doc.alpha)?
+        };
         let origin = doc.origin.map_or(grid.frame().origin, |o| Point::new(o.x_m, o.y_m));
         let frame = GridFrame { origin: origin + shift, ..*grid.frame() };
         Some(read_as(&grid, frame, doc.unknown))
     }
 }
 
+impl Resolver<'_> {
+    /// Reads the grid of a bag.
+    fn grid_of_bag(&mut self, doc: &MapPrior, place: &str) -> Option<OccupancyGrid> {
+        let path = normalised(&doc.map);
+        let bytes = self.bytes(&path, InputKind::Prior, &path, place)?;
+        match bag::read_bag(&bytes, doc.topic.as_deref()) {
+            Ok(grid) => Some(grid),
+            Err(why) => {
+                let fault = self.faults.fault(place, format!("no map in the bag `{path}`"));
+                self.faults.push(fault.label(why.to_string()));
+                None
+            }
+        }
+    }
+
+    /// Reads the map that `source`, the text of `file` named at `place`, describes, with its image beside it.
+    pub(super) fn grid(
+        &mut self,
+        source: &Source,
+        file: &str,
+        place: &str,
+        kind: InputKind,
+        alpha: Alpha,
+    ) -> Option<OccupancyGrid> {
+        let descriptor = self.told(Descriptor::read(source))?;
+        self.faults.extend(descriptor.warnings().to_vec());
+        let path = joined(&normalised(file), descriptor.image());
+        let bytes = self.bytes(&path, kind, &path, place)?;
+        let grid = self.told(readers::map(&descriptor, &path, &bytes, alpha))?;
+        self.faults.extend(descriptor.doubt(&grid));
+        Some(grid)
+    }
+}
+
 fn described(doc: &MapPrior) -> Value {
-    json!({
+    let mut described = json!({
         "map": normalised(&doc.map),
         "frame": doc.frame,
         "origin": doc.origin.map(|o| json!({ "x-m": o.x_m, "y-m": o.y_m })),
         "alpha": doc.alpha,
         "unknown": doc.unknown,
-    })
+    });
+    if let Some(topic) = &doc.topic {
+        described["topic"] = json!(topic);
+    }
+    described
 }

@@ -5,7 +5,8 @@ use crate::document::{Diagnostic, Source};
 use crate::grid::OccupancyGrid;
 use crate::studies::prior_map::tour::{self, TopoMetricMap};
 use crate::world::floor_plan::{self, FloorPlanError, FloorPlanSettings};
-use crate::world::{World, document, map_server, sdf};
+use crate::world::map_server::{self, Descriptor};
+use crate::world::{World, document, sdf};
 
 /// What is derived from a world as prior knowledge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -70,15 +71,15 @@ pub(super) fn topo_metric_map(source: &Source) -> Result<TopoMetricMap, Vec<Diag
     tour::read(source)
 }
 
-/// Reads a `map_server` map from its descriptor and the bytes of its image.
+/// Makes a map from the bytes of its image.
 pub(super) fn map(
-    source: &Source,
+    descriptor: &Descriptor,
     image_name: &str,
     image: &[u8],
     alpha: Alpha,
 ) -> Result<OccupancyGrid, Vec<Diagnostic>> {
     let options = map_server::Options { average_alpha: alpha == Alpha::Average };
-    map_server::read(source, image_name, image, options)
+    descriptor.map(image_name, image, options)
 }
 
 /// Reads a map as [`map_server::write`] writes it.

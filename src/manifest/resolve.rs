@@ -272,7 +272,8 @@ impl Resolver<'_> {
         let start = [start.x, start.y, start.heading].map(f64::to_bits);
         // Conditions share starts; a look at one is enough.
         let is_new = self.started.insert((robot_meaning, world.meaning, start));
-        lint::check(&setup, is_new, &mut self.faults);
+        let from_file = world.described.get("file").is_some();
+        lint::check(&setup, is_new, from_file, &mut self.faults);
         let meanings = Meanings {
             robot: robot_meaning,
             world: world.meaning,

@@ -1,6 +1,8 @@
 //! The worlds of a manifest's conditions: which file, which layers; or which building of a family.
 
-use super::document::{FactorRef, GenerateDoc, PlaceDoc, PoseDoc, SeedDoc, WorldDoc, WorldFile};
+use super::document::{
+    Alpha, FactorRef, GenerateDoc, PlaceDoc, PoseDoc, SeedDoc, WorldDoc, WorldFile,
+};
 use super::input::InputKind;
 use super::library::{Known, normalised};
 use super::models::Shelf;
@@ -11,6 +13,7 @@ use crate::digest::MeaningDigest;
 use crate::document::Source;
 use crate::geometry::{Point, Pose};
 use crate::units::Radians;
+use crate::world::map_server::{self, solid};
 use crate::world::sdf::NoModels;
 use crate::world::{World, generate};
 use serde_json::{Map, Value, json};
@@ -148,6 +151,9 @@ impl Resolver<'_> {
         if !doc.stand_ins.is_empty() {
             described["stand-ins"] = json!(doc.stand_ins);
         }
+        if let Some(unknown) = doc.unknown {
+            described["unknown"] = json!(unknown);
+        }
         let written_in = self.faults.written_in(&file_pointer);
         let key = json!([described, written_in]).to_string();
         let (world, meaning) = self.once(
@@ -166,6 +172,21 @@ impl Resolver<'_> {
         layers: Option<&(&Vec<String>, String)>,
     ) -> Known<World> {
         let source = self.text(file, pointer, InputKind::World)?;
+        if map_server::is_descriptor(&source.text) {
+            let grid = self.grid(&source, file, pointer, InputKind::World, Alpha::default())?;
+            let mut world = solid::world(file, &grid, doc.unknown.unwrap_or_default());
+            if let Some((layers, pointer)) = layers {
+                world = self.choose_layers(world, &source, layers, pointer);
+            }
+            let meaning = world.meaning();
+            return Some((Arc::new(world), meaning));
+        }
+        if doc.unknown.is_some() {
+            let place = format!("{place}/unknown");
+            let fault = self.faults.key_fault(&place, format!("`{file}` has no unknown cells"));
+            let label = "of a world that is a `map_server` map";
+            self.faults.push(fault.label(label).help("remove this key"));
+        }
         let stand_ins = self.stand_ins(doc, place);
         let world = (normalised(file), self.faults.written_in(pointer));
         let folders = self.faults.written_in(&format!("{place}/models"));

@@ -4,6 +4,8 @@ use super::beam_ends::BeamEnds;
 use crate::geometry::{Bounds, Point, Pose};
 use crate::grid::{Cell, Grid, GridFrame, Occupancy, OccupancyGrid, Walk};
 use crate::robot::{BeamDirections, Scan};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// The rule by which a scan is taken into the map.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,6 +16,20 @@ pub struct ScanRule {
     pub clip_range: f64,
     /// A visited cell is occupied where more than this share of its visits were hits. GMapping's `occ_thresh`.
     pub hit_ratio: f64,
+    /// What a beam tells that comes back with nothing.
+    pub no_return: NoReturn,
+}
+
+/// What a beam tells that comes back with nothing within the scanner's range.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum NoReturn {
+    /// Free floor up to the scanner's range, or to where beams are cut: Cartographer's `missing_data_ray_length`,
+    /// `inf_is_valid` of ROS' costmaps.
+    #[default]
+    Free,
+    /// Nothing, as GMapping has it: whoever sees no wall learns nothing.
+    Nothing,
 }
 
 /// A cell that changed, as a place that stays valid when the map grows.
@@ -107,11 +123,11 @@ impl OccupancyMap {
 
     /// Integrates `scan`, taken with the robot at `pose`, and returns the cells that changed.
     ///
-    /// Per beam: nothing within the sensor's range marks nothing; otherwise the cells before the end are
-    /// visited, and the end is hit unless the beam was cut (prior-map facts, section 4).
+    /// Per beam the cells before the end are visited, and the end is hit unless the beam was cut or came back with nothing;
+    /// such a one may also mark nothing at all, as the rule has it.
     pub fn integrate(&mut self, pose: Pose, scan: &Scan) -> &[Change] {
         self.changes.clear();
-        let beams = BeamEnds::of(scan, self.rule.clip_range, &mut self.directions);
+        let beams = BeamEnds::of(scan, self.rule, &mut self.directions);
         self.add(pose, &beams);
         self.tell()
     }
@@ -343,7 +359,12 @@ mod tests {
     use crate::units::Tick;
     use proptest::prelude::*;
 
-    const RULE: ScanRule = ScanRule { resolution: 0.1, clip_range: 5.0, hit_ratio: 0.05 };
+    const RULE: ScanRule = ScanRule {
+        resolution: 0.1,
+        clip_range: 5.0,
+        hit_ratio: 0.05,
+        no_return: NoReturn::Nothing,
+    };
 
     fn scan(ranges: Vec<f64>) -> Scan {
         #[expect(clippy::cast_precision_loss, reason = "small")]
@@ -416,7 +437,7 @@ mod tests {
             back: bool,
         ) {
             let scan = scan(ranges);
-            let beams = BeamEnds::of(&scan, RULE.clip_range, &mut BeamDirections::default());
+            let beams = BeamEnds::of(&scan, RULE, &mut BeamDirections::default());
             let mut map = OccupancyMap::new(RULE);
             for &(x, y, heading) in &poses {
                 map.add(Pose::new(x, y, heading), &beams);

@@ -103,7 +103,7 @@ impl Mapper {
     pub fn integrate(&mut self, odometry: Pose, scan: &Scan) -> &[Change] {
         self.keyframes.taken(odometry);
         let Some(slam) = &mut self.slam else { return self.map.integrate(odometry, scan) };
-        let beams = BeamEnds::of(scan, self.rule.clip_range, &mut slam.directions);
+        let beams = BeamEnds::of(scan, self.rule, &mut slam.directions);
         if slam.shown.is_none() {
             slam.filter.begin(odometry, &beams);
         } else {
@@ -127,12 +127,17 @@ impl Mapper {
 mod tests {
     use super::*;
     use crate::grid::{Cell, Occupancy};
-    use crate::mapping::{MatchRule, MotionNoise, room};
+    use crate::mapping::{MatchRule, MotionNoise, NoReturn, room};
     use crate::rng::Seeds;
     use std::collections::BTreeMap;
 
     const KEYFRAMES: KeyframeRule = KeyframeRule { distance: 0.3, turn: 0.3 };
-    const SCANS: ScanRule = ScanRule { resolution: 0.05, clip_range: 9.0, hit_ratio: 0.25 };
+    const SCANS: ScanRule = ScanRule {
+        resolution: 0.05,
+        clip_range: 9.0,
+        hit_ratio: 0.25,
+        no_return: NoReturn::Nothing,
+    };
     const GMAPPING: FilterRule = FilterRule {
         particles: 12,
         motion: MotionNoise { srr: 0.1, srt: 0.2, str: 0.1, stt: 0.2 },

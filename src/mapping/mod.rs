@@ -22,7 +22,7 @@ mod trajectories;
 mod window;
 
 pub use keyframe::KeyframeRule;
-pub use map::{Change, OccupancyMap, ScanRule};
+pub use map::{Change, NoReturn, OccupancyMap, ScanRule};
 pub use mapper::Mapper;
 pub use motion_model::MotionNoise;
 pub use particle_filter::FilterRule;

@@ -1,5 +1,6 @@
 //! A room for tests: 6 x 4 m with a pillar, and the scans taken in it.
 
+use super::{NoReturn, ScanRule};
 use crate::geometry::{Point, Pose};
 use crate::math;
 use crate::robot::Scan;
@@ -51,6 +52,12 @@ pub(super) fn scan(pose: Pose) -> Scan {
 
 /// Returns the ends of its beams, in the robot's frame (m).
 pub(super) fn ends(pose: Pose) -> Vec<Point> {
+    const RULE: ScanRule = ScanRule {
+        resolution: 0.1,
+        clip_range: 20.0,
+        hit_ratio: 0.25,
+        no_return: NoReturn::Nothing,
+    };
     let directions = &mut crate::robot::BeamDirections::default();
-    super::beam_ends::BeamEnds::of(&scan(pose), 20.0, directions).hits(1).collect()
+    super::beam_ends::BeamEnds::of(&scan(pose), RULE, directions).hits(1).collect()
 }

@@ -249,7 +249,7 @@ impl Own {
 }
 
 /// Returns everything in `folder` that is called as a segment is, in the order of the names; nothing where it is absent.
-fn segments_in(folder: &Path) -> io::Result<Vec<PathBuf>> {
+pub(super) fn segments_in(folder: &Path) -> io::Result<Vec<PathBuf>> {
     let entries = match fs::read_dir(folder) {
         Ok(entries) => entries,
         Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),

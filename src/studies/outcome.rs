@@ -170,7 +170,7 @@ mod tests {
         }
         assert_eq!(
             serde_json::from_str::<Outcome>("\"won\"").unwrap_err().to_string(),
-            "unknown variant `won`, expected one of `reached`, `collided`, `late`, `stalled`, `explored`, `stuck`, \
+            "unknown variant `won`, expected one of `reached`, `collided`, `late`, `stalled`, `explored`, `gave-up`, `stuck`, \
              `time-limit`, `covered`, `proposed`, `panicked`"
         );
     }

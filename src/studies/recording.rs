@@ -56,6 +56,18 @@ pub struct SolvedPlan {
     pub document: String,
 }
 
+impl Recording {
+    /// Returns the robot's map at the end, in the map's frame; none where it made none.
+    pub fn final_map(&self) -> Option<OccupancyGrid> {
+        let mut map = OccupancyGrid::filled(self.map_frame, Occupancy::Unknown);
+        for (cell, occupancy) in self.frames.iter().flat_map(|frame| &frame.map_changes) {
+            map.set(*cell, *occupancy);
+        }
+        let is_empty = map.values().iter().all(|cell| *cell == Occupancy::Unknown);
+        (!is_empty).then_some(map)
+    }
+}
+
 impl Default for Recording {
     fn default() -> Self {
         let map_frame = GridFrame { resolution: 1.0, origin: Point::ZERO, width: 0, height: 0 };

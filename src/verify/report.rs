@@ -281,7 +281,7 @@ fn plain(text: &str) -> String {
 }
 
 /// Writes `text` as XML can hold it.
-fn printable(text: &str) -> String {
+pub(crate) fn printable(text: &str) -> String {
     // Two characters that are no control characters have no place in XML either.
     escape(&plain(text).replace(['\u{fffe}', '\u{ffff}'], "\u{fffd}"))
 }

@@ -3,6 +3,7 @@
 //! Layers hold walls, boxes, circles and polygons, each upright from one height to another. Lengths are metres,
 //! angles degrees, and the key says so. The layer `walls` always belongs to the world; others are chosen.
 
+mod of_world;
 mod write;
 
 use super::{Body, Region, RegionKind, Solid, Tag, World};

@@ -5,6 +5,7 @@
 pub mod document;
 #[cfg(test)]
 mod fixture;
+pub mod floor;
 pub mod floor_plan;
 pub mod generate;
 pub mod map_server;
@@ -39,7 +40,7 @@ const MISSING: &str = " missing";
 /// // A lidar at 2 m looks over the furniture.
 /// assert!(world.slice(2.0).len() < world.slice(0.2).len());
 /// ```
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub struct World {
     /// Name, for people; not part of the meaning.

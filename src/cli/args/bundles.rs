@@ -160,6 +160,10 @@ pub(in crate::cli) struct ReplayArgs {
     /// Write the first trial as a bag of ROS 2 messages (MCAP), as Foxglove and `ros2 bag` read it
     #[arg(long, value_name = "FILE")]
     pub(in crate::cli) mcap: Option<PathBuf>,
+    /// Write the map that the robot of the first trial ended with, as ROS' `map_server` reads it: this YAML, and an image
+    /// (PGM) beside it
+    #[arg(long, value_name = "FILE.yaml")]
+    pub(in crate::cli) map: Option<PathBuf>,
     /// Scans per second in the bag, at most [default: all that were taken]
     #[arg(long, value_name = "HZ", requires = "mcap", value_parser = rate)]
     pub(in crate::cli) scan_rate: Option<f64>,

@@ -1,6 +1,6 @@
 //! What can be typed about studies: to run, check, plan, lock and vary them.
 
-use super::{Format, SelectArgs};
+use super::{DataFormat, Format, SelectArgs};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -68,7 +68,7 @@ pub(in crate::cli) struct PlanArgs {
     pub(in crate::cli) power: bool,
     /// How `--power` is written
     #[arg(long, value_enum, default_value = "human", requires = "power")]
-    pub(in crate::cli) format: Format,
+    pub(in crate::cli) format: DataFormat,
 }
 
 #[derive(Debug, Args)]

@@ -1,16 +1,28 @@
-//! `reenact init`: a working starter study in a folder of its own.
+//! `reenact init`: a working starter study in a folder of its own, or one of somebody's own robot and world.
+
+mod from_files;
 
 use crate::cli::args::InitArgs;
+use crate::cli::calibrate::Calibrator;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::load;
 use crate::cli::terminal::Terminal;
-use std::path::PathBuf;
+use crate::geometry::Pose;
+use crate::json;
+use crate::units::Radians;
+use from_files::Files;
+use std::path::{Path, PathBuf};
 
 const MANIFEST: &str = include_str!("init/study.yaml");
 const WORLD: &str = include_str!("../../../worlds/basic.yaml");
 const ROBOT: &str = include_str!("../../../robots/kobuki.urdf");
+const WORLD_NAME: &str = "apartment.yaml";
+const ROBOT_NAME: &str = "kobuki.urdf";
 
-/// Writes the starter study `NAME/NAME.yaml` with its robot and world.
+/// Where no world reaches (m): a start that is in nobody's way while the world is read.
+const NOWHERE: f64 = 9e5;
+
+/// Writes the study `NAME/NAME.yaml`, with the starter's robot and world where none are named.
 pub(in crate::cli) fn run(args: &InitArgs, terminal: Terminal) -> Result<Exit, Failure> {
     let name = &args.name;
     let plain = |b: u8| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'-';
@@ -26,9 +38,128 @@ pub(in crate::cli) fn run(args: &InitArgs, terminal: Terminal) -> Result<Exit, F
         )));
     }
     let manifest = folder.join(format!("{name}.yaml"));
-    load::write(&manifest, MANIFEST.replace("STUDY-NAME", name).as_bytes())?;
-    load::write(&folder.join("apartment.yaml"), WORLD.as_bytes())?;
-    load::write(&folder.join("kobuki.urdf"), ROBOT.as_bytes())?;
+    let is_own = args.robot.is_some() || args.world.is_some() || args.map.is_some();
+    let (text, has_robot, has_world) = if is_own {
+        (of_files(args, &manifest, terminal)?, args.robot.is_none(), args.world.is_none())
+    } else {
+        (MANIFEST.replace("STUDY-NAME", name), true, true)
+    };
+    load::write(&manifest, text.as_bytes())?;
+    if has_world {
+        load::write(&folder.join(WORLD_NAME), WORLD.as_bytes())?;
+    }
+    if has_robot {
+        load::write(&folder.join(ROBOT_NAME), ROBOT.as_bytes())?;
+    }
+    if is_own {
+        // Whatever is wrong is told now, with the file there to be mended.
+        load::manifest(&manifest, &[], Calibrator::StandIn, terminal)?;
+    }
     terminal.result(&format!("reenact run {}", manifest.display()));
     Ok(Exit::Yes)
+}
+
+/// Writes the manifest of the files that `args` name.
+fn of_files(args: &InitArgs, manifest: &Path, terminal: Terminal) -> Result<String, Failure> {
+    let robot_file = args.robot.as_deref().map_or_else(|| ROBOT_NAME.to_owned(), from_folder);
+    let world_file = args.world.as_deref().map_or_else(|| WORLD_NAME.to_owned(), from_folder);
+    let robot_entry = entry(&robot_file, &[("packages", folders(&args.packages, "--packages")?)]);
+    let model_path: Vec<String> =
+        args.model_path.iter().map(|folder| scalar(&from_folder(folder))).collect();
+    let model_path = (!model_path.is_empty()).then(|| format!("[{}]", model_path.join(", ")));
+    let models = folders(&args.models, "--models")?;
+    let world_entry = format!(
+        "{{{}}}",
+        [
+            Some(format!("file: {}", scalar(&world_file))),
+            models.map(|models| format!("models: {models}")),
+            model_path.map(|path| format!("model-path: {path}")),
+        ]
+        .into_iter()
+        .flatten()
+        .collect::<Vec<_>>()
+        .join(", ")
+    );
+    // Robot and world are read as the manifest will have them read.
+    let draft = format!(
+        "reenact: 1\nname: {}\ntitle: draft\nstudy: wander\nseed: 1\ntrials: 1\nrobot: {robot_entry}\nworld: {world_entry}\n\
+         start: {{x-m: {NOWHERE}, y-m: {NOWHERE}}}\n",
+        args.name
+    );
+    let read = load::draft(manifest, draft, terminal)?;
+    let Some(condition) = read.conditions.first() else {
+        return Err(Failure::failed("a manifest without factors has one condition"));
+    };
+    let (robot, world) = (condition.setup.robot(), condition.setup.world());
+    let start = match &args.start {
+        Some(numbers) => started_at(numbers)?,
+        None => from_files::start(robot, world).ok_or_else(|| {
+            Failure::not_understood(
+                "there is no place in this world where the robot fits; `reenact show` draws both, `--start X,Y` chooses one",
+            )
+        })?,
+    };
+    let files = Files {
+        name: &args.name,
+        robot_entry,
+        robot_file,
+        robot,
+        world_entry,
+        world_file,
+        world,
+        map_file: args.map.as_deref().map(|map| scalar(&from_folder(map))),
+        start,
+    };
+    Ok(files.manifest())
+}
+
+/// Returns the path of `file` from the folder of the study, one below this one.
+fn from_folder(file: &Path) -> String {
+    let path = if file.is_absolute() { file.to_owned() } else { Path::new("..").join(file) };
+    // Manifests separate folders in one way on every system.
+    path.display().to_string().replace('\\', "/")
+}
+
+/// Returns the value of a key that is a `file` alone, or a mapping with what more there is.
+fn entry(file: &str, more: &[(&str, Option<String>)]) -> String {
+    let more: Vec<String> = more
+        .iter()
+        .filter_map(|(key, value)| Some(format!("{key}: {}", value.as_ref()?)))
+        .collect();
+    match more.is_empty() {
+        true => scalar(file),
+        false => format!("{{file: {}, {}}}", scalar(file), more.join(", ")),
+    }
+}
+
+/// Returns the mapping of all `NAME=FOLDER` of an `option`; none where there are none.
+fn folders(written: &[String], option: &str) -> Result<Option<String>, Failure> {
+    let mut entries = Vec::new();
+    for written in written {
+        let Some((name, folder)) = written.split_once('=') else {
+            return Err(Failure::not_understood(format!(
+                "{option}: expected NAME=FOLDER, found `{written}`"
+            )));
+        };
+        entries.push(format!("{}: {}", scalar(name), scalar(&from_folder(Path::new(folder)))));
+    }
+    Ok((!entries.is_empty()).then(|| format!("{{{}}}", entries.join(", "))))
+}
+
+/// Writes a text as YAML reads it anywhere.
+fn scalar(text: &str) -> String {
+    let is_plain = text.bytes().all(|b| b.is_ascii_alphanumeric() || b"._/-".contains(&b))
+        && text.starts_with(|c: char| c.is_ascii_alphabetic() || c == '.' || c == '/');
+    if is_plain { text.to_owned() } else { json::canonical(&text.into()) }
+}
+
+fn started_at(numbers: &[f64]) -> Result<Pose, Failure> {
+    match *numbers {
+        [x, y] => Ok(Pose::new(x, y, 0.0)),
+        [x, y, degrees] => Ok(Pose::new(x, y, Radians::from_degrees(degrees).get())),
+        _ => Err(Failure::not_understood(format!(
+            "--start: expected X,Y (m) or X,Y,HEADING (degrees), found {} numbers",
+            numbers.len()
+        ))),
+    }
 }

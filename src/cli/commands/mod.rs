@@ -8,6 +8,7 @@ pub(super) mod diff;
 mod execution;
 mod exhibit;
 pub(super) mod export;
+pub(super) mod import;
 pub(super) mod infer;
 pub(super) mod init;
 pub(super) mod lock;

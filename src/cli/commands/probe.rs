@@ -2,9 +2,11 @@
 
 use super::execution::{Executed, Execution, Times};
 use super::locked::Held;
+use super::run::{CLASS, lock_case};
 use crate::bundle::{Circumstance, Moment, assemble, seal};
 use crate::cli::args::{Format, RunArgs, SelectArgs};
 use crate::cli::exit::{Exit, Failure};
+use crate::cli::junit::{Came, Case, Suite};
 use crate::cli::load;
 use crate::cli::terminal::Terminal;
 use crate::compare::{Discrepancy, Extent, Lock};
@@ -20,7 +22,7 @@ pub(super) fn run(
     args: &RunArgs,
     environment: &Environment,
     terminal: Terminal,
-) -> Result<Exit, Failure> {
+) -> Result<(Exit, Suite), Failure> {
     let clock = RunClock::start();
     // What a calibration showed may come from the store: the trials that are probed never do.
     let execution = Execution::new(args.jobs, args.no_cache, environment)?;
@@ -42,7 +44,8 @@ pub(super) fn run(
     let probed: Vec<Probed<'_>> = records.iter().map(|record| Probed::of(record, &held)).collect();
     match args.format {
         Format::Human => terminal.result(&in_words(&probed, &held)),
-        Format::Json | Format::Junit => terminal.result(
+        Format::Junit => {}
+        Format::Json => terminal.result(
             &json!({
                 "manifest": manifest.display().to_string(),
                 "lock": held.lock(),
@@ -58,13 +61,20 @@ pub(super) fn run(
         ),
     }
     let drifted = held.told(terminal);
-    Ok(if records.iter().any(|record| record.outcome == Outcome::PANICKED) {
+    let exit = if records.iter().any(|record| record.outcome == Outcome::PANICKED) {
         Exit::Failed
     } else if drifted {
         Exit::No
     } else {
         Exit::Yes
-    })
+    };
+    let suite = Suite {
+        name: manifest.display().to_string(),
+        seconds: clock.elapsed_seconds(),
+        properties: Vec::new(),
+        cases: probed.iter().map(Probed::case).chain([lock_case(&held)]).collect(),
+    };
+    Ok((exit, suite))
 }
 
 /// The first trial of a condition, and whether it is as the lock has it.
@@ -82,6 +92,19 @@ impl<'a> Probed<'a> {
             _ => false,
         };
         Self { record, same: !held.comparison.discrepancies.iter().any(concerns) }
+    }
+}
+
+impl Probed<'_> {
+    /// Returns what is to be said of it to CI.
+    fn case(&self) -> Case {
+        let name = format!("trial {}/{}", self.record.condition.slug(), self.record.trial);
+        let came = match (self.record.outcome == Outcome::PANICKED, self.same) {
+            (true, _) => Came::Broken(self.record.cause.clone()),
+            (false, true) => Came::Passed,
+            (false, false) => Came::Failed("it differs from the lock".to_owned()),
+        };
+        Case { name, class: CLASS, came, said: String::new() }
     }
 }
 

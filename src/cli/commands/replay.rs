@@ -5,6 +5,7 @@ use crate::cli::exit::{Exit, Failure};
 use crate::cli::progress::Working;
 use crate::cli::terminal::{Terminal, counted};
 use crate::cli::{checked, load};
+use crate::geometry::Pose;
 use crate::plan::Plan;
 use crate::report::{
     GainView, Note, Shown, bag_under_banner, drawing_under_banner, gain_svg, page_under_banner,
@@ -13,14 +14,16 @@ use crate::report::{
 use crate::studies::recording::Recording;
 use crate::studies::{self, TrialRecord, prior_map};
 use crate::verify::plan_of;
+use crate::world::map_server;
+use std::path::Path;
 
 /// Re-enacts one trial or two.
 pub(in crate::cli) fn run(args: &ReplayArgs, terminal: Terminal) -> Result<Exit, Failure> {
-    let asked = [&args.html, &args.svg, &args.mcap, &args.plans];
+    let asked = [&args.html, &args.svg, &args.mcap, &args.map, &args.plans];
     if asked.iter().all(|file| file.is_none()) {
         return Err(Failure::not_understood(
             "say what to write: `--html FILE` for a page in which the trial plays, `--svg FILE` for a still, `--mcap FILE` \
-             for a bag of ROS 2 messages, `--plans DIR` for the plans of a deadline study",
+             for a bag of ROS 2 messages, `--map FILE.yaml` for the map that the robot made, `--plans DIR` for the plans of a deadline study",
         ));
     }
     let checked::Checked { bundle, words, banner } = checked::bundle(&args.bundle, args.unchecked)?;
@@ -86,6 +89,9 @@ pub(in crate::cli) fn run(args: &ReplayArgs, terminal: Terminal) -> Result<Exit,
             terminal.note(&format!("  {topic}: {}", counted(*count as usize, "message")));
         }
     }
+    if let (Some(path), Some((name, recording))) = (&args.map, played.first()) {
+        write_map(path, name, recording, terminal)?;
+    }
     if let (Some(folder), Some((_, recording))) = (&args.plans, played.first()) {
         for (i, plan) in recording.plans.iter().enumerate() {
             let name = format!("plan-{:03}-at-{:.1}-s.json", i + 1, plan.time_s);
@@ -98,6 +104,27 @@ pub(in crate::cli) fn run(args: &ReplayArgs, terminal: Terminal) -> Result<Exit,
     let told: Vec<&str> = std::iter::once(words.as_str()).chain(told).collect();
     terminal.result(&told.join("\n"));
     Ok(exit)
+}
+
+/// Writes the map of the trial `name` to `path` and its image beside it, in the world's frame.
+fn write_map(
+    path: &Path,
+    name: &str,
+    recording: &Recording,
+    terminal: Terminal,
+) -> Result<(), Failure> {
+    let Some(map) = recording.final_map() else {
+        return Err(Failure::not_understood(format!("the robot of {name} made no metric map")));
+    };
+    let image = path.with_extension("pgm");
+    let image_name = image.file_name().unwrap_or_default().to_string_lossy();
+    let corner = map.frame().origin;
+    let origin = recording.map_pose.compose(Pose::new(corner.x, corner.y, 0.0));
+    let [descriptor, pixels] = map_server::write_at(&map, origin, &image_name);
+    load::write(path, &descriptor)?;
+    load::write(&image, &pixels)?;
+    terminal.note(&format!("wrote {} and {}", path.display(), image.display()));
+    Ok(())
 }
 
 /// Returns when (s) the trial first covered `percent`.

@@ -5,10 +5,11 @@ use super::locked::{self, Held};
 use super::{exhibit, probe, verdicts};
 use crate::bundle::wall_time;
 use crate::bundle::{Additions, Form, Sealed, assemble, capsule, format, seal_with};
-use crate::claims::ClaimVerdict;
+use crate::claims::{ClaimVerdict, Judgement};
 use crate::cli::args::{Format, RunArgs};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::fold::{narrowed, wrapped};
+use crate::cli::junit::{self, Came, Case, Suite};
 use crate::cli::terminal::{Terminal, counted};
 use crate::cli::{interrupt, load};
 use crate::compare::Lock;
@@ -29,18 +30,54 @@ pub(in crate::cli) fn run(
     // A missing lock is reported before anything is simulated.
     let locks = locked::locks(args, terminal)?;
     let mut exit = Exit::Yes;
+    let mut suites = Vec::new();
+    let mut failure = None;
     for (manifest, lock) in args.manifests.iter().zip(locks) {
         let one = match lock {
             Some(lock) if args.lock.probe => {
-                probe::run(manifest, &lock, args, environment, terminal)?
+                probe::run(manifest, &lock, args, environment, terminal)
             }
-            lock => run_one(manifest, lock.as_ref(), args, environment, terminal)?,
+            lock => run_one(manifest, lock.as_ref(), args, environment, terminal),
         };
-        if one.code() > exit.code() {
-            exit = one;
+        match one {
+            Ok((one, suite)) => {
+                suites.push(suite);
+                if one.code() > exit.code() {
+                    exit = one;
+                }
+            }
+            Err(why) => {
+                suites.push(unfinished(manifest, &why));
+                failure = Some(why);
+                break;
+            }
         }
     }
-    Ok(exit)
+    if args.format == Format::Junit {
+        terminal.result(&junit::document("run", &suites));
+    }
+    failure.map_or(Ok(exit), Err)
+}
+
+/// Returns what is to be said to CI of a `manifest` that could not be run.
+fn unfinished(manifest: &Path, why: &Failure) -> Suite {
+    let came = Came::Broken(why.message.clone());
+    let case = Case { name: "manifest".to_owned(), class: CLASS, came, said: String::new() };
+    let name = manifest.display().to_string();
+    Suite { name, seconds: 0.0, properties: Vec::new(), cases: vec![case] }
+}
+
+/// The class of all cases of a run.
+pub(super) const CLASS: &str = "reenact.run";
+
+/// Returns the case of a `lock` that a run was `held` against.
+pub(super) fn lock_case(held: &Held) -> Case {
+    let came = if held.comparison.is_same() {
+        Came::Passed
+    } else {
+        Came::Failed(held.in_words().trim().to_owned())
+    };
+    Case { name: format!("as in {}", held.lock()), class: CLASS, came, said: String::new() }
 }
 
 fn run_one(
@@ -49,7 +86,7 @@ fn run_one(
     args: &RunArgs,
     environment: &Environment,
     terminal: Terminal,
-) -> Result<Exit, Failure> {
+) -> Result<(Exit, Suite), Failure> {
     let clock = RunClock::start();
     let execution = Execution::new(args.jobs, args.no_cache, environment)?;
     let loaded = load::manifest(manifest, &args.select.set, execution.calibrator(), terminal)?;
@@ -94,16 +131,18 @@ fn run_one(
     };
     match args.format {
         Format::Human => done.tell(terminal),
-        Format::Json | Format::Junit => terminal.result(&done.to_json()),
+        Format::Json => terminal.result(&done.to_json()),
+        Format::Junit => {}
     }
     let drifted = done.held.as_ref().is_some_and(|held| held.told(terminal));
-    Ok(if done.failed() > 0 {
+    let exit = if done.failed() > 0 {
         Exit::Failed
     } else if drifted {
         Exit::No
     } else {
         Exit::Yes
-    })
+    };
+    Ok((exit, done.to_suite(manifest)))
 }
 
 /// A finished run.
@@ -193,6 +232,50 @@ impl Done {
         }
         text.push_str(&format!(", {:.0} s of simulated time\n", self.sim_seconds()));
         text
+    }
+
+    /// Returns what is to be said to CI: a case for each condition, each claim and the lock.
+    fn to_suite(&self, manifest: &Path) -> Suite {
+        let design = self.plan.experiment.design();
+        let conditions = design.filter_map(|(condition, _)| {
+            let slug = condition.slug();
+            let trials: Vec<&TrialRecord> =
+                self.records.iter().filter(|record| record.condition == *condition).collect();
+            let failed: Vec<String> = trials
+                .iter()
+                .filter(|record| record.outcome == Outcome::PANICKED)
+                .map(|record| format!("trial {slug}/{} failed: {}", record.trial, record.cause))
+                .collect();
+            let came = match failed.is_empty() {
+                true => Came::Passed,
+                false => Came::Broken(failed.join("\n")),
+            };
+            let name = format!("{} of {slug}", counted(trials.len(), "trial"));
+            let case = Case { name, class: CLASS, came, said: String::new() };
+            (!trials.is_empty()).then_some(case)
+        });
+        let verdicts = self.verdicts.iter().chain(&self.machine_verdicts);
+        let claims = verdicts.map(|verdict| {
+            let said = [Some(verdict.judgement.to_string()), Some(verdict.reason.clone())];
+            let said: Vec<String> = said.into_iter().flatten().filter(|s| !s.is_empty()).collect();
+            let said = said.join(": ");
+            let came = match verdict.judgement {
+                Judgement::Supported | Judgement::Contradicted => Came::Passed,
+                Judgement::Inconclusive | Judgement::CannotBeTested => Came::Skipped(said.clone()),
+            };
+            Case { name: format!("claim {}", verdict.id), class: CLASS, came, said }
+        });
+        let lock = self.held.iter().map(lock_case);
+        Suite {
+            name: manifest.display().to_string(),
+            seconds: self.wall_seconds,
+            properties: vec![
+                ("bundle", self.path.display().to_string()),
+                ("results-digest", format!("sha256:{}", self.sealed.results_digest)),
+                ("partial", self.plan.partial.to_string()),
+            ],
+            cases: conditions.chain(claims).chain(lock).collect(),
+        }
     }
 
     fn to_json(&self) -> String {

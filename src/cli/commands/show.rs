@@ -44,6 +44,18 @@ impl Models for Shelf {
     }
 }
 
+/// Returns the meshes of a world that lies in the folder `beside`, with the folders that `models` give as `NAME=FOLDER`.
+pub(super) fn shelf(models: &[String], beside: PathBuf) -> Result<impl Models, Failure> {
+    let folder_of = |written: &String| match written.split_once('=') {
+        Some((name, folder)) => Ok((name.to_owned(), folder.to_owned())),
+        None => Err(Failure::not_understood(format!(
+            "--models: expected NAME=FOLDER, found `{written}`"
+        ))),
+    };
+    let folders: BTreeMap<_, _> = models.iter().map(folder_of).collect::<Result<_, _>>()?;
+    Ok(Shelf { beside, folders })
+}
+
 /// Draws what is asked for of the file `name`.
 fn draw(
     args: &ShowArgs,
@@ -61,14 +73,7 @@ fn draw(
         terminal.diagnostics(&faults);
         Failure::not_understood(format!("{name}: {}", Terminal::count(&faults)))
     };
-    let folder_of = |written: &String| match written.split_once('=') {
-        Some((name, folder)) => Ok((name.to_owned(), folder.to_owned())),
-        None => Err(Failure::not_understood(format!(
-            "--models: expected NAME=FOLDER, found `{written}`"
-        ))),
-    };
-    let folders: BTreeMap<_, _> = args.models.iter().map(folder_of).collect::<Result<_, _>>()?;
-    let mut shelf = Shelf { beside: beside(file), folders };
+    let mut shelf = shelf(&args.models, beside(file))?;
     let mut world =
         || show::read_world(name, bytes, args.layers.as_deref(), &mut shelf).map_err(told);
     match (args.derive, &args.over) {

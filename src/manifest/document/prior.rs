@@ -22,12 +22,15 @@ pub enum PriorDoc {
     Previous(PreviousMapOf),
 }
 
-/// A `map_server` map.
+/// A `map_server` map, or that of a bag.
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub struct MapPrior {
-    /// The `map_server` YAML file.
+    /// The `map_server` YAML file; or a bag (`.mcap`) with a `nav_msgs/msg/OccupancyGrid`, of which the last counts.
     pub map: String,
+    /// Bag: the topic of the grid; where left out, the one that holds grids, or `/map`.
+    #[serde(default)]
+    pub topic: Option<String>,
     /// The frame its origin is given in.
     #[serde(default)]
     pub frame: PriorFrame,

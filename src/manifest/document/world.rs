@@ -3,6 +3,7 @@
 use crate::manifest::choice::Choice;
 use crate::world::document::LayerDoc;
 use crate::world::generate::Family;
+use crate::world::map_server::solid::UnknownCells;
 use schemars::JsonSchema;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -74,7 +75,7 @@ pub enum SeedDoc {
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub struct WorldFile {
-    /// World YAML, or a Gazebo `.world` or `.sdf` file.
+    /// World YAML, a Gazebo `.world` or `.sdf` file, or the YAML of a `map_server` map: its occupied cells are walls.
     pub file: Choice<String>,
     /// Layers that stand; all where left out.
     #[serde(default)]
@@ -87,6 +88,9 @@ pub struct WorldFile {
     /// the collision. They go before a file.
     #[serde(default)]
     pub stand_ins: BTreeMap<String, LayerDoc>,
+    /// Map: what its unknown cells are. By default they are walls where they border on free floor.
+    #[serde(default)]
+    pub unknown: Option<UnknownCells>,
     /// Where goal and starts lie instead of where the world has them.
     #[serde(default)]
     pub place: Option<PlaceDoc>,

@@ -123,3 +123,31 @@ fn the_same_recording_gives_the_same_bytes_and_an_empty_one_a_bag() {
     let empty = bag(&Recording::default(), None).unwrap();
     assert_eq!(empty.counts.keys().copied().collect::<Vec<_>>(), ["/tf_static", "/world"]);
 }
+
+/// Checks that the map in a bag of ours is that of the recording: whoever maps with ROS has such a bag.
+#[test]
+fn the_map_in_a_bag_is_read_back() {
+    use crate::world::map_server::bag::{BagError, read_bag};
+    let recording = sensing();
+    let bytes = bag(&recording, None).unwrap().bytes;
+    let (map, made) = (read_bag(&bytes, None).unwrap(), recording.final_map().unwrap());
+    assert_eq!(map.values(), made.values());
+    let (found, frame) = (map.frame(), made.frame());
+    assert_eq!((found.width, found.height), (frame.width, frame.height));
+    assert!((found.resolution - frame.resolution).abs() < 1e-9);
+    assert!(found.origin.distance(frame.origin) < 1e-9);
+    assert_eq!(read_bag(&bytes, Some("/map")).unwrap().values(), made.values());
+    let prior = read_bag(&bytes, Some("/prior_map")).unwrap();
+    assert_eq!(prior.values(), recording.prior.as_ref().unwrap().values());
+    let wrong = read_bag(&bytes, Some("/grid")).unwrap_err();
+    assert!(
+        matches!(&wrong, BagError::NoTopic { known, .. } if known.contains("`/map`")),
+        "{wrong}"
+    );
+    for cut in (0..bytes.len()).step_by(bytes.len() / 97) {
+        let mut damaged = bytes.clone();
+        damaged[cut] ^= 0x55;
+        // Read or refused; never worse.
+        let _ = (read_bag(&bytes[..cut], None), read_bag(&damaged, None));
+    }
+}

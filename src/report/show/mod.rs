@@ -22,8 +22,9 @@ use crate::document::{Diagnostic, Source};
 use crate::grid::OccupancyGrid;
 use crate::robot::urdf;
 use crate::studies::prior_map::tour;
+use crate::world::map_server::{self, Descriptor};
 use crate::world::topology::{TagFault, TagScheme, Topology};
-use crate::world::{document as world_document, map_server, sdf};
+use crate::world::{document as world_document, sdf};
 
 /// Height (m) at which worlds are cut where no robot says otherwise: the lidar of the studies' Kobuki.
 pub const CUT_HEIGHT: f64 = 0.1602;
@@ -78,13 +79,13 @@ pub fn draw(
         }
         return Ok(drawn_world(&sdf::read_with(&source, models)?, height));
     }
-    if text.lines().any(|line| line.starts_with("image:")) {
-        let map = read_map(name, &source, fetch)?;
+    if map_server::is_descriptor(text) {
+        let (map, warnings) = read_map(name, &source, fetch)?;
         return Ok(Drawing {
             svg: grid_svg(name, &map),
             png: Some(grid_png(&map)),
             text: describe_grid(name, &map),
-            warnings: Vec::new(),
+            warnings,
         });
     }
     if text.lines().any(|line| line.starts_with("reenact-topo-metric-map:")) {
@@ -98,12 +99,15 @@ fn read_map(
     name: &str,
     source: &Source,
     fetch: &mut Fetch<'_>,
-) -> Result<OccupancyGrid, Vec<Diagnostic>> {
-    let path = map_server::image_path(source)?;
-    let image = fetch(&path).map_err(|why| {
+) -> Result<(OccupancyGrid, Vec<Diagnostic>), Vec<Diagnostic>> {
+    let descriptor = Descriptor::read(source)?;
+    let path = descriptor.image();
+    let image = fetch(path).map_err(|why| {
         vec![Diagnostic::placeless(format!("cannot read the image `{path}` of `{name}`: {why}"))]
     })?;
-    map_server::read(source, &path, &image, map_server::Options::default())
+    let map = descriptor.map(path, &image, map_server::Options::default())?;
+    let warnings = descriptor.warnings().iter().cloned().chain(descriptor.doubt(&map)).collect();
+    Ok((map, warnings))
 }
 
 fn drawn_world(world: &crate::world::World, height: f64) -> Drawing {

@@ -111,7 +111,7 @@ pub fn draw_over(
     if text.lines().any(|line| line.starts_with("reenact-topo-metric-map:")) {
         return Ok(topo_metric::drawn_over(over.name, &tour::read(&source)?, world, height));
     }
-    let map = super::read_map(over.name, &source, fetch)?;
+    let (map, warnings) = super::read_map(over.name, &source, fetch)?;
     let frame = GridFrame { origin: map.frame().origin + over.start, ..*map.frame() };
     let map = OccupancyGrid::from_cells(frame, map.values().to_vec());
     let mut drawing = drawn_world(world, height);
@@ -119,6 +119,7 @@ pub fn draw_over(
     drawing.text = describe_world(world, height) + &describe_grid(over.name, &map);
     let solids = world.slice(height);
     drawing.text.push_str(&alignment(&map, over.start, &solids));
+    drawing.warnings.extend(warnings);
     Ok(drawing)
 }
 

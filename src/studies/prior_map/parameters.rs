@@ -4,7 +4,7 @@
 //!
 //! Over 400 lines, as it is one list: every parameter with its meaning, range and source, to be read from top to bottom.
 
-use crate::mapping::{FilterRule, KeyframeRule, MatchRule, MotionNoise, ScanRule};
+use crate::mapping::{FilterRule, KeyframeRule, MatchRule, MotionNoise, NoReturn, ScanRule};
 use crate::studies::parameters;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -81,6 +81,8 @@ parameters!(
         /// Beams are cut to this range (m); `null` means the sensor's own range.
         #[schemars(extend("exclusiveMinimum" = 0))]
         clip_range_m: Option<f64> = None,
+        /// What a beam tells that comes back with nothing within the scanner's range.
+        no_return: NoReturn = NoReturn::Free,
         /// A visited cell is occupied where more than this share of its visits were hits, 0 to 1.
         #[schemars(range(min = 0.0, max = 1.0))]
         hit_ratio: f64 = 0.05,
@@ -156,6 +158,7 @@ impl Mapping {
             // A beam at exactly the sensor's range still hit something.
             clip_range: self.clip_range_m.unwrap_or(f64::INFINITY),
             hit_ratio: self.hit_ratio,
+            no_return: self.no_return,
         }
     }
 

@@ -25,6 +25,12 @@ impl Outcome {
     /// Prior map: no frontier is left that the robot could go to.
     pub const EXPLORED: Self =
         Self::new("explored", End::Success, "no frontier was left that the robot could go to");
+    /// Prior map: no frontier is left but those given up, and most of the floor was never seen.
+    pub const GAVE_UP: Self = Self::new(
+        "gave-up",
+        End::Failure,
+        "the robot gave up every frontier before half of what can be seen was covered",
+    );
     /// Prior map: as much was covered as the manifest asks for.
     pub const COVERED: Self = Self::new(
         "covered",
@@ -74,7 +80,12 @@ impl Study for PriorMap {
     }
 
     fn outcomes(&self) -> &'static [Outcome] {
-        &[Outcome::EXPLORED, Outcome::STUCK, Outcome::TIME_LIMIT]
+        &[Outcome::EXPLORED, Outcome::GAVE_UP, Outcome::STUCK, Outcome::TIME_LIMIT]
+    }
+
+    /// Returns 1: what beams tell that come back with nothing, and trials that give up early.
+    fn revision(&self) -> u32 {
+        1
     }
 
     fn further_outcomes(&self) -> &'static [Outcome] {

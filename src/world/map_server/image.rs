@@ -1,5 +1,7 @@
 //! Images in `map_server`'s form: colours of 8 bits, perhaps with alpha, row by row from the top.
 
+mod netpbm;
+
 use std::io::Cursor;
 use thiserror::Error;
 
@@ -34,8 +36,10 @@ pub(super) struct Image {
 /// Why bytes are no image.
 #[derive(Debug, Error)]
 pub(super) enum ImageError {
-    #[error("it begins like neither a PNG nor a PGM")]
+    #[error("it begins like neither a PNG nor a picture of Netpbm (PGM, PPM, PBM)")]
     UnknownFormat,
+    #[error("it is a {0}, which is not read")]
+    Foreign(&'static str),
     #[error("{0}")]
     Png(#[from] png::DecodingError),
     #[error("it has {width} x {height} pixels, expected 1 to {MAX_PIXELS}")]
@@ -50,11 +54,33 @@ pub(super) enum ImageError {
     Bright { index: usize, found: u64, largest: u64 },
 }
 
-/// Decodes a PNG or PGM.
+impl ImageError {
+    /// Returns what to do about it, for the image `name`.
+    pub(super) fn help(&self, name: &str) -> String {
+        match self {
+            Self::Foreign(_) => {
+                let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+                format!(
+                    "convert it (`convert {name} {stem}.png` of ImageMagick) and name `{stem}.png`"
+                )
+            }
+            _ => "expected an 8 or 16 bit PNG, or a PGM, PPM or PBM (P1 to P6)".to_owned(),
+        }
+    }
+}
+
+/// Decodes a PNG or a picture of Netpbm.
 pub(super) fn decode(bytes: &[u8]) -> Result<Image, ImageError> {
     match bytes {
         [0x89, b'P', b'N', b'G', ..] => decode_png(bytes),
-        [b'P', b'2' | b'5', ..] => decode_pgm(bytes),
+        [b'P', b'1'..=b'6', ..] => netpbm::decode(bytes),
+        [0xff, 0xd8, 0xff, ..] => Err(ImageError::Foreign("JPEG")),
+        [b'B', b'M', ..] => Err(ImageError::Foreign("BMP")),
+        [b'G', b'I', b'F', b'8', ..] => Err(ImageError::Foreign("GIF")),
+        [b'I', b'I', 42, 0, ..] | [b'M', b'M', 0, 42, ..] => Err(ImageError::Foreign("TIFF")),
+        [b'R', b'I', b'F', b'F', _, _, _, _, b'W', b'E', b'B', b'P', ..] => {
+            Err(ImageError::Foreign("WebP"))
+        }
         _ => Err(ImageError::UnknownFormat),
     }
 }
@@ -94,63 +120,25 @@ fn decode_png(bytes: &[u8]) -> Result<Image, ImageError> {
     Ok(Image { width, height, pixels })
 }
 
-/// Decodes Netpbm's PGM, plain (P2) or raw (P5): netpbm.sourceforge.net/doc/pgm.html. Greys are scaled to 0..255.
-fn decode_pgm(bytes: &[u8]) -> Result<Image, ImageError> {
-    let mut at = 2;
-    let width = header_number(bytes, &mut at).ok_or(ImageError::Header("width"))?;
-    let height = header_number(bytes, &mut at).ok_or(ImageError::Header("height"))?;
-    let largest = header_number(bytes, &mut at).ok_or(ImageError::Header("largest grey"))?;
-    let (width, height, count) = checked(width, height)?;
-    if !(1..=65535).contains(&largest) {
-        return Err(ImageError::Depth(largest));
-    }
-    let mut pixels = Vec::new();
-    if bytes[1] == b'2' {
-        while pixels.len() < count {
-            let Some(grey) = header_number(bytes, &mut at) else { break };
-            pixels.push(scaled(grey, largest, pixels.len())?);
-        }
-    } else {
-        at += 1; // the one blank after the header
-        let wide = if largest > 255 { 2 } else { 1 };
-        for sample in bytes.get(at..).unwrap_or(&[]).chunks_exact(wide).take(count) {
-            let grey = sample.iter().fold(0, |grey, byte| grey * 256 + u64::from(*byte));
-            pixels.push(scaled(grey, largest, pixels.len())?);
-        }
-    }
-    if pixels.len() < count {
-        return Err(ImageError::Short { found: pixels.len(), expected: count });
-    }
-    Ok(Image { width, height, pixels })
-}
-
-fn scaled(grey: u64, largest: u64, index: usize) -> Result<Pixel, ImageError> {
-    if grey > largest {
-        return Err(ImageError::Bright { index, found: grey, largest });
-    }
-    Ok(Pixel::grey(u8::try_from((grey * 255 + largest / 2) / largest).unwrap_or(u8::MAX)))
-}
-
-/// Reads the decimal number after blanks and `#` comments at `at`, which moves behind it.
-fn header_number(bytes: &[u8], at: &mut usize) -> Option<u64> {
-    loop {
-        match bytes.get(*at)? {
-            b'#' => *at += bytes[*at..].iter().position(|b| *b == b'\n')?,
-            byte if byte.is_ascii_whitespace() => *at += 1,
-            _ => break,
-        }
-    }
-    let digits = bytes[*at..].iter().take_while(|b| b.is_ascii_digit()).count();
-    let text = std::str::from_utf8(&bytes[*at..*at + digits]).ok()?;
-    *at += digits;
-    text.parse().ok()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::document::mutation::{edits, mutate};
     use proptest::prelude::*;
+
+    #[test]
+    fn colours_and_bits_of_netpbm_are_read() {
+        let plain = decode(b"P3\n2 1\n255\n10 20 30  255 0 7\n").unwrap();
+        let raw = decode(b"P6 2 1 255\n\x0a\x14\x1e\xff\x00\x07").unwrap();
+        assert_eq!(plain, raw);
+        assert_eq!(raw.pixels[0].color, [10, 20, 30]);
+        // A one is black; rows of raw bits fill bytes.
+        let bits = decode(b"P1 # walls\n3 2\n1 0 1\n010").unwrap();
+        assert_eq!(greys(&bits), [0, 255, 0, 255, 0, 255]);
+        assert_eq!(decode(b"P4\n3 2\n\xa0\x40").unwrap(), bits);
+        let wide = decode(b"P4 9 1\n\x00\x80").unwrap();
+        assert_eq!(greys(&wide), [255, 255, 255, 255, 255, 255, 255, 255, 0]);
+    }
 
     fn greys(image: &Image) -> Vec<u8> {
         image.pixels.iter().map(|pixel| pixel.color[0]).collect()
@@ -170,7 +158,10 @@ mod tests {
     #[test]
     fn what_is_wrong_is_said() {
         for (bytes, said) in [
-            (&b"GIF89a"[..], "it begins like neither a PNG nor a PGM"),
+            (&b"GIF89a"[..], "it is a GIF, which is not read"),
+            (b"\xff\xd8\xff\xe0", "it is a JPEG, which is not read"),
+            (b"BM6", "it is a BMP, which is not read"),
+            (b"%PDF", "it begins like neither a PNG nor a picture of Netpbm (PGM, PPM, PBM)"),
             (b"P5\n3", "its header has no height"),
             (b"P5\n0 3\n255\n", "it has 0 x 3 pixels, expected 1 to 8388608"),
             (b"P5\n99999 99999\n255\n", "it has 99999 x 99999 pixels, expected 1 to 8388608"),
@@ -189,7 +180,7 @@ mod tests {
             let mut encoder = png::Encoder::new(&mut file, 6, 5);
             encoder.set_color(png::ColorType::Rgba);
             encoder.write_header().unwrap().write_image_data(&[77; 120]).unwrap();
-            for bytes in [&file[..], b"P5\n3 2\n255\n\x00\x64\xcd\xfe\xff\x07", b"P2 3 1 15\n0 9 15"] {
+            for bytes in [&file[..], b"P5\n3 2\n255\n\x00\x64\xcd\xfe\xff\x07", b"P2 3 1 15\n0 9 15", b"P4 9 1\n\x00\x80", b"P6 1 1 9\nabc"] {
                 if let Ok(image) = decode(&mutate(bytes, &edits)) {
                     let area = i64::from(image.width) * i64::from(image.height);
                     prop_assert_eq!(i64::try_from(image.pixels.len()), Ok(area));

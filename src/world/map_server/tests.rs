@@ -1,6 +1,7 @@
 use super::*;
 use crate::document::mutation::{edits, mutate};
-use crate::grid::Cell;
+use crate::geometry::Point;
+use crate::grid::{Cell, Occupancy};
 use crate::world::originals;
 use Occupancy::{Free, Occupied, Unknown};
 use proptest::prelude::*;
@@ -27,7 +28,7 @@ fn the_top_of_the_image_is_north() {
     assert_eq!(frame.origin, Point::new(-11.9, -7.1));
     assert_eq!(map.values(), [Unknown, Occupied, Free, Free, Occupied, Free]);
     assert_eq!(map.at(Cell::new(0, 2)), Occupied);
-    assert_eq!(image_path(&Source::new("m.yaml", YAML)).unwrap(), "a.png");
+    assert_eq!(Descriptor::read(&Source::new("m.yaml", YAML)).unwrap().image(), "a.png");
 }
 
 #[test]
@@ -90,19 +91,96 @@ error: resolution out of range
   |             ^^^^ expected metres per pixel, above zero
 "
     );
-    assert!(fault(", 0.0]", ", 0.5]").contains("turned maps cannot be read"));
+    assert_eq!(
+        fault(", 0.0]", ", 90]"),
+        "\
+error: the map is turned by more than once around
+ --> m.yaml:3:23
+  |
+3 | origin: [-11.9, -7.1, 90]
+  |                       ^^ expected a yaw in radians: is this in degrees?
+"
+    );
     assert!(
         fault("free_thresh: 0.196", "free_thresh: 0.7")
             .contains("expected a number above free_thresh")
     );
-    assert!(fault("negate: 0", "negate: 2").contains("expected 0 or 1"));
-    assert!(fault("resolution: 0.1", "resolutoin: 0.1").contains("resolution"));
+    assert!(fault("negate: 0", "negate: 2").contains("expected 0, 1, true or false"));
+    assert!(fault("resolution: 0.1", "resolutoin: 0.1").contains("`resolution`"));
     let source = Source::new("m.yaml", YAML);
-    let faults = read(&source, "maps/a.gif", b"GIF89a", Options::default()).unwrap_err();
+    let image = |bytes: &[u8]| {
+        let faults = read(&source, "maps/a.gif", bytes, Options::default()).unwrap_err();
+        faults[0].render(false)
+    };
     assert_eq!(
-        faults[0].render(false),
-        "error: cannot read the image `maps/a.gif`: it begins like neither a PNG nor a PGM\n |\n \
-         = help: expected an 8 or 16 bit PNG, or a PGM (P2 or P5)\n"
+        image(b"GIF89a"),
+        "error: cannot read the image `maps/a.gif`: it is a GIF, which is not read\n |\n \
+         = help: convert it (`convert maps/a.gif maps/a.png` of ImageMagick) and name `maps/a.png`\n"
+    );
+    assert_eq!(
+        image(b"%PDF"),
+        "error: cannot read the image `maps/a.gif`: it begins like neither a PNG nor a picture of Netpbm (PGM, PPM, PBM)\n |\n \
+         = help: expected an 8 or 16 bit PNG, or a PGM, PPM or PBM (P1 to P6)\n"
+    );
+}
+
+/// Checks what Nav2's own maps hold: keys of other programs, truth values, a byte order mark, an origin that is turned.
+#[test]
+fn descriptors_of_other_programs_are_read() {
+    let text = format!("\u{feff}{YAML}map_type: occupancy\nocupied_thresh: 0.5\n");
+    let text = text.replace("negate: 0", "negate: true");
+    let descriptor = Descriptor::read(&Source::new("m.yaml", text)).unwrap();
+    let warnings: String = descriptor.warnings().iter().map(|fault| fault.render(false)).collect();
+    assert_eq!(
+        warnings,
+        "\
+warning: `map_type` means nothing to a map
+ --> m.yaml:7:1
+  |
+7 | map_type: occupancy
+  | ^^^^^^^^ left out, as in ROS
+  |
+  = help: known: image, resolution, origin, occupied_thresh, free_thresh, negate, mode
+warning: `ocupied_thresh` means nothing to a map
+ --> m.yaml:8:1
+  |
+8 | ocupied_thresh: 0.5
+  | ^^^^^^^^^^^^^^ left out, as in ROS
+  |
+  = help: did you mean `occupied_thresh`? (known: image, resolution, origin, occupied_thresh, free_thresh, negate, mode)
+"
+    );
+    let map = descriptor.map("a.pgm", b"P2 3 1 255\n0 255 128\n", Options::default()).unwrap();
+    assert_eq!(map.values(), [Free, Occupied, Unknown]);
+
+    let turned = YAML.replace("0.0]", "1.5707963]");
+    let source = Source::new("m.yaml", turned);
+    let map = read(&source, "a.pgm", b"P2 2 1 255\n0 254\n", Options::default()).unwrap();
+    // Its row stands upright, to the left of where it began.
+    assert_eq!((map.frame().width, map.frame().height), (1, 2));
+    assert!(map.frame().origin.distance(Point::new(-12.0, -7.1)) < 1e-6);
+    assert_eq!(map.values(), [Occupied, Free]);
+}
+
+#[test]
+fn a_map_that_is_mostly_wall_is_doubted() {
+    let doubt = |text: &str| {
+        let descriptor = Descriptor::read(&Source::new("m.yaml", text)).unwrap();
+        let map = descriptor.map("a.png", b"P2 4 1 255\n0 254 254 254\n", Options::default());
+        descriptor.doubt(&map.unwrap()).map(|fault| fault.render(false))
+    };
+    assert_eq!(doubt(YAML), None);
+    assert_eq!(
+        doubt(&YAML.replace("negate: 0", "negate: 1")).unwrap(),
+        "\
+warning: the map of `a.png` is mostly wall
+ --> m.yaml:6:1
+  |
+6 | negate: 1
+  | ^^^^^^ 3 cells are occupied and 1 free
+  |
+  = help: in most maps white is free: is `negate` the wrong way round, or a threshold?
+"
     );
 }
 
@@ -119,7 +197,7 @@ fn the_original_maps_hold_the_published_counts() {
         ("closed", 13116, 144_004),
     ] {
         let yaml = originals::source(&folder.join(format!("maps/{name}.yaml")));
-        let path = image_path(&yaml).unwrap();
+        let path = Descriptor::read(&yaml).unwrap().image().to_owned();
         let image = std::fs::read(folder.join("maps").join(&path)).unwrap();
         let map = read(&yaml, &path, &image, Options::default()).unwrap();
         assert_eq!((map.count(Occupied), map.count(Free)), (occupied, free), "{name}");
@@ -127,7 +205,7 @@ fn the_original_maps_hold_the_published_counts() {
     // The previous map t1: its greys of 205 are free with the alpha channel averaged, unknown without.
     let yaml =
         originals::source(&folder.join("priors/blueprint_map_server_sequential_t1_map.yaml"));
-    let path = image_path(&yaml).unwrap();
+    let path = Descriptor::read(&yaml).unwrap().image().to_owned();
     let image = std::fs::read(folder.join("priors").join(&path)).unwrap();
     let map = read(&yaml, &path, &image, Options::default()).unwrap();
     assert_eq!((map.count(Occupied), map.count(Free), map.count(Unknown)), (1868, 17322, 0));

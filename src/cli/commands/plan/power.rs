@@ -2,13 +2,13 @@
 
 use crate::claims::power::{Chance, Power, PowerError, REPLICATES, power as power_of};
 use crate::claims::{Claim, Context};
-use crate::cli::args::Format;
+use crate::cli::args::DataFormat;
 use crate::condition::Condition;
 use crate::plan::Plan;
 use serde_json::{Value, json};
 
 /// Returns the power of `plan` for every claim that assumes a truth, and why the others have none.
-pub(super) fn power(plan: &Plan, format: Format) -> String {
+pub(super) fn power(plan: &Plan, format: DataFormat) -> String {
     let experiment = &plan.experiment;
     let context = Context::new(&experiment.published, &experiment.shared_noise, experiment.seed);
     let mut conditions: Vec<Condition> = Vec::new();
@@ -30,8 +30,8 @@ pub(super) fn power(plan: &Plan, format: Format) -> String {
         })
         .collect();
     match format {
-        Format::Human => in_words(planned, &found),
-        Format::Json | Format::Junit => {
+        DataFormat::Human => in_words(planned, &found),
+        DataFormat::Json => {
             let claims: Vec<Value> =
                 found.iter().map(|(claim, power)| line(claim, power)).collect();
             json!({"planned": planned, "studies": REPLICATES, "claims": claims}).to_string()

@@ -49,6 +49,9 @@ use trace::Trace;
 /// Recorded at every milestone where a manifest asks for further measures.
 pub const FURTHER_AT_MILESTONES: [&str; 2] = ["decisions", "open-frontiers"];
 
+/// Coverage (percent) below which a robot that gives up the frontiers left has not explored its surroundings.
+const EXPLORED_FROM_PERCENT: f64 = 50.0;
+
 /// The data that all trials of a setup share: computed once, from the setup alone.
 #[derive(Debug)]
 pub struct Prepared {
@@ -403,9 +406,23 @@ impl Mission<'_> {
         }
     }
 
+    /// Returns how a trial ends whose robot has no frontier left: not as explored where it gave some up and most is yet to
+    /// be seen.
+    fn without_frontiers(&self) -> (Outcome, String) {
+        let (given_up, covered) = (self.mind.given_up(), self.trace.coverage_percent());
+        if given_up == 0 || covered >= EXPLORED_FROM_PERCENT {
+            return (Outcome::EXPLORED, String::new());
+        }
+        let frontiers = match given_up {
+            1 => "the one frontier that was".to_owned(),
+            more => format!("all {more} frontiers that were"),
+        };
+        (Outcome::GAVE_UP, format!("gave up {frontiers} left at {covered:.0} % coverage"))
+    }
+
     fn ending(&mut self, limit: Tick) -> Option<(Outcome, String)> {
         match self.mind.ending() {
-            Some(Ending::NoFrontierLeft) => return Some((Outcome::EXPLORED, String::new())),
+            Some(Ending::NoFrontierLeft) => return Some(self.without_frontiers()),
             Some(Ending::NoWay { frontiers }) => {
                 let cause = format!("no way to any of {frontiers} frontiers");
                 return Some((Outcome::STUCK, cause));
