@@ -12,6 +12,7 @@ mod determinism;
 mod documentation;
 mod drift;
 mod faults;
+mod foreign;
 mod hand_drawn;
 mod hostile;
 mod inference;

@@ -5,6 +5,9 @@
 
 use crate::verify::printable;
 
+/// The class of all cases of `reenact run`.
+pub(super) const RUN: &str = "reenact.run";
+
 /// What came of a case.
 #[derive(Debug)]
 pub(super) enum Came {

@@ -38,20 +38,20 @@ pub(in crate::cli) fn run(args: &InitArgs, terminal: Terminal) -> Result<Exit, F
         )));
     }
     let manifest = folder.join(format!("{name}.yaml"));
-    let is_own = args.robot.is_some() || args.world.is_some() || args.map.is_some();
-    let (text, has_robot, has_world) = if is_own {
-        (of_files(args, &manifest, terminal)?, args.robot.is_none(), args.world.is_none())
-    } else {
-        (MANIFEST.replace("STUDY-NAME", name), true, true)
-    };
-    load::write(&manifest, text.as_bytes())?;
-    if has_world {
-        load::write(&folder.join(WORLD_NAME), WORLD.as_bytes())?;
-    }
-    if has_robot {
+    if args.robot.is_none() {
         load::write(&folder.join(ROBOT_NAME), ROBOT.as_bytes())?;
     }
-    if is_own {
+    if args.world.is_none() {
+        load::write(&folder.join(WORLD_NAME), WORLD.as_bytes())?;
+    }
+    if args.robot.is_none() && args.world.is_none() && args.map.is_none() {
+        load::write(&manifest, MANIFEST.replace("STUDY-NAME", name).as_bytes())?;
+    } else {
+        let text = of_files(args, &manifest, terminal).inspect_err(|_| {
+            // Begun by this command and no study: in the way of the next attempt.
+            let _ = fs_err::remove_dir_all(&folder);
+        })?;
+        load::write(&manifest, text.as_bytes())?;
         // Whatever is wrong is told now, with the file there to be mended.
         load::manifest(&manifest, &[], Calibrator::StandIn, terminal)?;
     }

@@ -3,6 +3,7 @@
 use crate::bundle::{Archive, Bundle, Form, Sealed};
 use crate::cli::args::RunArgs;
 use crate::cli::exit::Failure;
+use crate::cli::junit::{Came, Case, RUN};
 use crate::cli::load;
 use crate::cli::terminal::Terminal;
 use crate::compare::{self, Account, Comparison, Extent, Lock, LockError, Tolerances};
@@ -116,6 +117,16 @@ impl Held {
             terminal.error(&format!("{} has drifted from {}", self.manifest, self.lock));
         }
         !self.comparison.is_same()
+    }
+
+    /// Returns what is to be said of it to CI.
+    pub(super) fn case(&self) -> Case {
+        let came = if self.comparison.is_same() {
+            Came::Passed
+        } else {
+            Came::Failed(self.in_words().trim().to_owned())
+        };
+        Case { name: format!("as in {}", self.lock), class: RUN, came, said: String::new() }
     }
 
     /// Returns the lock's path.

@@ -2,11 +2,10 @@
 
 use super::execution::{Executed, Execution, Times};
 use super::locked::Held;
-use super::run::{CLASS, lock_case};
 use crate::bundle::{Circumstance, Moment, assemble, seal};
 use crate::cli::args::{Format, RunArgs, SelectArgs};
 use crate::cli::exit::{Exit, Failure};
-use crate::cli::junit::{Came, Case, Suite};
+use crate::cli::junit::{Came, Case, RUN, Suite};
 use crate::cli::load;
 use crate::cli::terminal::Terminal;
 use crate::compare::{Discrepancy, Extent, Lock};
@@ -72,7 +71,7 @@ pub(super) fn run(
         name: manifest.display().to_string(),
         seconds: clock.elapsed_seconds(),
         properties: Vec::new(),
-        cases: probed.iter().map(Probed::case).chain([lock_case(&held)]).collect(),
+        cases: probed.iter().map(Probed::case).chain([held.case()]).collect(),
     };
     Ok((exit, suite))
 }
@@ -104,7 +103,7 @@ impl Probed<'_> {
             (false, true) => Came::Passed,
             (false, false) => Came::Failed("it differs from the lock".to_owned()),
         };
-        Case { name, class: CLASS, came, said: String::new() }
+        Case { name, class: RUN, came, said: String::new() }
     }
 }
 

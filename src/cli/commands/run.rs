@@ -9,7 +9,7 @@ use crate::claims::{ClaimVerdict, Judgement};
 use crate::cli::args::{Format, RunArgs};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::fold::{narrowed, wrapped};
-use crate::cli::junit::{self, Came, Case, Suite};
+use crate::cli::junit::{self, Came, Case, RUN, Suite};
 use crate::cli::terminal::{Terminal, counted};
 use crate::cli::{interrupt, load};
 use crate::compare::Lock;
@@ -62,22 +62,9 @@ pub(in crate::cli) fn run(
 /// Returns what is to be said to CI of a `manifest` that could not be run.
 fn unfinished(manifest: &Path, why: &Failure) -> Suite {
     let came = Came::Broken(why.message.clone());
-    let case = Case { name: "manifest".to_owned(), class: CLASS, came, said: String::new() };
+    let case = Case { name: "manifest".to_owned(), class: RUN, came, said: String::new() };
     let name = manifest.display().to_string();
     Suite { name, seconds: 0.0, properties: Vec::new(), cases: vec![case] }
-}
-
-/// The class of all cases of a run.
-pub(super) const CLASS: &str = "reenact.run";
-
-/// Returns the case of a `lock` that a run was `held` against.
-pub(super) fn lock_case(held: &Held) -> Case {
-    let came = if held.comparison.is_same() {
-        Came::Passed
-    } else {
-        Came::Failed(held.in_words().trim().to_owned())
-    };
-    Case { name: format!("as in {}", held.lock()), class: CLASS, came, said: String::new() }
 }
 
 fn run_one(
@@ -251,7 +238,7 @@ impl Done {
                 false => Came::Broken(failed.join("\n")),
             };
             let name = format!("{} of {slug}", counted(trials.len(), "trial"));
-            let case = Case { name, class: CLASS, came, said: String::new() };
+            let case = Case { name, class: RUN, came, said: String::new() };
             (!trials.is_empty()).then_some(case)
         });
         let verdicts = self.verdicts.iter().chain(&self.machine_verdicts);
@@ -263,9 +250,9 @@ impl Done {
                 Judgement::Supported | Judgement::Contradicted => Came::Passed,
                 Judgement::Inconclusive | Judgement::CannotBeTested => Came::Skipped(said.clone()),
             };
-            Case { name: format!("claim {}", verdict.id), class: CLASS, came, said }
+            Case { name: format!("claim {}", verdict.id), class: RUN, came, said }
         });
-        let lock = self.held.iter().map(lock_case);
+        let lock = self.held.iter().map(Held::case);
         Suite {
             name: manifest.display().to_string(),
             seconds: self.wall_seconds,

@@ -14,6 +14,8 @@ use serde_json::Value;
 const NARROW: f64 = 0.1;
 /// The share of the floor that a robot may leave out because it is wide, and the cells' own error.
 const MAY_MISS: f64 = 0.1;
+/// The range (m) of the longest scanners.
+const LONGEST_RANGE: f64 = 1000.0;
 /// Sizes (m) between which worlds are.
 const SIZES: [f64; 2] = [1.0, 1000.0];
 
@@ -28,6 +30,11 @@ pub(super) fn check(setup: &Setup, faults: &mut Faults<'_>) {
         too_early(world, robot, start, deadline, faults);
     }
     let Some(lidar) = &robot.lidar else { return };
+    if lidar.max_range > LONGEST_RANGE {
+        let message = format!("the scanner `{}` sees {} m far", lidar.name, lidar.max_range);
+        let label = "farther than any scanner: is it in millimetres?";
+        faults.push(faults.fault("/robot", message).label(label).warning());
+    }
     let visible = world.slice(lidar.height);
     if visible.is_empty() {
         over_everything(world, &lidar.name, lidar.height, faults);
