@@ -20,6 +20,7 @@ mod maneuvers;
 mod manifests;
 mod multiverse;
 mod original_worlds;
+mod own_worlds;
 mod sandbox;
 mod standards;
 mod verification;

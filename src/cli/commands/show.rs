@@ -9,8 +9,7 @@ use crate::geometry::Point;
 use crate::report::show::{self, Derived, Drawing, FetchError, Over};
 use crate::store;
 use crate::world::generate::{self, Family};
-use crate::world::mesh;
-use crate::world::sdf::{Found, MeshPath, Models, mesh_path};
+use crate::world::sdf::{FilePath, Folders, Models, Root};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -23,24 +22,35 @@ fn building(family: FamilyArg, seed: u64) -> Result<(PathBuf, Vec<u8>), Failure>
     Ok((PathBuf::from(format!("{}.yaml", doc.name)), doc.to_yaml().into_bytes()))
 }
 
-/// The meshes of a world: files in folders of the command line, or beside the world.
+/// The models of a world: files in folders of the command line, or beside the world.
 struct Shelf {
     beside: PathBuf,
-    folders: BTreeMap<String, String>,
+    folders: Folders,
+}
+
+impl Shelf {
+    fn path_of(&self, path: &FilePath) -> PathBuf {
+        match path.root {
+            Root::World => self.beside.join(&path.path),
+            Root::Models | Root::ModelPath => PathBuf::from(&path.path),
+        }
+    }
 }
 
 impl Models for Shelf {
-    fn find(&mut self, uri: &str) -> Found {
-        let path = match mesh_path(uri, &self.folders) {
-            Ok(MeshPath::Model(path)) => PathBuf::from(path),
-            Ok(MeshPath::Beside(path)) => self.beside.join(path),
-            Err(why) => return Found::Missing(why.to_string()),
-        };
-        let name = path.display().to_string();
-        match store::read(&path, load::MOST_INPUT) {
-            Ok(bytes) => Found::Mesh(Arc::new(mesh::read(&name, &bytes))),
-            Err(error) => Found::Missing(format!("`{name}`: {}", store::reason(&error))),
+    fn folders(&self) -> Folders {
+        self.folders.clone()
+    }
+
+    fn read(&mut self, path: &FilePath) -> Result<Arc<[u8]>, String> {
+        match store::read(&self.path_of(path), load::MOST_INPUT) {
+            Ok(bytes) => Ok(bytes.into()),
+            Err(error) => Err(store::reason(&error)),
         }
+    }
+
+    fn name(&self, path: &FilePath) -> String {
+        self.path_of(path).display().to_string()
     }
 }
 
@@ -68,6 +78,7 @@ fn draw(
         ))),
     };
     let folders: BTreeMap<_, _> = args.models.iter().map(folder_of).collect::<Result<_, _>>()?;
+    let folders = Folders { models: folders, path: args.model_path.clone() };
     let mut shelf = Shelf { beside: beside(file), folders };
     let mut world =
         || show::read_world(name, bytes, args.layers.as_deref(), &mut shelf).map_err(told);

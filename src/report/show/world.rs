@@ -128,6 +128,9 @@ fn building_sheet(
     let subtitle =
         format!("{:.2} x {:.2} m, cut at {lidar_height} m above the floor", size.0, size.1);
     canvas.heading(&world.name, &subtitle);
+    if let Some(lacks) = lacks(world) {
+        canvas.remark(&lacks);
+    }
     let mut legend: Vec<(String, &str, &str)> =
         layers.iter().map(|layer| ((*layer).to_owned(), fill_of(layer), INK)).collect();
     if missed {
@@ -155,6 +158,15 @@ fn building_sheet(
     }
     canvas.key(&key);
     canvas
+}
+
+/// Says how much of a world is missing, where anything is.
+pub(super) fn lacks(world: &World) -> Option<String> {
+    match world.missing() {
+        0 => None,
+        1 => Some("incomplete: 1 thing is missing".to_owned()),
+        many => Some(format!("incomplete: {many} things are missing")),
+    }
 }
 
 /// Returns what the names of regions keep off: tags, goals, and starts with what is written beside them.
