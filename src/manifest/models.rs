@@ -50,7 +50,7 @@ impl Resolver<'_> {
         pointer: &str,
     ) -> BTreeMap<&'d str, Arc<[Solid]>> {
         let mut stand_ins = BTreeMap::new();
-        for (uri, layer) in &doc.stand_ins {
+        for (uri, layer) in doc.stand_ins.iter() {
             let place = step(&format!("{pointer}/stand-ins"), uri);
             let tree = self.faults.tree;
             let fault = |at: &str, message: &str| tree.fault(tree.place(at), message);

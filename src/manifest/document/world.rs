@@ -25,7 +25,7 @@ pub struct GeneratedWorld {
     pub generate: GenerateDoc,
     /// Where goal and starts lie instead of where the building has them.
     #[serde(default)]
-    pub place: Option<PlaceDoc>,
+    pub place: Option<Box<PlaceDoc>>,
 }
 
 /// Where the goal and starts of a world lie instead of where it has them.
@@ -95,10 +95,10 @@ pub struct WorldFile {
     /// SDF: what stands for meshes, by their URI as the world writes it: solids as in a layer of world YAML, in the frame of
     /// the collision. They go before a file.
     #[serde(default)]
-    pub stand_ins: BTreeMap<String, LayerDoc>,
+    pub stand_ins: Box<BTreeMap<String, LayerDoc>>,
     /// Where goal and starts lie instead of where the world has them.
     #[serde(default)]
-    pub place: Option<PlaceDoc>,
+    pub place: Option<Box<PlaceDoc>>,
 }
 
 /// What the axis that a mesh says is up comes to.

@@ -54,6 +54,8 @@ pub(super) enum Unplaceable {
     Unknown(String),
     /// Each is relative to the next, and the last to the first.
     Cycle(Vec<String>),
+    /// One of the two, of a frame that it is relative to, which has been told.
+    Told,
 }
 
 /// A frame: what it is relative to, and where it is there.
@@ -70,6 +72,8 @@ pub(super) struct Frames {
     own: &'static str,
     entries: BTreeMap<String, Entry>,
     placed: BTreeMap<String, Placement>,
+    /// Those that have no place.
+    lost: BTreeSet<String>,
     models: BTreeMap<String, Arc<Model>>,
     /// Models whose parts are parts of this one: the frames of theirs, by the name of the entry of their own.
     merged: Vec<String>,
@@ -85,8 +89,14 @@ enum Step {
 
 impl Frames {
     pub(super) fn new(own: &'static str) -> Self {
-        let (entries, placed, models) = (BTreeMap::new(), BTreeMap::new(), BTreeMap::new());
-        Self { own, entries, placed, models, merged: Vec::new() }
+        Self {
+            own,
+            entries: BTreeMap::new(),
+            placed: BTreeMap::new(),
+            lost: BTreeSet::new(),
+            models: BTreeMap::new(),
+            merged: Vec::new(),
+        }
     }
 
     /// Adds the frame `name` at `pose`, which is relative to `otherwise` where it does not say. Of two of one name the
@@ -145,8 +155,17 @@ impl Frames {
 
     /// Returns where the frame `name` is in the model's own.
     fn locate(&mut self, name: &str) -> Result<Placement, Unplaceable> {
-        let mut way = Vec::new();
         let mut met = BTreeSet::new();
+        let found = self.follow(name, &mut met);
+        if found.is_err() {
+            self.lost.append(&mut met);
+        }
+        found
+    }
+
+    /// Follows frame by frame from `name` to the model's own, and notes those that it meets.
+    fn follow(&mut self, name: &str, met: &mut BTreeSet<String>) -> Result<Placement, Unplaceable> {
+        let mut way = Vec::new();
         let mut at = name.to_owned();
         let mut placement = loop {
             if self.is_own(&at) {
@@ -154,6 +173,9 @@ impl Frames {
             }
             if let Some(known) = self.placed.get(&at) {
                 break *known;
+            }
+            if self.lost.contains(&at) {
+                return Err(Unplaceable::Told);
             }
             if !met.insert(at.clone()) {
                 let names = way.iter().filter_map(|step| match step {
@@ -169,13 +191,15 @@ impl Frames {
             } else if let Some((model, rest)) = at.split_once("::")
                 && let Some(found) = self.models.get(model)
             {
+                let model = model.to_owned();
                 way.push(Step::Within(Arc::clone(found), rest.to_owned()));
-                at = model.to_owned();
+                at = model;
             } else if let Some(merged) =
                 self.merged.iter().find(|m| self.models[*m].frame(&at).is_some())
             {
-                way.push(Step::Within(Arc::clone(&self.models[merged]), at));
-                at = merged.clone();
+                let (model, merged) = (Arc::clone(&self.models[merged]), merged.clone());
+                way.push(Step::Within(model, at));
+                at = merged;
             } else {
                 return Err(Unplaceable::Unknown(at));
             }

@@ -4,7 +4,7 @@ use super::files::{FilePath, Root, Unplaced, last_name};
 use super::model::{Lack, Nested, nested, says_yes};
 use super::notes::{Kind, Place};
 use super::reader::{File, Reader};
-use super::{frames, version};
+use super::{frames, known_version};
 use crate::document::Source;
 use crate::document::xml::{self, Faults};
 use roxmltree::Node;
@@ -79,7 +79,6 @@ pub(super) fn absent(
     places: &Result<Vec<FilePath>, Unplaced>,
     reader: &Reader<'_>,
 ) -> Kind {
-    let folders = reader.models.folders();
     let because = |why: String| Kind::Include { uri: uri.to_owned(), why };
     match places {
         Ok(places) if places.iter().any(|place| place.root != Root::ModelPath) => {
@@ -87,8 +86,8 @@ pub(super) fn absent(
             let named: Vec<String> = own.map(|p| format!("`{}`", reader.name(p))).collect();
             because(format!("no `model.config` or `model.sdf` in {}", named.join(", ")))
         }
-        Ok(_) | Err(Unplaced::NoFolder(_)) => Kind::Unfound(folders.path),
-        Err(Unplaced::Untold) if uri.contains("://") => Kind::Unfound(folders.path),
+        Ok(_) | Err(Unplaced::NoFolder(_)) => Kind::Unfound(reader.folders.path.clone()),
+        Err(Unplaced::Untold) if uri.contains("://") => Kind::Unfound(reader.folders.path.clone()),
         Err(Unplaced::Untold) => because("it names no model".to_owned()),
         Err(why) => because(why.to_string()),
     }
@@ -101,7 +100,7 @@ pub(super) fn description(config: &Source) -> Option<String> {
     let described = xml::elements(document.root_element()).filter(|e| e.tag_name().name() == "sdf");
     let mut best: Option<(u32, String)> = None;
     for element in described {
-        let known = element.attribute("version").map(version::known);
+        let known = element.attribute("version").map(known_version);
         let rank = match known {
             None => 1,
             Some(None) => 0,

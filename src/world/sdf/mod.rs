@@ -20,7 +20,6 @@ mod notes;
 mod place;
 mod reader;
 mod state;
-mod version;
 
 pub use files::{FilePath, Folders, Models, NoModels, Root, Unplaced};
 pub use floor::{ROLLED_OVER, STEP, WIDE};
@@ -118,6 +117,12 @@ pub fn read_with(source: &Source, models: &mut dyn Models) -> Result<World, Vec<
     };
     world.warnings.extend(unit_slip(&world));
     Ok(world)
+}
+
+/// Returns the minor version of a version of SDFormat that is read: 6 of `1.6`.
+fn known_version(version: &str) -> Option<u32> {
+    let minor: u32 = version.trim().strip_prefix("1.")?.parse().ok()?;
+    (3..=12).contains(&minor).then_some(minor)
 }
 
 /// Returns the one `<world>`, or the `<sdf>` itself where it holds bare models.

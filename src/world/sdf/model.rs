@@ -6,8 +6,8 @@ use super::geometry::{self, Shape};
 use super::include;
 use super::notes::Place;
 use super::reader::{File, Reader};
-use crate::document::quoted;
 use crate::document::xml::{self, Faults};
+use crate::document::{MOST_FAULTS, quoted};
 use crate::geometry::Placement;
 use roxmltree::Node;
 use std::collections::BTreeMap;
@@ -27,10 +27,10 @@ pub(super) struct Model {
     /// Whether nothing moves it.
     pub(super) fixed: bool,
     pub(super) parts: Vec<Part>,
+    /// Its frames, those of merged models among them.
     frames: BTreeMap<String, Placement>,
-    /// The models within, by where they are among the parts.
-    models: BTreeMap<String, usize>,
-    merged: Vec<usize>,
+    /// The models within, likewise.
+    models: BTreeMap<String, (Placement, Arc<Model>)>,
 }
 
 /// A part of a model, in the order written.
@@ -59,6 +59,7 @@ pub(super) struct Link {
     /// Its place in the model.
     pub(super) placement: Placement,
     pub(super) collisions: Vec<Collision>,
+    pub(super) place: Place,
 }
 
 /// A collision.
@@ -93,16 +94,9 @@ impl Model {
         if let Some(placement) = self.frames.get(name) {
             return Some(*placement);
         }
-        let within = |i: usize, name: &str| {
-            let Part::Model(child) = &self.parts[i] else { return None };
-            Some(child.placement.compose(&child.model.frame(name)?))
-        };
-        if let Some((model, rest)) = name.split_once("::")
-            && let Some(i) = self.models.get(model)
-        {
-            return within(*i, rest);
-        }
-        self.merged.iter().find_map(|i| within(*i, name))
+        let (model, rest) = name.split_once("::")?;
+        let (placement, model) = self.models.get(model)?;
+        Some(placement.compose(&model.frame(rest)?))
     }
 }
 
@@ -199,7 +193,6 @@ pub(super) fn read(
         parts: Vec::with_capacity(unplaced.len()),
         frames: BTreeMap::new(),
         models: BTreeMap::new(),
-        merged: Vec::new(),
     };
     place(unplaced, frames, &mut model, file, reader, faults);
     model
@@ -226,22 +219,19 @@ fn place(
     for mut part in unplaced {
         if let Unplaced::Model(node, nested) = &mut part {
             if !nested.placement_frame.is_empty() {
-                match nested.model.frame(&nested.placement_frame) {
-                    Some(inner) => {
-                        nested.pose.placement = nested.pose.placement.compose(&inner.inverse());
-                    }
-                    None => {
-                        let unknown =
-                            format!("unknown frame `{}`", quoted(&nested.placement_frame));
-                        let fault = faults.at(*node, unknown).label("placed by it");
-                        faults.push(fault.help("expected a link, joint, frame or model within"));
-                    }
+                if let Some(inner) = nested.model.frame(&nested.placement_frame) {
+                    nested.pose.placement = nested.pose.placement.compose(&inner.inverse());
+                } else {
+                    let unknown = format!("unknown frame `{}`", quoted(&nested.placement_frame));
+                    let fault = faults.at(*node, unknown).label("placed by it");
+                    faults.push(fault.help("expected a link, joint, frame or model within"));
                 }
             }
             frames.add_model(&nested.name, &nested.pose, &nested.model, nested.merged);
         }
         ready.push(part);
     }
+    let mut merged_in = Vec::new();
     for part in ready {
         let part = match part {
             Unplaced::Lack(lack) => Part::Lack(lack),
@@ -249,24 +239,35 @@ fn place(
                 let placement = placed(frames.place(&pose, None), node, &frames, faults);
                 let (placement, link) = (placement, node.attribute("name").unwrap_or(""));
                 let collisions = collisions(node, placement, &mut frames, file, reader, faults);
-                Part::Link(Link { name: link.to_owned(), placement, collisions })
+                let (name, place) = (link.to_owned(), Place::of(file.source, node));
+                Part::Link(Link { name, placement, collisions, place })
             }
             Unplaced::Model(node, nested) => {
                 let placement = placed(frames.place(&nested.pose, None), node, &frames, faults);
-                let at = model.parts.len();
-                if nested.merged {
-                    model.merged.push(at);
+                let Nested { model: inner, name, fixed, merged, .. } = nested;
+                if merged {
+                    merged_in.push((placement, Arc::clone(&inner)));
                 } else {
-                    model.models.entry(nested.name.clone()).or_insert(at);
+                    let known = (placement, Arc::clone(&inner));
+                    model.models.entry(name.clone()).or_insert(known);
                 }
-                let Nested { model, name, fixed, merged, .. } = nested;
                 let place = Place::of(file.source, node);
-                Part::Model(Child { model, name, placement, fixed, merged, place })
+                Part::Model(Child { model: inner, name, placement, fixed, merged, place })
             }
         };
         model.parts.push(part);
     }
     model.frames = frames.into_placed();
+    // Once for each level, so that a name is never looked for in every model that was ever merged.
+    for (at, inner) in merged_in {
+        for (name, placement) in &inner.frames {
+            model.frames.entry(name.clone()).or_insert_with(|| at.compose(placement));
+        }
+        for (name, (placement, nested)) in &inner.models {
+            let known = || (at.compose(placement), Arc::clone(nested));
+            model.models.entry(name.clone()).or_insert_with(known);
+        }
+    }
 }
 
 fn collisions(
@@ -312,10 +313,14 @@ fn placed(
     };
     let at = xml::child(node, "pose").unwrap_or(node);
     let fault = match why {
-        Unplaceable::Unknown(name) => faults
-            .at(at, format!("pose relative to the unknown frame `{}`", quoted(&name)))
-            .label("expected a link, joint, frame or model of the same model")
-            .help(frames.near(&name)),
+        Unplaceable::Told => return Placement::IDENTITY,
+        Unplaceable::Unknown(name) => {
+            let unknown = format!("pose relative to the unknown frame `{}`", quoted(&name));
+            let fault = faults.at(at, unknown);
+            let fault = fault.label("expected a link, joint, frame or model of the same model");
+            // To look for what was meant takes longer than all the rest.
+            if faults.kept().len() < MOST_FAULTS { fault.help(frames.near(&name)) } else { fault }
+        }
         Unplaceable::Cycle(mut names) => {
             names.extend(names.first().cloned());
             let names: Vec<String> = names.iter().map(|n| format!("`{}`", quoted(n))).collect();

@@ -1,6 +1,7 @@
 //! The solids of a world: every model where it stands, the state's word before the description's.
 
 use super::body::{self, Refused};
+use super::geometry::Shape;
 use super::model::{Child, Link, Model, Part};
 use super::notes::{Kind, Notes, Place};
 use super::state::State;
@@ -8,9 +9,9 @@ use super::{LAYER, files::Models};
 use crate::document::quoted;
 use crate::document::xml::Faults;
 use crate::geometry::Placement;
-use crate::world::{Body, Solid};
+use crate::world::Solid;
 
-/// Most models and collisions of a world, those of included files counted as often as they stand in it.
+/// Most models, links and collisions of a world, those of included files counted as often as they stand in it.
 pub(super) const MAX_INSTANCES: usize = 1_000_000;
 
 /// Most triangles of a world, counted likewise.
@@ -88,7 +89,12 @@ impl Placer<'_, '_, '_> {
         nested: &str,
     ) {
         for part in &model.parts {
-            if self.is_full {
+            let (name, place) = match part {
+                Part::Link(link) => (&link.name, &link.place),
+                Part::Model(child) => (&child.name, &child.place),
+                Part::Lack(lack) => (&lack.name, &lack.place),
+            };
+            if !self.take(0, standing.name.len() + name.len(), place) {
                 return;
             }
             match part {
@@ -113,7 +119,7 @@ impl Placer<'_, '_, '_> {
             return self.parts(&child.model, &standing, state, nested);
         }
         let name = joined(outer.name, &child.name);
-        if !self.take(0, name.len(), &child.place) || !self.models.wanted(&name) {
+        if !self.models.wanted(&name) {
             return;
         }
         let own = state.model(&child.name, self.faults);
@@ -143,6 +149,13 @@ impl Placer<'_, '_, '_> {
         for collision in &link.collisions {
             let placement = placement.compose(&collision.placement);
             let name = joined(&own, &collision.name);
+            let triangles = match &collision.shape {
+                Shape::Mesh { mesh, .. } => mesh.triangles().len(),
+                _ => 0,
+            };
+            if !self.take(triangles, name.len(), &collision.place) {
+                return;
+            }
             let bodies = match body::of(&collision.shape, placement, scale) {
                 Ok(bodies) => bodies,
                 Err(Refused::Lack(kind)) => {
@@ -162,19 +175,12 @@ impl Placer<'_, '_, '_> {
                 }
             };
             let off = placement.translation.iter().map(|v| v.abs()).fold(0.0, f64::max);
-            if !bodies.is_empty() && !(off <= MAX_DISTANCE) {
+            if !bodies.is_empty() && (off > MAX_DISTANCE || !off.is_finite()) {
                 let far = Kind::Far(format!("{off:.0}"));
                 self.notes.add(&far, &name, Some(&collision.place));
                 continue;
             }
             for body in bodies {
-                let triangles = match &body {
-                    Body::Mesh { mesh, .. } => mesh.triangles().len(),
-                    _ => 0,
-                };
-                if !self.take(triangles, name.len(), &collision.place) {
-                    return;
-                }
                 self.moving += usize::from(!standing.fixed);
                 self.solids.push(Solid { name: name.clone(), layer: LAYER.to_owned(), body });
             }
@@ -186,7 +192,7 @@ impl Placer<'_, '_, '_> {
         if !self.is_full && !self.budget.take(triangles, names) {
             self.is_full = true;
             self.faults.push(place.fault("the world is too large").label(format!(
-                "expected at most {MAX_INSTANCES} models and collisions and {MAX_TRIANGLES} triangles, includes counted as often as they stand in it"
+                "expected at most {MAX_INSTANCES} models, links and collisions and {MAX_TRIANGLES} triangles, includes counted as often as they stand in it"
             )));
         }
         !self.is_full

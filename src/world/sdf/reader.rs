@@ -1,10 +1,10 @@
 //! What the reading of one world shares: files read once each, faults and warnings of all of them.
 
-use super::files::{FilePath, Models};
+use super::files::{FilePath, Folders, Models};
 use super::include::{self, Loaded};
 use super::model::{self, Model};
 use super::notes::{Kind, Notes};
-use super::{MAX_BYTES, check_macros, version};
+use super::{MAX_BYTES, check_macros, known_version};
 use crate::document::xml::{self, Faults};
 use crate::document::{Diagnostic, FaultList, Source, quoted};
 use crate::world::Solid;
@@ -39,6 +39,7 @@ pub(super) enum Found {
 /// What the reading of one world shares.
 pub(super) struct Reader<'m> {
     pub(super) models: &'m mut dyn Models,
+    pub(super) folders: Folders,
     pub(super) notes: Notes,
     faults: FaultList,
     /// Descriptions by file; none where their faults have been told.
@@ -54,6 +55,7 @@ pub(super) struct Reader<'m> {
 impl<'m> Reader<'m> {
     pub(super) fn new(models: &'m mut dyn Models) -> Self {
         Self {
+            folders: models.folders(),
             models,
             notes: Notes::default(),
             faults: FaultList::default(),
@@ -83,7 +85,7 @@ impl<'m> Reader<'m> {
     /// Notes the version of an `<sdf>` where it is none that is known.
     pub(super) fn note_version(&mut self, root: Node<'_, '_>, source: &Source) {
         if let Some(version) = root.attribute("version")
-            && version::known(version).is_none()
+            && known_version(version).is_none()
         {
             self.notes.add(&Kind::Version(version.trim().to_owned()), &source.name, None);
         }
@@ -97,7 +99,7 @@ impl<'m> Reader<'m> {
         depth: usize,
         fault: &dyn Fn(String) -> Diagnostic,
     ) -> Loaded {
-        let places = self.models.folders().places(uri, beside);
+        let places = self.folders.places(uri, beside);
         let mut found = None;
         for place in places.iter().flatten() {
             found = self.description(place);
@@ -148,17 +150,13 @@ impl<'m> Reader<'m> {
             return known.clone();
         }
         let config = place.within("model.config");
-        let found = match self.models.read(&config) {
-            Ok(bytes) => {
-                let text = String::from_utf8_lossy(&bytes).into_owned();
-                let source = Source::new(self.name(&config), text);
-                let file = include::description(&source);
-                Some(place.within(file.as_deref().unwrap_or("model.sdf")))
-            }
-            Err(_) => {
-                let own = place.within("model.sdf");
-                self.models.read(&own).is_ok().then_some(own)
-            }
+        let found = if let Ok(bytes) = self.models.read(&config) {
+            let text = String::from_utf8_lossy(&bytes).into_owned();
+            let file = include::description(&Source::new(self.name(&config), text));
+            Some(place.within(file.as_deref().unwrap_or("model.sdf")))
+        } else {
+            let own = place.within("model.sdf");
+            self.models.read(&own).is_ok().then_some(own)
         };
         self.described.insert(place.clone(), found.clone());
         found
@@ -216,7 +214,7 @@ impl<'m> Reader<'m> {
         if let Some(other) = OTHER_MESHES.iter().find(|ending| small.ends_with(*ending)) {
             return Found::Missing(format!("`{other}` is not read (.stl, .obj and .dae are)"));
         }
-        let places = match self.models.folders().places(uri, beside) {
+        let places = match self.folders.places(uri, beside) {
             Ok(places) => places,
             Err(why) => return Found::Missing(why.to_string()),
         };
@@ -253,6 +251,9 @@ impl<'m> Reader<'m> {
             return Ok(known.clone());
         }
         let bytes = self.models.read(path)?;
+        if bytes.starts_with(b"version https://git-lfs") {
+            return Err("it is a pointer of Git LFS, not the file".to_owned());
+        }
         let name = self.name(path);
         let found = match mesh::read(&name, &bytes) {
             Ok(file) if self.models.turns_meshes() => Some(Arc::new(file.upright())),

@@ -124,14 +124,11 @@ error: pose relative to the unknown frame `log`
 /// Checks that a chain of frames is followed however long it is.
 #[test]
 fn long_chains_of_frames_are_followed() {
-    let frames: String = (0..5000)
-        .map(|i| {
-            format!(
-                "<frame name='f{}' attached_to='f{i}'><pose>0.001 0 0 0 0 0</pose></frame>",
-                i + 1
-            )
-        })
-        .collect();
+    let mut frames = String::new();
+    for i in 0..5000 {
+        let (next, pose) = (i + 1, "<pose>0.001 0 0 0 0 0</pose>");
+        frames += &format!("<frame name='f{next}' attached_to='f{i}'>{pose}</frame>");
+    }
     let found = stand(&format!(
         "<model name='m'><static>1</static><frame name='f0'/>{frames}<link name='l'><pose relative_to='f5000'>0 0 1 0 0 0</pose>{BOX}</link></model>"
     ));

@@ -158,16 +158,35 @@ fn what_multiplies_is_refused() {
         let text = format!("<sdf version='1.9'><model name='n'>{many}</model></sdf>");
         files.push((format!("m/n{level}/model.sdf"), text));
     }
-    let files: Vec<(&str, &str)> = files.iter().map(|(a, b)| (a.as_str(), b.as_str())).collect();
-    let told = |level: usize| {
-        let world = world_of(&include(&format!("model://n{level}"), ""));
+    // Merged, and with a frame that none of them has.
+    for level in 1..30 {
+        let one = format!(
+            "<include merge='true'><uri>model://{}</uri></include>",
+            if level == 1 { "n0".to_owned() } else { format!("k{}", level - 1) }
+        );
+        let more = "<link name='x'><pose relative_to='nowhere'>0 0 0 0 0 0</pose></link>";
+        let text = format!(
+            "<sdf version='1.9'><model name='k'>{}{}</model></sdf>",
+            one.repeat(10),
+            if level == 29 { more } else { "" }
+        );
+        files.push((format!("m/k{level}/model.sdf"), text));
+    }
+    let told = |level: &str| {
+        let files: Vec<(&str, &str)> =
+            files.iter().map(|(a, b)| (a.as_str(), b.as_str())).collect();
+        let world = world_of(&include(&format!("model://{level}"), ""));
         let faults = read_with(&world, &mut Shelf::of(&files)).err().unwrap();
         faults.iter().find(|f| f.severity == Severity::Error).unwrap().render(false)
     };
-    let wide = told(9);
+    let wide = told("n9");
     assert!(wide.starts_with("error: the world is too large"), "{wide}");
-    assert!(wide.contains("at most 1000000 models and collisions"), "{wide}");
-    let deep = told(39);
+    assert!(wide.contains("at most 1000000 models, links and collisions"), "{wide}");
+    let merged = told("k8");
+    assert!(merged.starts_with("error: the world is too large"), "{merged}");
+    let lost = told("k29");
+    assert!(lost.starts_with("error: pose relative to the unknown frame `nowhere`"), "{lost}");
+    let deep = told("n39");
     assert!(deep.starts_with("error: models nested too deeply"), "{deep}");
 }
 
