@@ -23,6 +23,9 @@ pub(super) struct File<'s> {
 /// Formats of meshes that Gazebo reads and this does not.
 const OTHER_MESHES: [&str; 6] = [".glb", ".gltf", ".fbx", ".ply", ".blend", ".mesh"];
 
+/// The highest version of a model of Fuel that is looked for; most have fewer than five.
+const MAX_VERSION: u32 = 9;
+
 /// Which part of a mesh file: its name, and whether it is moved to the origin.
 type Submesh = Option<(String, bool)>;
 
@@ -157,6 +160,15 @@ impl<'m> Reader<'m> {
         } else {
             let own = place.within("model.sdf");
             self.models.read(&own).is_ok().then_some(own)
+        };
+        // Downloads of Fuel lie in folders of their versions.
+        let is_version = place.path.rsplit('/').next().is_some_and(|v| v.parse::<u32>().is_ok());
+        let found = match found {
+            None if !is_version => {
+                let mut versions = (1..=MAX_VERSION).rev().map(|v| place.within(&v.to_string()));
+                versions.find_map(|version| self.description(&version))
+            }
+            found => found,
         };
         self.described.insert(place.clone(), found.clone());
         found

@@ -118,6 +118,17 @@ error: the world has nothing solid that can be read
 }
 
 #[test]
+fn a_download_of_fuel_lies_in_a_folder_of_its_version() {
+    let newer = PILLAR.replace("<radius>0.3", "<radius>0.4");
+    let mut shelf =
+        Shelf::of(&[("m/big_pillar/1/model.sdf", PILLAR), ("m/big_pillar/3/model.sdf", &newer)]);
+    let inner = include("https://fuel.gazebosim.org/1.0/OpenRobotics/models/Big Pillar", "");
+    let world = read_with(&world_of(&inner), &mut shelf).unwrap();
+    let radius = world.solids[0].body.slice(0.5)[0].bounds().width() / 2.0;
+    assert!((radius - 0.4).abs() < 1e-9, "the newest: {radius}");
+}
+
+#[test]
 fn models_that_are_not_wanted_are_left_out_with_what_they_lack() {
     let inner = include("model://pillar", "")
         + &include("model://cafe", "")
