@@ -21,6 +21,7 @@ mod maneuvers;
 mod manifests;
 mod multiverse;
 mod original_worlds;
+mod own_worlds;
 mod sandbox;
 mod standards;
 mod tutorial;

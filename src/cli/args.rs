@@ -121,9 +121,12 @@ pub(super) struct ShowArgs {
     /// Cut worlds at this height (m)
     #[arg(long, value_name = "METRES")]
     pub(super) height: Option<f64>,
-    /// The folder of a model that a Gazebo world's meshes are named by (repeatable)
+    /// The folder of a model that a Gazebo world names (repeatable)
     #[arg(long, value_name = "NAME=FOLDER", conflicts_with = "generate")]
     pub(super) models: Vec<String>,
+    /// A folder that holds the folders of a Gazebo world's models (repeatable)
+    #[arg(long, value_name = "FOLDER", conflicts_with = "generate")]
+    pub(super) model_path: Vec<String>,
     /// Layers of a world to draw beside its walls [default: all]
     #[arg(long, value_delimiter = ',', value_name = "LAYERS", conflicts_with = "generate")]
     pub(super) layers: Option<Vec<String>>,
@@ -164,6 +167,9 @@ pub(super) struct ImportArgs {
     /// The folder of a model that a Gazebo world's meshes are named by (repeatable)
     #[arg(long, value_name = "NAME=FOLDER")]
     pub(super) models: Vec<String>,
+    /// A folder that holds folders of models (repeatable)
+    #[arg(long, value_name = "FOLDER")]
+    pub(super) model_path: Vec<String>,
     /// What the unknown cells of a map are
     #[arg(long, value_enum, value_name = "AS", default_value = "occupied")]
     pub(super) unknown: UnknownArg,

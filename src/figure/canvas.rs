@@ -245,6 +245,19 @@ impl Canvas {
         }
     }
 
+    /// Writes what nobody may overlook, at the end of the second line of the heading.
+    pub(crate) fn remark(&mut self, text: &str) {
+        let (width, _) = self.size();
+        let remark = Element::new("text")
+            .at("x", width - 16.0)
+            .at("y", 44.0)
+            .at("font-size", 12.0)
+            .set("font-weight", "bold")
+            .set("text-anchor", "end")
+            .set("fill", ACCENT);
+        self.push(remark.text(text));
+    }
+
     /// Draws swatches with names, below the drawing to the right of the scale bar.
     pub(crate) fn legend(&mut self, entries: &[(String, &str, &str)]) {
         let (_, height) = self.size();

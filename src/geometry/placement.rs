@@ -35,6 +35,33 @@ impl Placement {
         }
     }
 
+    /// Creates a placement from a translation (m) and a quaternion `x y z w`, which need not be of length 1; no rotation
+    /// where it has none.
+    pub fn from_xyz_quaternion(translation: [f64; 3], [x, y, z, w]: [f64; 4]) -> Self {
+        let norm = x * x + y * y + z * z + w * w;
+        if !(norm.is_finite() && norm > 0.0) {
+            return Self { translation, ..Self::IDENTITY };
+        }
+        let s = 2.0 / norm;
+        Self {
+            translation,
+            rotation: [
+                [1.0 - s * (y * y + z * z), s * (x * y - z * w), s * (x * z + y * w)],
+                [s * (x * y + z * w), 1.0 - s * (x * x + z * z), s * (y * z - x * w)],
+                [s * (x * z - y * w), s * (y * z + x * w), 1.0 - s * (x * x + y * y)],
+            ],
+        }
+    }
+
+    /// Returns the placement of the outer frame in this one.
+    #[must_use]
+    pub fn inverse(&self) -> Self {
+        let r = &self.rotation;
+        let rotation = [0, 1, 2].map(|i: usize| [r[0][i], r[1][i], r[2][i]]);
+        let turned = Self { translation: [0.0; 3], rotation };
+        Self { translation: turned.apply(self.translation).map(|v| 0.0 - v), rotation }
+    }
+
     /// Transforms a point from the placed frame to the outer one.
     pub fn apply(&self, point: [f64; 3]) -> [f64; 3] {
         let mut out = self.translation;
@@ -81,6 +108,22 @@ mod tests {
         for (a, b) in composed.iter().zip(stepwise) {
             assert!((a - b).abs() < 1e-12);
         }
+    }
+
+    #[test]
+    fn an_inverse_undoes_and_a_quaternion_turns_as_its_angles_do() {
+        let there = Placement::from_xyz_rpy([1.0, -2.0, 0.5, 0.4, -0.3, 2.0]);
+        let back = there.compose(&there.inverse());
+        let close = |a: &Placement, b: &Placement| {
+            let numbers = |p: &Placement| [p.rotation.as_flattened(), &p.translation].concat();
+            numbers(a).iter().zip(numbers(b)).all(|(a, b)| (a - b).abs() < 1e-12)
+        };
+        assert!(close(&back, &Placement::IDENTITY), "{back:?}");
+        let half = std::f64::consts::FRAC_1_SQRT_2;
+        let quarter = Placement::from_xyz_quaternion([1.0, 2.0, 3.0], [0.0, 0.0, half, half]);
+        assert!(close(&quarter, &Placement::from_xyz_rpy([1.0, 2.0, 3.0, 0.0, 0.0, FRAC_PI_2])));
+        let none = Placement::from_xyz_quaternion([1.0, 2.0, 3.0], [0.0; 4]);
+        assert_eq!(none.rotation, Placement::IDENTITY.rotation);
     }
 
     #[test]

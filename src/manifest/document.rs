@@ -9,6 +9,7 @@ pub use prior::{
     Alpha, BoundingBoxOf, DerivedFrom, FloorPlanOf, FootprintOf, MapPrior, OriginDoc, OwnWorld,
     PreviousMapDoc, PreviousMapOf, PriorDoc, PriorFrame, TopoMetricPrior, UnknownAs,
 };
+pub(super) use world::UpAxisDoc;
 pub use world::{
     FactorRef, GenerateDoc, GeneratedWorld, PlaceDoc, PointDoc, PoseDoc, SeedDoc, StartDoc,
     WorldDoc, WorldFile,

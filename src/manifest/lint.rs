@@ -5,6 +5,7 @@ mod surroundings;
 use super::faults::Faults;
 use super::knowledge::UsedPrior;
 use super::worlds::WALLS;
+use crate::document::quoted;
 use crate::geometry::{Outline, Point, Pose};
 use crate::grid::{Cell, Occupancy, OccupancyGrid};
 use crate::math;
@@ -51,17 +52,20 @@ fn scanner(robot: &Robot, faults: &mut Faults<'_>) {
 
 pub(super) fn start(world: &World, robot: &Robot, start: Pose, faults: &mut Faults<'_>) {
     let at = start.position();
-    let solids = world.contact(robot.body_z[0], robot.body_z[1]);
     let radius = robot.circumscribed_radius();
-    let nearest = solids.iter().map(|s| s.distance(at)).fold(f64::INFINITY, f64::min);
-    if nearest <= radius {
-        let fault = faults
-            .fault("/start", format!("the robot starts inside something solid at {}", spot(at)));
-        let label =
-            format!("{nearest:.2} m to the nearest obstacle, the robot's radius is {radius:.2} m");
-        faults.push(
-            fault.label(label).help("move the start, or leave the layer out that stands there"),
+    let nearest = world.nearest(at, robot.body_z[0], robot.body_z[1]);
+    if let Some((solid, far)) = nearest.filter(|(_, far)| *far <= radius) {
+        let (named, what) = match solid.name.as_str() {
+            "" => (String::new(), "the nearest obstacle".to_owned()),
+            name => (format!(", `{}`,", quoted(name)), format!("`{}`", quoted(name))),
+        };
+        let fault = faults.fault(
+            "/start",
+            format!("the robot starts inside something solid{named} at {}", spot(at)),
         );
+        let label = format!("{far:.2} m to {what}, the robot's radius is {radius:.2} m");
+        let help = "move the start, or leave out what stands there (`layers`; of a Gazebo world `without`)";
+        faults.push(fault.label(label).help(help));
         return;
     }
     if !world.bounds().contains(at) {

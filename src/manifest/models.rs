@@ -1,63 +1,44 @@
-//! The meshes that a Gazebo world names: files in the folders that the manifest gives, each sealed like any input, or what
-//! the manifest puts in their place.
+//! The models and meshes that a Gazebo world names: files in the folders that the manifest gives, each sealed like any
+//! input, or what the manifest puts in their place.
 
-use super::document::WorldFile;
+use super::document::{UpAxisDoc, WorldFile};
 use super::faults::step;
 use super::input::{InputKind, WrittenIn};
 use super::library::{Library, Unread, joined, normalised};
 use super::resolver::Resolver;
-use crate::world::sdf::{Found, MeshPath, Models, Unplaced, mesh_path};
-use crate::world::{Solid, document, mesh};
+use crate::world::sdf::{FilePath, Folders, Models, Root};
+use crate::world::{Solid, document};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// What a manifest knows of one world's meshes.
+/// What a manifest knows of one world's models.
 pub(super) struct Shelf<'r, 'a> {
     doc: &'r WorldFile,
-    /// The world's own path, which relative URIs are beside.
-    world: (String, WrittenIn),
-    /// What the folders of models are relative to.
-    folders: WrittenIn,
+    roots: Roots,
     library: &'r mut Library<'a>,
     stand_ins: BTreeMap<&'r str, Arc<[Solid]>>,
-    known: BTreeMap<String, Found>,
-    /// Files that are not the ones that are pinned, in words.
-    unpinned: Vec<String>,
+    told: Told,
 }
 
-impl Shelf<'_, '_> {
-    /// Returns the path of the file that `uri` names.
-    fn path_of(&self, uri: &str) -> Result<(String, WrittenIn), Unplaced> {
-        Ok(match mesh_path(uri, &self.doc.models)? {
-            MeshPath::Model(path) => (normalised(&path), self.folders),
-            MeshPath::Beside(path) => (joined(&self.world.0, &path), self.world.1),
-        })
-    }
+/// Where the paths of files begin.
+pub(super) struct Roots {
+    /// The world's own path, which its relative URIs are beside.
+    pub(super) world: (String, WrittenIn),
+    /// What the folders of `models` are relative to.
+    pub(super) models: WrittenIn,
+    /// What those of `model-path` are relative to.
+    pub(super) model_path: WrittenIn,
+}
 
-    fn look_up(&mut self, uri: &str) -> Found {
-        if let Some(solids) = self.stand_ins.get(uri) {
-            return Found::StandIn(Arc::clone(solids));
-        }
-        let (path, written_in) = match self.path_of(uri) {
-            Ok(found) => found,
-            Err(why) => return Found::Missing(why.to_string()),
-        };
-        let bytes = match self.library.read(&path, written_in, InputKind::World) {
-            Ok(bytes) => bytes,
-            Err(Unread::Unpinned { bytes, digests, .. }) => {
-                self.unpinned
-                    .push(format!("the mesh `{path}` is not the file that is pinned: {digests}"));
-                bytes
-            }
-            Err(Unread::Missing { reason, published }) => {
-                self.unpinned.extend(published.map(|published| {
-                    format!("cannot read the mesh `{path}`, published as {published}")
-                }));
-                return Found::Missing(format!("`{path}`: {reason}"));
-            }
-        };
-        Found::Mesh(Arc::new(mesh::read(&path, &bytes)))
-    }
+/// What came of a shelf.
+#[derive(Default)]
+pub(super) struct Told {
+    /// Files that are not the ones that are pinned, in words.
+    unpinned: Vec<String>,
+    /// The meshes that were asked for.
+    asked: BTreeSet<String>,
+    /// The models that the world has.
+    models: BTreeSet<String>,
 }
 
 impl Resolver<'_> {
@@ -69,7 +50,7 @@ impl Resolver<'_> {
         pointer: &str,
     ) -> BTreeMap<&'d str, Arc<[Solid]>> {
         let mut stand_ins = BTreeMap::new();
-        for (uri, layer) in &doc.stand_ins {
+        for (uri, layer) in doc.stand_ins.iter() {
             let place = step(&format!("{pointer}/stand-ins"), uri);
             let tree = self.faults.tree;
             let fault = |at: &str, message: &str| tree.fault(tree.place(at), message);
@@ -92,39 +73,82 @@ impl Resolver<'_> {
             let label = "expected the URI of a mesh, as the world writes it";
             self.faults.push(fault.label(label).warning());
         }
+        for (i, name) in doc.without.iter().enumerate().filter(|(_, n)| !told.models.contains(*n)) {
+            let known: Vec<&str> = told.models.iter().map(String::as_str).collect();
+            let message = format!("unknown model `{name}`");
+            let label = "expected a model of this world";
+            self.faults.unknown(&format!("{pointer}/without/{i}"), message, label, name, &known);
+        }
     }
-}
-
-/// What came of a shelf.
-pub(super) struct Told {
-    unpinned: Vec<String>,
-    asked: BTreeSet<String>,
 }
 
 impl<'r, 'a> Shelf<'r, 'a> {
     pub(super) fn new(
         doc: &'r WorldFile,
-        world: (String, WrittenIn),
-        folders: WrittenIn,
+        roots: Roots,
         library: &'r mut Library<'a>,
         stand_ins: BTreeMap<&'r str, Arc<[Solid]>>,
     ) -> Self {
-        let (known, unpinned) = (BTreeMap::new(), Vec::new());
-        Self { doc, world, folders, library, stand_ins, known, unpinned }
+        Self { doc, roots, library, stand_ins, told: Told::default() }
     }
 
     pub(super) fn told(self) -> Told {
-        Told { unpinned: self.unpinned, asked: self.known.into_keys().collect() }
+        self.told
+    }
+
+    fn path_of(&self, path: &FilePath) -> (String, WrittenIn) {
+        match path.root {
+            Root::World => (joined(&self.roots.world.0, &path.path), self.roots.world.1),
+            Root::Models => (normalised(&path.path), self.roots.models),
+            Root::ModelPath => (normalised(&path.path), self.roots.model_path),
+        }
     }
 }
 
 impl Models for Shelf<'_, '_> {
-    fn find(&mut self, uri: &str) -> Found {
-        if let Some(found) = self.known.get(uri) {
-            return found.clone();
+    fn folders(&self) -> Folders {
+        Folders { models: self.doc.models.clone(), path: self.doc.model_path.clone() }
+    }
+
+    fn read(&mut self, path: &FilePath) -> Result<Arc<[u8]>, String> {
+        let (path, written_in) = self.path_of(path);
+        match self.library.read(&path, written_in, InputKind::World) {
+            Ok(bytes) => Ok(bytes),
+            Err(Unread::Unpinned { bytes, digests, .. }) => {
+                self.told
+                    .unpinned
+                    .push(format!("the file `{path}` is not the one that is pinned: {digests}"));
+                Ok(bytes)
+            }
+            Err(Unread::Missing { reason, published }) => {
+                self.told.unpinned.extend(published.map(|published| {
+                    format!("cannot read the file `{path}`, published as {published}")
+                }));
+                Err(reason.to_string())
+            }
         }
-        let found = self.look_up(uri);
-        self.known.insert(uri.to_owned(), found.clone());
-        found
+    }
+
+    fn name(&self, path: &FilePath) -> String {
+        self.path_of(path).0
+    }
+
+    fn stand_in(&mut self, uri: &str) -> Option<Arc<[Solid]>> {
+        if !self.stand_ins.is_empty() {
+            self.told.asked.insert(uri.to_owned());
+        }
+        self.stand_ins.get(uri).cloned()
+    }
+
+    fn wanted(&mut self, name: &str) -> bool {
+        if self.doc.without.is_empty() {
+            return true;
+        }
+        self.told.models.insert(name.to_owned());
+        !self.doc.without.iter().any(|left_out| left_out == name)
+    }
+
+    fn turns_meshes(&self) -> bool {
+        self.doc.up_axis == UpAxisDoc::AsWritten
     }
 }

@@ -5,6 +5,7 @@ use crate::document::{Diagnostic, Source};
 use crate::grid::OccupancyGrid;
 use crate::studies::prior_map::tour::{self, TopoMetricMap};
 use crate::world::floor_plan::{self, FloorPlanError, FloorPlanSettings};
+use crate::world::formats::Foreign;
 use crate::world::map_server::{self, Descriptor};
 use crate::world::{World, document, sdf};
 
@@ -48,6 +49,7 @@ impl Derived {
 
 /// Returns whether the file `name` is a Gazebo world, by its ending.
 pub(super) fn is_sdf(name: &str) -> bool {
+    let name = name.strip_suffix(".xacro").unwrap_or(name);
     let extension = name.rsplit('.').next().unwrap_or_default().to_ascii_lowercase();
     extension == "world" || extension == "sdf"
 }
@@ -59,7 +61,9 @@ pub(super) fn world(
     layers: Option<&[String]>,
     models: &mut dyn sdf::Models,
 ) -> Result<World, Vec<Diagnostic>> {
-    if is_sdf(&source.name) {
+    if let Some(format) = Foreign::of(source.text.as_bytes()) {
+        Err(vec![format.fault(&source.name)])
+    } else if is_sdf(&source.name) {
         sdf::read_with(source, models)
     } else {
         document::read(source, layers)

@@ -11,6 +11,7 @@ use crate::condition::Condition;
 use crate::digest::MeaningDigest;
 use crate::document::{Diagnostic, Source};
 use crate::factor::Factor;
+use crate::world::formats::Foreign;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -111,7 +112,11 @@ impl<'a> Resolver<'a> {
         let bytes = self.bytes(&normalised(path), kind, path, pointer)?;
         let Ok(text) = std::str::from_utf8(&bytes) else {
             let fault = self.faults.fault(pointer, format!("`{path}` is not UTF-8 text"));
-            self.faults.push(fault.label("expected a text file"));
+            let fault = fault.label("expected a text file");
+            self.faults.push(match Foreign::of(&bytes) {
+                Some(format) => fault.help(format.help()),
+                None => fault,
+            });
             return None;
         };
         let name = match self.faults.written_in(pointer) {

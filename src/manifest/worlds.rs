@@ -1,11 +1,11 @@
 //! The worlds of a manifest's conditions: which file, which layers; or which building of a family.
 
 use super::document::{
-    Alpha, FactorRef, GenerateDoc, PlaceDoc, PoseDoc, SeedDoc, WorldDoc, WorldFile,
+    Alpha, FactorRef, GenerateDoc, PlaceDoc, PoseDoc, SeedDoc, UpAxisDoc, WorldDoc, WorldFile,
 };
 use super::input::InputKind;
 use super::library::{Known, normalised};
-use super::models::Shelf;
+use super::models::{Roots, Shelf};
 use super::readers;
 use super::resolver::Resolver;
 use crate::condition::Condition;
@@ -148,6 +148,15 @@ impl Resolver<'_> {
         if !doc.models.is_empty() {
             described["models"] = json!(doc.models);
         }
+        if !doc.model_path.is_empty() {
+            described["model-path"] = json!(doc.model_path);
+        }
+        if !doc.without.is_empty() {
+            described["without"] = json!(doc.without);
+        }
+        if doc.up_axis == UpAxisDoc::AsWritten {
+            described["up-axis"] = json!("as-written");
+        }
         if !doc.stand_ins.is_empty() {
             described["stand-ins"] = json!(doc.stand_ins);
         }
@@ -189,8 +198,12 @@ impl Resolver<'_> {
         }
         let stand_ins = self.stand_ins(doc, place);
         let world = (normalised(file), self.faults.written_in(pointer));
-        let folders = self.faults.written_in(&format!("{place}/models"));
-        let mut shelf = Shelf::new(doc, world, folders, &mut self.library, stand_ins);
+        let roots = Roots {
+            world,
+            models: self.faults.written_in(&format!("{place}/models")),
+            model_path: self.faults.written_in(&format!("{place}/model-path")),
+        };
+        let mut shelf = Shelf::new(doc, roots, &mut self.library, stand_ins);
         let read = readers::world(&source, None, &mut shelf);
         let told = shelf.told();
         self.told_by(told, doc, place);

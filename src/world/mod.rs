@@ -7,6 +7,7 @@ pub mod document;
 mod fixture;
 pub mod floor;
 pub mod floor_plan;
+pub mod formats;
 pub mod generate;
 pub mod map_server;
 pub mod mesh;
@@ -25,7 +26,7 @@ use crate::json;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// The end of every warning of something that could not be read.
+/// The end of every warning of something that could not be read: `it is missing`, or `12 are missing`.
 const MISSING: &str = " missing";
 
 /// A building: everything that a robot can see or touch, or that can be its goal.
@@ -104,9 +105,14 @@ impl World {
         names
     }
 
-    /// Returns how many things of the file could not be read and are therefore missing; each has its warning.
+    /// Returns how many things of the file could not be read and are therefore missing; each kind has its warning.
     pub fn missing(&self) -> usize {
-        self.warnings.iter().filter(|warning| warning.ends_with(MISSING)).count()
+        let ends = self.warnings.iter().filter_map(|warning| warning.strip_suffix(MISSING));
+        let count = |end: &str| {
+            let before = end.strip_suffix(" are")?;
+            before.rsplit(' ').next()?.parse().ok()
+        };
+        ends.map(|end| count(end).unwrap_or(1)).sum()
     }
 
     /// Moves the goal to `to`, with the tag that marks it: the one of a colour that no other tag has. Returns whether there is one
@@ -134,6 +140,16 @@ impl World {
     /// Returns the outlines of everything between the heights `low` and `high` (m): what a body of that height touches.
     pub fn contact(&self, low: f64, high: f64) -> Vec<Outline> {
         self.solids.iter().flat_map(|solid| solid.body.shadow(low, high)).collect()
+    }
+
+    /// Returns the solid that is nearest to `at` of those between the heights `low` and `high` (m), and how far it is (m).
+    pub fn nearest(&self, at: Point, low: f64, high: f64) -> Option<(&Solid, f64)> {
+        let distance = |solid: &Solid| {
+            let outlines = solid.body.shadow(low, high);
+            outlines.iter().map(|o| o.distance(at)).fold(f64::INFINITY, f64::min)
+        };
+        let known = self.solids.iter().map(|solid| (solid, distance(solid)));
+        known.filter(|(_, far)| far.is_finite()).min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// Returns the smallest box around all solids.

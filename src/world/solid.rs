@@ -48,6 +48,20 @@ pub enum Body {
         /// Position and orientation of its centre.
         placement: Placement,
     },
+    /// A ball.
+    Sphere {
+        /// Its centre (m).
+        center: [f64; 3],
+        /// Radius (m).
+        radius: f64,
+    },
+    /// A convex body turned about its own z axis: between two neighbouring rings it is spanned by both.
+    Round {
+        /// Rings from one end to the other: half lengths along its x and y, and height (m).
+        rings: Vec<[f64; 3]>,
+        /// Position and orientation.
+        placement: Placement,
+    },
     /// A surface of triangles.
     Mesh {
         /// The triangles in their own frame.
@@ -71,8 +85,8 @@ impl Body {
     }
 
     /// Returns the outlines of the part between the heights `low` and `high` (m) seen from above: at most one of a
-    /// solid, one for each face of a mesh. Exact for boxes, meshes and upright prisms and cylinders; the hull of a
-    /// 32-gon for tilted cylinders.
+    /// solid, one for each face of a mesh. Exact for boxes, spheres, meshes and upright prisms and cylinders; the hull of
+    /// 32-gons for tilted cylinders and other round bodies.
     pub fn shadow(&self, low: f64, high: f64) -> Vec<Outline> {
         match self {
             Self::Mesh { mesh, standing } => section::shadow(mesh, standing, low, high),
@@ -80,10 +94,66 @@ impl Body {
         }
     }
 
+    /// Returns its lowest and highest point (m).
+    pub fn heights(&self) -> [f64; 2] {
+        let of = |heights: &mut dyn Iterator<Item = f64>| {
+            heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], z| [l.min(z), h.max(z)])
+        };
+        match self {
+            Self::Prism { z, .. } => *z,
+            Self::Sphere { center, radius } => [center[2] - radius, center[2] + radius],
+            Self::Box { size, placement } => {
+                let up = placement.rotation[2];
+                let half = up.iter().zip(size).map(|(u, s)| (u * s).abs() / 2.0).sum::<f64>();
+                [placement.translation[2] - half, placement.translation[2] + half]
+            }
+            Self::Cylinder { radius, length, placement } => {
+                let [x, y, z] = placement.rotation[2];
+                let half = radius * math::hypot(x, y) + (z * length).abs() / 2.0;
+                [placement.translation[2] - half, placement.translation[2] + half]
+            }
+            Self::Round { rings, placement } => {
+                let [x, y, z] = placement.rotation[2];
+                of(&mut rings.iter().flat_map(|[a, b, h]| {
+                    let middle = placement.translation[2] + z * h;
+                    let half = math::hypot(x * a, y * b);
+                    [middle - half, middle + half]
+                }))
+            }
+            Self::Mesh { mesh, standing } => {
+                of(&mut standing.triangles(mesh).flatten().map(|c| c[2]))
+            }
+        }
+    }
+
     /// Returns the one outline of a solid between two heights; none of a mesh.
     fn whole(&self, low: f64, high: f64) -> Option<Outline> {
         match self {
             Self::Mesh { .. } => None,
+            Self::Sphere { center: [x, y, z], radius } => {
+                // The widest section is the one nearest to the centre.
+                let off = (low - z).max(z - high).max(0.0);
+                let within = (radius * radius - off * off).max(0.0).sqrt();
+                (off <= *radius && within > 0.0)
+                    .then(|| Outline::Circle { center: Point::new(*x, *y), radius: within })
+            }
+            Self::Round { rings, placement } => {
+                let corners: Vec<_> = rings
+                    .iter()
+                    .flat_map(|&[a, b, height]| {
+                        (0..ROUND).map(move |i| {
+                            let (sin, cos) = math::sin_cos(
+                                std::f64::consts::TAU * f64::from(i) / f64::from(ROUND),
+                            );
+                            placement.apply([a * cos, b * sin, height])
+                        })
+                    })
+                    .collect();
+                let round = ROUND as usize;
+                let around = (0..corners.len()).map(|i| (i, i / round * round + (i + 1) % round));
+                let along = (round..corners.len()).map(|i| (i - round, i));
+                hull_between(&corners, &around.chain(along).collect::<Vec<_>>(), low, high)
+            }
             Self::Prism { outline, z } => (z[0] <= high && z[1] >= low).then(|| outline.clone()),
             Self::Cylinder { radius, length, placement } if placement.is_upright() => {
                 let [x, y, z] = placement.translation;
@@ -194,6 +264,25 @@ mod tests {
                 assert_eq!(one(outline).unwrap().sides().count(), 4, "{yaw}");
             }
         }
+    }
+
+    #[test]
+    fn a_ball_is_cut_in_circles_and_round_bodies_nearly_so() {
+        let ball = Body::Sphere { center: [1.0, 0.0, 0.5], radius: 0.5 };
+        let cut = |body: &Body, z: f64| one(body.slice(z)).map(|outline| size(&outline));
+        assert_eq!(cut(&ball, 0.5), Some((1.0, 1.0)));
+        assert!((cut(&ball, 0.2).unwrap().0 - 0.8).abs() < 1e-12);
+        assert_eq!((cut(&ball, 1.01), ball.heights()), (None, [0.0, 1.0]));
+        assert_eq!(one(ball.shadow(0.0, 2.0)), one(ball.slice(0.5)));
+        // A cone of 1 m, lying: seen from above it is a triangle.
+        let rings = vec![[0.5, 0.5, -0.5], [0.0, 0.0, 0.5]];
+        let placement = Placement::from_xyz_rpy([0.0, 0.0, 0.0, 0.0, FRAC_PI_2, 0.0]);
+        let cone = Body::Round { rings, placement };
+        let (width, height) = cut(&cone, 0.0).unwrap();
+        assert!((width - 1.0).abs() < 1e-9 && (height - 1.0).abs() < 0.01, "{width} {height}");
+        let (width, _) = cut(&cone, 0.25).unwrap();
+        assert!((width - 0.5).abs() < 0.01, "{width}");
+        assert!((cone.heights()[1] - 0.5).abs() < 1e-9);
     }
 
     #[test]

@@ -9,8 +9,7 @@ use crate::geometry::Point;
 use crate::report::show::{self, Derived, Drawing, FetchError, Over};
 use crate::store;
 use crate::world::generate::{self, Family};
-use crate::world::mesh;
-use crate::world::sdf::{Found, MeshPath, Models, mesh_path};
+use crate::world::sdf::{FilePath, Folders, Models, Root};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -23,37 +22,53 @@ fn building(family: FamilyArg, seed: u64) -> Result<(PathBuf, Vec<u8>), Failure>
     Ok((PathBuf::from(format!("{}.yaml", doc.name)), doc.to_yaml().into_bytes()))
 }
 
-/// The meshes of a world: files in folders of the command line, or beside the world.
+/// The models of a world: files in folders of the command line, or beside the world.
 struct Shelf {
     beside: PathBuf,
-    folders: BTreeMap<String, String>,
+    folders: Folders,
 }
 
-impl Models for Shelf {
-    fn find(&mut self, uri: &str) -> Found {
-        let path = match mesh_path(uri, &self.folders) {
-            Ok(MeshPath::Model(path)) => PathBuf::from(path),
-            Ok(MeshPath::Beside(path)) => self.beside.join(path),
-            Err(why) => return Found::Missing(why.to_string()),
-        };
-        let name = path.display().to_string();
-        match store::read(&path, load::MOST_INPUT) {
-            Ok(bytes) => Found::Mesh(Arc::new(mesh::read(&name, &bytes))),
-            Err(error) => Found::Missing(format!("`{name}`: {}", store::reason(&error))),
+impl Shelf {
+    fn path_of(&self, path: &FilePath) -> PathBuf {
+        match path.root {
+            Root::World => self.beside.join(&path.path),
+            Root::Models | Root::ModelPath => PathBuf::from(&path.path),
         }
     }
 }
 
-/// Returns the meshes of a world that lies in the folder `beside`, with the folders that `models` give as `NAME=FOLDER`.
-pub(super) fn shelf(models: &[String], beside: PathBuf) -> Result<impl Models, Failure> {
+impl Models for Shelf {
+    fn folders(&self) -> Folders {
+        self.folders.clone()
+    }
+
+    fn read(&mut self, path: &FilePath) -> Result<Arc<[u8]>, String> {
+        match store::read(&self.path_of(path), load::MOST_INPUT) {
+            Ok(bytes) => Ok(bytes.into()),
+            Err(error) => Err(store::reason(&error)),
+        }
+    }
+
+    fn name(&self, path: &FilePath) -> String {
+        self.path_of(path).display().to_string()
+    }
+}
+
+/// Returns the models of a world that lies in the folder `beside`: in the folders that `models` give as `NAME=FOLDER`, and in
+/// those of `path`.
+pub(super) fn shelf(
+    models: &[String],
+    path: &[String],
+    beside: PathBuf,
+) -> Result<impl Models, Failure> {
     let folder_of = |written: &String| match written.split_once('=') {
         Some((name, folder)) => Ok((name.to_owned(), folder.to_owned())),
         None => Err(Failure::not_understood(format!(
             "--models: expected NAME=FOLDER, found `{written}`"
         ))),
     };
-    let folders: BTreeMap<_, _> = models.iter().map(folder_of).collect::<Result<_, _>>()?;
-    Ok(Shelf { beside, folders })
+    let models: BTreeMap<_, _> = models.iter().map(folder_of).collect::<Result<_, _>>()?;
+    Ok(Shelf { beside, folders: Folders { models, path: path.to_vec() } })
 }
 
 /// Draws what is asked for of the file `name`.
@@ -73,7 +88,7 @@ fn draw(
         terminal.diagnostics(&faults);
         Failure::not_understood(format!("{name}: {}", Terminal::count(&faults)))
     };
-    let mut shelf = shelf(&args.models, beside(file))?;
+    let mut shelf = shelf(&args.models, &args.model_path, beside(file))?;
     let mut world =
         || show::read_world(name, bytes, args.layers.as_deref(), &mut shelf).map_err(told);
     match (args.derive, &args.over) {

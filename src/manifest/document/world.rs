@@ -26,7 +26,7 @@ pub struct GeneratedWorld {
     pub generate: GenerateDoc,
     /// Where goal and starts lie instead of where the building has them.
     #[serde(default)]
-    pub place: Option<PlaceDoc>,
+    pub place: Option<Box<PlaceDoc>>,
 }
 
 /// Where the goal and starts of a world lie instead of where it has them.
@@ -80,20 +80,40 @@ pub struct WorldFile {
     /// Layers that stand; all where left out.
     #[serde(default)]
     pub layers: Option<Choice<Vec<String>>>,
-    /// SDF: the folders of the models that meshes are named by, `NAME` of `model://NAME/mesh.dae` to its folder. They are
+    /// SDF: the folders of models by name, `NAME` of `model://NAME` and `model://NAME/mesh.dae` to its folder. They are
     /// relative to the manifest.
     #[serde(default)]
     pub models: BTreeMap<String, String>,
+    /// SDF: folders that hold folders of models, searched in this order after `models`. They are relative to the manifest.
+    #[serde(default)]
+    pub model_path: Vec<String>,
+    /// SDF: models that are left out, by name: `table`, or `table/lamp` of one within another.
+    #[serde(default)]
+    pub without: Vec<String>,
+    /// SDF: whether COLLADA meshes are turned by the axis that they say is up. Gazebo turns none.
+    #[serde(default)]
+    pub up_axis: UpAxisDoc,
     /// SDF: what stands for meshes, by their URI as the world writes it: solids as in a layer of world YAML, in the frame of
     /// the collision. They go before a file.
     #[serde(default)]
-    pub stand_ins: BTreeMap<String, LayerDoc>,
+    pub stand_ins: Box<BTreeMap<String, LayerDoc>>,
     /// Map: what its unknown cells are. By default they are walls where they border on free floor.
     #[serde(default)]
     pub unknown: Option<UnknownCells>,
     /// Where goal and starts lie instead of where the world has them.
     #[serde(default)]
-    pub place: Option<PlaceDoc>,
+    pub place: Option<Box<PlaceDoc>>,
+}
+
+/// What the axis that a mesh says is up comes to.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum UpAxisDoc {
+    /// Nothing, as in Gazebo: z is up.
+    #[default]
+    Ignored,
+    /// The mesh is turned so that it becomes z.
+    AsWritten,
 }
 
 /// Where the robot begins.

@@ -136,8 +136,8 @@ pub fn describe_world(world: &World, lidar_height: f64) -> String {
     for (name, goal) in &world.goals {
         text.push_str(&format!("goal {name}: ({}, {}) m\n", metres(goal.x), metres(goal.y)));
     }
-    if world.missing() > 0 {
-        text.push_str(&format!("incomplete: {} things are missing\n", world.missing()));
+    if let Some(lacks) = super::world::lacks(world) {
+        text.push_str(&format!("{lacks}\n"));
     }
     text.push_str(&format!("warnings: {}\nmeaning: {}\n", world.warnings.len(), world.meaning()));
     text

@@ -22,6 +22,7 @@ use crate::document::{Diagnostic, Source};
 use crate::grid::OccupancyGrid;
 use crate::robot::urdf;
 use crate::studies::prior_map::tour;
+use crate::world::formats::Foreign;
 use crate::world::map_server::{self, Descriptor};
 use crate::world::topology::{TagFault, TagScheme, Topology};
 use crate::world::{document as world_document, sdf};
@@ -64,6 +65,9 @@ pub fn draw(
     models: &mut dyn sdf::Models,
     fetch: &mut Fetch<'_>,
 ) -> Result<Drawing, Vec<Diagnostic>> {
+    if let Some(format) = Foreign::of(bytes) {
+        return Err(vec![format.fault(name)]);
+    }
     let Ok(text) = std::str::from_utf8(bytes) else {
         let fault = Diagnostic::placeless(format!("`{name}` is not text")).help(
             "show reads URDF robots, SDF or YAML worlds and map_server YAML; of a map image name the YAML",

@@ -10,6 +10,7 @@ use crate::geometry::{Bounds, Outline, Point};
 use crate::grid::{Cell, GridFrame, Occupancy, OccupancyGrid};
 use crate::studies::prior_map::tour;
 use crate::world::floor_plan::{self, FloorPlanSettings};
+use crate::world::formats::Foreign;
 use crate::world::{World, document, sdf};
 
 /// How near (m) to something solid an occupied cell of a prior counts as on it.
@@ -48,6 +49,9 @@ pub fn read_world(
     layers: Option<&[String]>,
     models: &mut dyn sdf::Models,
 ) -> Result<World, Vec<Diagnostic>> {
+    if let Some(format) = Foreign::of(bytes) {
+        return Err(vec![format.fault(name)]);
+    }
     let text = text_of(name, bytes)?;
     let source = Source::new(name, text);
     if !text.trim_start().starts_with('<') {

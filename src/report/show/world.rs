@@ -9,11 +9,11 @@ use super::prior::{NEAR, is_near};
 use crate::figure::canvas::{ACCENT, Canvas, FAINT, INK, metres};
 use crate::figure::cell_runs;
 use crate::figure::svg::Element;
-use crate::geometry::{Bounds, Cardinal, Outline, Point};
+use crate::geometry::{Bounds, Cardinal, Outline, Point, convex_hull};
 use crate::grid::{Cell, Occupancy, OccupancyGrid};
 use crate::math;
 use crate::world::topology::{TagScheme, Topology};
-use crate::world::{RegionKind, World};
+use crate::world::{Body, RegionKind, World};
 
 /// Fills of the layers, walls first, then by name: told apart by hue, and in print by how dark they are.
 const FILLS: [&str; 6] = ["#2b2b2b", "#8c8c8c", "#e0a458", "#4f6d8f", "#c9b8dd", "#6b8e4e"];
@@ -83,7 +83,7 @@ fn building_sheet(
             cut.extend(met.into_iter().map(|outline| (fill_of(&solid.layer), outline)));
             continue;
         }
-        for outline in solid.body.shadow(f64::NEG_INFINITY, f64::INFINITY) {
+        for outline in whole(&solid.body) {
             missed = true;
             let shape = canvas
                 .outline(&outline)
@@ -100,6 +100,10 @@ fn building_sheet(
             Outline::Circle { center, radius } => {
                 let least = 1.2 / canvas.scale();
                 canvas.outline(&Outline::Circle { center: *center, radius: radius.max(least) })
+            }
+            // Nor the surface of a mesh, which is a millimetre.
+            Outline::Polygon(corners) if thickness(corners) * canvas.scale() < LEAST => {
+                canvas.outline(&outline).set("stroke", fill).set("stroke-width", LEAST)
             }
             Outline::Polygon(_) => canvas.outline(&outline),
         };
@@ -128,6 +132,9 @@ fn building_sheet(
     let subtitle =
         format!("{:.2} x {:.2} m, cut at {lidar_height} m above the floor", size.0, size.1);
     canvas.heading(&world.name, &subtitle);
+    if let Some(lacks) = lacks(world) {
+        canvas.remark(&lacks);
+    }
     let mut legend: Vec<(String, &str, &str)> =
         layers.iter().map(|layer| ((*layer).to_owned(), fill_of(layer), INK)).collect();
     if missed {
@@ -155,6 +162,36 @@ fn building_sheet(
     }
     canvas.key(&key);
     canvas
+}
+
+/// Says how much of a world is missing, where anything is.
+pub(super) fn lacks(world: &World) -> Option<String> {
+    match world.missing() {
+        0 => None,
+        1 => Some("incomplete: 1 thing is missing".to_owned()),
+        many => Some(format!("incomplete: {many} things are missing")),
+    }
+}
+
+/// Least width (px) of what is solid.
+const LEAST: f64 = 1.0;
+
+/// Returns how thick (m) a long outline is.
+fn thickness(corners: &[Point]) -> f64 {
+    let next = corners.iter().cycle().skip(1);
+    let (twice, round) = corners
+        .iter()
+        .zip(next)
+        .fold((0.0, 0.0), |(twice, round), (a, b)| (twice + a.cross(*b), round + a.distance(*b)));
+    if round > 0.0 { f64::abs(twice) / round } else { 0.0 }
+}
+
+/// Returns what is drawn of a body that the lidar misses: of a mesh not each of its faces, but what is around them.
+fn whole(body: &Body) -> Vec<Outline> {
+    let outlines = body.shadow(f64::NEG_INFINITY, f64::INFINITY);
+    let Body::Mesh { .. } = body else { return outlines };
+    let corners: Vec<Point> = outlines.iter().flat_map(|o| o.sides().map(|side| side.a)).collect();
+    vec![Outline::Polygon(convex_hull(&corners))]
 }
 
 /// Returns what the names of regions keep off: tags, goals, and starts with what is written beside them.

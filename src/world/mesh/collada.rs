@@ -1,9 +1,11 @@
-//! COLLADA 1.4 and 1.5 (`.dae`): triangles and polygons of the scene's nodes, with unit, up axis, transforms and instances.
+//! COLLADA 1.4 and 1.5 (`.dae`): triangles and polygons of the scene's nodes, with unit, transforms and instances.
 //!
-//! Our own reader: the crate that reads STL and OBJ takes no up axis into account, shows every geometry once however often
-//! it stands in the scene, turns by the platform's sine, and trusts the counts that a file announces.
+//! As Gazebo does, coordinates are taken as they are written: the file's `<up_axis>` is handed on and turns nothing.
+//!
+//! Our own reader: the crate that reads STL and OBJ shows every geometry once however often it stands in the scene, turns
+//! by the platform's sine, and trusts the counts that a file announces.
 
-use super::{MAX_BYTES, MAX_TRIANGLES, Part, Triangle, checked};
+use super::{MAX_BYTES, MAX_TRIANGLES, MeshFile, Part, Triangle, UpAxis, checked};
 use crate::document::xml::{self, Faults};
 use crate::document::{Diagnostic, Source};
 use crate::math;
@@ -20,8 +22,11 @@ type Affine = [[f64; 4]; 3];
 
 const IDENTITY: Affine = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
 
-/// Reads the parts of the file `name`, z up, in metres.
-pub(super) fn read(name: &str, bytes: &[u8]) -> Result<Vec<Part>, Vec<Diagnostic>> {
+/// Elements by kind and id. Files use one id for things of several kinds: a scene, its node and their geometry.
+type Ids<'a, 'i> = BTreeMap<(&'a str, &'a str), Node<'a, 'i>>;
+
+/// Reads the parts of the file `name`, in metres.
+pub(super) fn read(name: &str, bytes: &[u8]) -> Result<MeshFile, Vec<Diagnostic>> {
     let text = std::str::from_utf8(bytes).map_err(|_| {
         vec![Diagnostic::placeless(format!("cannot read the mesh `{name}`: expected UTF-8 text"))]
     })?;
@@ -35,8 +40,15 @@ pub(super) fn read(name: &str, bytes: &[u8]) -> Result<Vec<Part>, Vec<Diagnostic
         faults.push(fault);
         return Err(faults.finish());
     }
-    let base = upright(root, &mut faults);
-    let ids = root.descendants().filter_map(|n| Some((n.attribute("id")?, n))).collect();
+    let base = metres(root, &mut faults);
+    let up_axis = up_axis(root, &mut faults);
+    let mut ids = Ids::new();
+    for node in root.descendants() {
+        if let Some(id) = node.attribute("id") {
+            // Of two that are alike the first counts.
+            ids.entry((node.tag_name().name(), id)).or_insert(node);
+        }
+    }
     let mut reader =
         Reader { ids, faults, geometries: BTreeMap::new(), parts: Vec::new(), count: 0, visits: 0 };
     reader.scene(root, &base);
@@ -47,35 +59,38 @@ pub(super) fn read(name: &str, bytes: &[u8]) -> Result<Vec<Part>, Vec<Diagnostic
         let fault = faults.at(root, format!("cannot read the mesh: {problem}"));
         faults.push(fault);
     }
-    if faults.any_error() { Err(faults.finish()) } else { Ok(parts) }
+    if faults.any_error() { Err(faults.finish()) } else { Ok(MeshFile { parts, up_axis }) }
 }
 
-/// Returns the map from the file's unit and axes to metres with z up.
-fn upright(root: Node<'_, '_>, faults: &mut Faults<'_>) -> Affine {
-    let asset = xml::child(root, "asset");
-    let unit = asset.and_then(|asset| xml::child(asset, "unit"));
-    let [meter] = unit.and_then(|unit| faults.attribute(unit, "meter")).unwrap_or([1.0]);
-    if let (Some(unit), false) = (unit, meter > 0.0 && meter <= 1e6) {
+/// Returns the map from the file's unit to metres.
+fn metres(root: Node<'_, '_>, faults: &mut Faults<'_>) -> Affine {
+    let unit = xml::descend(root, "asset/unit");
+    let [m] = unit.and_then(|unit| faults.attribute(unit, "meter")).unwrap_or([1.0]);
+    if let (Some(unit), false) = (unit, m > 0.0 && m <= 1e6) {
         let fault = faults.at(unit, "unit out of range");
-        faults.push(fault.label(format!("expected metres above zero, found {meter}")));
+        faults.push(fault.label(format!("expected metres above zero, found {m}")));
     }
-    let axis = asset.and_then(|asset| xml::child(asset, "up_axis"));
-    let m = meter;
-    match axis.map_or("Y_UP", xml::text) {
-        "Z_UP" => [[m, 0.0, 0.0, 0.0], [0.0, m, 0.0, 0.0], [0.0, 0.0, m, 0.0]],
-        "X_UP" => [[0.0, -m, 0.0, 0.0], [0.0, 0.0, -m, 0.0], [m, 0.0, 0.0, 0.0]],
-        "Y_UP" => [[m, 0.0, 0.0, 0.0], [0.0, 0.0, -m, 0.0], [0.0, m, 0.0, 0.0]],
+    [[m, 0.0, 0.0, 0.0], [0.0, m, 0.0, 0.0], [0.0, 0.0, m, 0.0]]
+}
+
+/// Returns the axis that the file says is up.
+fn up_axis(root: Node<'_, '_>, faults: &mut Faults<'_>) -> UpAxis {
+    let axis = xml::descend(root, "asset/up_axis");
+    match axis.map_or("", xml::text) {
+        "X_UP" => UpAxis::X,
+        "Y_UP" => UpAxis::Y,
+        "Z_UP" | "" => UpAxis::Z,
         other => {
             let found = format!("expected X_UP, Y_UP or Z_UP, found {other}");
             let fault = faults.at(axis.unwrap_or(root), "unknown up axis").label(found);
             faults.push(fault);
-            IDENTITY
+            UpAxis::Z
         }
     }
 }
 
 struct Reader<'a, 'i, 's> {
-    ids: BTreeMap<&'a str, Node<'a, 'i>>,
+    ids: Ids<'a, 'i>,
     faults: Faults<'s>,
     /// Triangles of a geometry in its own frame, by id.
     geometries: BTreeMap<&'a str, Vec<Triangle>>,
@@ -88,7 +103,9 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
     /// Places the scene; without one, every geometry where it is.
     fn scene(&mut self, root: Node<'a, 'i>, base: &Affine) {
         let instance = xml::descend(root, "scene/instance_visual_scene");
-        if let Some(scene) = instance.and_then(|instance| self.target(instance, "url")) {
+        if let Some(scene) =
+            instance.and_then(|instance| self.target(instance, "url", &["visual_scene"]))
+        {
             for node in xml::elements(scene).filter(|n| n.tag_name().name() == "node") {
                 self.node(node, base, 0);
             }
@@ -101,10 +118,17 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         }
     }
 
-    /// Returns what the attribute `name` of `node` points to.
-    fn target(&mut self, node: Node<'a, 'i>, name: &str) -> Option<Node<'a, 'i>> {
+    /// Returns the element, of one of `kinds`, that the attribute `name` of `node` points to.
+    fn target(
+        &mut self,
+        node: Node<'a, 'i>,
+        name: &str,
+        kinds: &[&'static str],
+    ) -> Option<Node<'a, 'i>> {
         let url = node.attribute(name).unwrap_or_default();
-        let found = url.strip_prefix('#').and_then(|id| self.ids.get(id)).copied();
+        let id = url.strip_prefix('#');
+        let found = id.and_then(|id| kinds.iter().find_map(|kind| self.ids.get(&(*kind, id))));
+        let found = found.copied();
         if found.is_none() {
             let message = format!("<{}> names `{url}`, which is not there", node.tag_name().name());
             self.fault(node, message, "expected the id of an element of this file");
@@ -145,19 +169,22 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
             match element.tag_name().name() {
                 "node" => self.node(element, &here, depth + 1),
                 "instance_node" => {
-                    if let Some(target) = self.target(element, "url") {
+                    if let Some(target) = self.target(element, "url", &["node"]) {
                         self.node(target, &here, depth + 1);
                     }
                 }
                 "instance_geometry" => {
-                    if let Some(geometry) = self.target(element, "url") {
+                    if let Some(geometry) = self.target(element, "url", &["geometry"]) {
                         self.place(geometry, &[node], &here);
                     }
                 }
                 "instance_controller" => {
                     // A skin stands as it was bound; nothing moves here.
-                    let skin = self.target(element, "url").and_then(|c| xml::child(c, "skin"));
-                    if let Some(geometry) = skin.and_then(|skin| self.target(skin, "source")) {
+                    let skin = self.target(element, "url", &["controller"]);
+                    let skin = skin.and_then(|c| xml::child(c, "skin"));
+                    if let Some(geometry) =
+                        skin.and_then(|skin| self.target(skin, "source", &["geometry"]))
+                    {
                         self.place(geometry, &[node], &here);
                     }
                 }
@@ -269,14 +296,14 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
 
     /// Returns the positions behind an input VERTEX.
     fn positions(&mut self, input: Node<'a, 'i>) -> Option<Vec<[f64; 3]>> {
-        let vertices = self.target(input, "source")?;
+        let vertices = self.target(input, "source", &["vertices"])?;
         let position =
             xml::elements(vertices).find(|e| e.attribute("semantic") == Some("POSITION"));
         let Some(position) = position else {
             self.fault(vertices, "vertices without positions", "expected an <input> POSITION");
             return None;
         };
-        let source = self.target(position, "source")?;
+        let source = self.target(position, "source", &["source"])?;
         let accessor = xml::descend(source, "technique_common/accessor");
         let number = |name: &str, otherwise: usize| {
             let written = accessor.and_then(|accessor| accessor.attribute(name));
@@ -284,7 +311,7 @@ impl<'a, 'i> Reader<'a, 'i, '_> {
         };
         let (stride, offset) = (number("stride", 3)?.max(3), number("offset", 0)?);
         let array = match accessor {
-            Some(accessor) => self.target(accessor, "source")?,
+            Some(accessor) => self.target(accessor, "source", &["float_array"])?,
             None => xml::child(source, "float_array")?,
         };
         let mut numbers = Vec::new();

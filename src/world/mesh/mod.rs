@@ -28,8 +28,45 @@ pub type Triangle = [[f64; 3]; 3];
 pub struct Part {
     /// The names that it goes by: its node's and its geometry's in COLLADA, its group's in OBJ.
     pub names: Vec<String>,
-    /// Its triangles, z up (m).
+    /// Its triangles, in the file's own axes (m).
     pub triangles: Vec<Triangle>,
+}
+
+/// The axis that a file says is up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum UpAxis {
+    /// x.
+    X,
+    /// y.
+    Y,
+    /// z, or none is named.
+    Z,
+}
+
+/// What a file holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeshFile {
+    /// Its parts, in the axes in which they are written: Gazebo takes z for up, whatever the file says.
+    pub parts: Vec<Part>,
+    /// The axis that the file says is up.
+    pub up_axis: UpAxis,
+}
+
+impl MeshFile {
+    /// Turns the parts so that the axis that the file says is up becomes z.
+    #[must_use]
+    pub fn upright(mut self) -> Self {
+        for corner in self.parts.iter_mut().flat_map(|p| p.triangles.as_flattened_mut()) {
+            let [x, y, z] = *corner;
+            *corner = match self.up_axis {
+                UpAxis::X => [-y, -z, x],
+                UpAxis::Y => [x, -z, y],
+                UpAxis::Z => [x, y, z],
+            };
+        }
+        self.up_axis = UpAxis::Z;
+        self
+    }
 }
 
 /// Triangles in a frame of their own (m).
@@ -87,7 +124,7 @@ enum MeshError {
 ///
 /// # Errors
 /// Every fault found, with its line where the format has lines.
-pub fn read(name: &str, bytes: &[u8]) -> Result<Vec<Part>, Vec<Diagnostic>> {
+pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile, Vec<Diagnostic>> {
     let refuse = |problem: String| Err(vec![Diagnostic::placeless(problem)]);
     if bytes.len() > MAX_BYTES {
         let found = bytes.len();
@@ -103,7 +140,7 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<Vec<Part>, Vec<Diagnostic>> {
         other => Err(MeshError::Ending(other.to_owned())),
     };
     match read.and_then(|parts| checked(parts.iter()).map(|()| parts)) {
-        Ok(parts) => Ok(parts),
+        Ok(parts) => Ok(MeshFile { parts, up_axis: UpAxis::Z }),
         Err(problem) => refuse(format!("cannot read the mesh `{name}`: {problem}")),
     }
 }

@@ -21,7 +21,11 @@ pub struct Standing {
 }
 
 impl Standing {
-    fn triangles<'m>(&'m self, mesh: &'m Mesh) -> impl Iterator<Item = Triangle> + 'm {
+    /// Returns the triangles of `mesh` where they stand.
+    pub(in crate::world) fn triangles<'m>(
+        &'m self,
+        mesh: &'m Mesh,
+    ) -> impl Iterator<Item = Triangle> + 'm {
         let place = |c: [f64; 3]| {
             let [x, y, z] = self.scale;
             self.placement.apply([c[0] * x, c[1] * y, c[2] * z])

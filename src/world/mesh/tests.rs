@@ -107,7 +107,8 @@ fn every_format_holds_the_same_box() {
         ("c.obj", obj(&triangles).into_bytes()),
     ];
     for (name, bytes) in files {
-        let parts = read(name, &bytes).unwrap_or_else(|faults| panic!("{name}: {faults:?}"));
+        let MeshFile { parts, .. } =
+            read(name, &bytes).unwrap_or_else(|faults| panic!("{name}: {faults:?}"));
         let mesh = whole(&parts);
         assert_eq!(mesh.triangles(), triangles, "{name}");
         assert!(parts[0].names == ["box"] || name == "b.STL", "{name}: {:?}", parts[0].names);
@@ -119,8 +120,8 @@ fn every_format_holds_the_same_box() {
 }
 
 #[test]
-fn a_table_stands_by_its_unit_its_up_axis_and_the_nodes_of_its_legs() {
-    let parts = read("models/table.dae", TABLE.as_bytes()).unwrap();
+fn a_table_stands_by_its_unit_and_the_nodes_of_its_legs() {
+    let parts = read("models/table.dae", TABLE.as_bytes()).unwrap().upright().parts;
     assert_eq!(parts.len(), 5);
     assert_eq!(parts[0].names, ["Top", "top", "Slab", "slab"]);
     let mesh = whole(&parts);
@@ -141,19 +142,42 @@ fn a_table_stands_by_its_unit_its_up_axis_and_the_nodes_of_its_legs() {
 }
 
 #[test]
-fn up_axes_and_units_are_brought_to_metres_with_z_up() {
-    let height = |axis: &str| {
+fn the_up_axis_turns_nothing_unless_one_asks() {
+    let read = |axis: &str| {
         let text = TABLE.replace("<up_axis>Y_UP</up_axis>", axis);
-        let mesh = whole(&read("t.dae", text.as_bytes()).unwrap());
+        read("t.dae", text.as_bytes()).unwrap()
+    };
+    let size = |file: &MeshFile| {
+        let mesh = whole(&file.parts);
         let ends = |i: usize| {
             let along = mesh.triangles().iter().flatten().map(move |c| c[i]);
             along.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(v), h.max(v)])
         };
         [ends(0), ends(1), ends(2)].map(|[l, h]| ((h - l) / 0.0254).round())
     };
-    assert_eq!(height(""), [40.0, 30.0, 29.0], "y is up where nothing is said");
-    assert_eq!(height("<up_axis>Z_UP</up_axis>"), [40.0, 29.0, 30.0]);
-    assert_eq!(height("<up_axis>X_UP</up_axis>"), [29.0, 30.0, 40.0]);
+    for (axis, said, turned) in [
+        ("", UpAxis::Z, [40.0, 29.0, 30.0]),
+        ("<up_axis>Z_UP</up_axis>", UpAxis::Z, [40.0, 29.0, 30.0]),
+        ("<up_axis>Y_UP</up_axis>", UpAxis::Y, [40.0, 30.0, 29.0]),
+        ("<up_axis>X_UP</up_axis>", UpAxis::X, [29.0, 30.0, 40.0]),
+    ] {
+        let file = read(axis);
+        assert_eq!((size(&file), file.up_axis), ([40.0, 29.0, 30.0], said), "{axis}: as Gazebo");
+        assert_eq!(size(&file.upright()), turned, "{axis}");
+    }
+}
+
+/// Checks the form in which one well-known exporter writes: the scene, its node and the geometry go by one id.
+#[test]
+fn one_id_may_name_things_of_several_kinds() {
+    let named = TABLE
+        .replace("\"#s\"", "\"#slab\"")
+        .replace("visual_scene id=\"s\"", "visual_scene id=\"slab\"")
+        .replace("node id=\"leg\"", "node id=\"slab\"")
+        .replace("\"#leg\"", "\"#slab\"");
+    assert_ne!(named, TABLE);
+    let triangles = |text: &str| whole(&read("t.dae", text.as_bytes()).unwrap().parts);
+    assert_eq!(triangles(&named), triangles(TABLE));
 }
 
 #[test]
@@ -286,8 +310,8 @@ proptest! {
             2 => ("a.stl", binary_stl(&triangles)),
             _ => ("a.obj", obj(&triangles).into_bytes()),
         };
-        if let Ok(parts) = read(name, &mutate(&bytes, &edits)) {
-            let mesh = whole(&parts);
+        if let Ok(file) = read(name, &mutate(&bytes, &edits)) {
+            let mesh = whole(&file.parts);
             let _ = (cut(&mesh, &HERE, 0.1), shadow(&mesh, &HERE, 0.0, 0.4));
         }
     }

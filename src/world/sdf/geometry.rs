@@ -1,91 +1,145 @@
-//! The shapes of collisions.
+//! The shapes of collisions as they are described, before anything places or scales them.
 
-use super::{Models, mesh};
+use super::notes::Kind;
+use super::reader::{File, Found, Reader};
+use crate::document::quoted;
 use crate::document::xml::{self, Faults};
-use crate::geometry::{Outline, Placement, Point};
-use crate::world::Body;
+use crate::world::Solid;
+use crate::world::mesh::Mesh;
 use roxmltree::Node;
+use std::sync::Arc;
 
 /// Largest extent (m) of one shape.
-const MAX_SIZE: f64 = 1e5;
+pub(super) const MAX_SIZE: f64 = 1e5;
 
-/// Returns the bodies of a `<collision>` at `placement`, sizes multiplied by `scale` as Gazebo does; none for planes
-/// and, with a warning or fault, for what cannot be read.
+/// A shape; lengths in metres.
+#[derive(Debug)]
+pub(super) enum Shape {
+    /// Nothing solid, or a fault that has been told.
+    Nothing,
+    /// It is missing.
+    Lack(Kind),
+    Box([f64; 3]),
+    Sphere(f64),
+    Cylinder {
+        radius: f64,
+        length: f64,
+    },
+    Capsule {
+        radius: f64,
+        length: f64,
+    },
+    Cone {
+        radius: f64,
+        length: f64,
+    },
+    Ellipsoid([f64; 3]),
+    Plane {
+        normal: [f64; 3],
+        size: [f64; 2],
+    },
+    Polyline {
+        corners: Vec<[f64; 2]>,
+        height: f64,
+    },
+    Mesh {
+        mesh: Mesh,
+        scale: [f64; 3],
+    },
+    StandIn(Arc<[Solid]>),
+}
+
+/// Returns the element that says the shape of a `<collision>`.
+pub(super) fn shape_of<'a, 'i>(collision: Node<'a, 'i>) -> Option<Node<'a, 'i>> {
+    xml::child(collision, "geometry").and_then(|geometry| xml::elements(geometry).next())
+}
+
+/// Reads the shape of a `<collision>`.
 pub(super) fn read(
     collision: Node<'_, '_>,
-    name: &str,
-    placement: Placement,
-    scale: [f64; 3],
-    models: &mut dyn Models,
+    file: &File<'_>,
+    reader: &mut Reader<'_>,
     faults: &mut Faults<'_>,
-) -> Vec<Body> {
-    let shape = xml::child(collision, "geometry").and_then(|g| xml::elements(g).next());
-    match shape {
-        Some(shape) if shape.tag_name().name() == "mesh" => {
-            mesh::read(shape, name, placement, scale, models, faults)
-        }
-        _ => primitive(collision, name, placement, scale, faults).into_iter().collect(),
-    }
+) -> Shape {
+    let Some(shape) = shape_of(collision) else { return Shape::Lack(Kind::NoShape) };
+    let read = match shape.tag_name().name() {
+        "empty" => Some(Shape::Nothing),
+        "mesh" => mesh(shape, file, reader, faults),
+        kind => primitive(shape, kind, faults),
+    };
+    read.unwrap_or(Shape::Nothing)
 }
 
-fn primitive(
-    collision: Node<'_, '_>,
-    name: &str,
-    placement: Placement,
-    scale: [f64; 3],
-    faults: &mut Faults<'_>,
-) -> Option<Body> {
-    let Some(shape) = xml::child(collision, "geometry").and_then(|g| xml::elements(g).next())
-    else {
-        let fault = faults
-            .at(collision, format!("collision `{name}` has no geometry and is missing"))
-            .warning();
-        faults.push(fault);
-        return None;
+fn primitive(shape: Node<'_, '_>, kind: &str, faults: &mut Faults<'_>) -> Option<Shape> {
+    let round = |faults: &mut Faults<'_>| {
+        let radius = faults.required(shape, "radius", "a radius in metres");
+        let length = faults.required(shape, "length", "a length in metres");
+        let (radius, length) = (radius?, length?);
+        check(shape, &[radius, length], faults)?;
+        Some((radius, length))
     };
-    match shape.tag_name().name() {
-        "plane" | "empty" => None,
+    Some(match kind {
         "box" => {
-            let sizes = read_sizes(shape, "size", faults)?;
-            let size = [sizes[0] * scale[0], sizes[1] * scale[1], sizes[2] * scale[2]];
+            let size: [f64; 3] = required(shape, "size", "three lengths", faults)?;
             check(shape, &size, faults)?;
-            Some(Body::Box { size, placement })
+            Shape::Box(size)
+        }
+        "sphere" => {
+            let radius = faults.required(shape, "radius", "a radius in metres")?;
+            check(shape, &[radius], faults)?;
+            Shape::Sphere(radius)
         }
         "cylinder" => {
-            let radius = faults.required(shape, "radius", "a radius in metres");
-            let length = faults.required(shape, "length", "a length in metres");
-            // Gazebo scales a cylinder's radius by the larger of x and y.
-            let (radius, length) = (radius? * scale[0].max(scale[1]), length? * scale[2]);
-            check(shape, &[radius, length], faults)?;
-            Some(Body::Cylinder { radius, length, placement })
+            let (radius, length) = round(faults)?;
+            Shape::Cylinder { radius, length }
         }
-        "polyline" => polyline(shape, name, placement, scale, faults),
-        kind => {
+        "capsule" => {
+            let (radius, length) = round(faults)?;
+            Shape::Capsule { radius, length }
+        }
+        "cone" => {
+            let (radius, length) = round(faults)?;
+            Shape::Cone { radius, length }
+        }
+        "ellipsoid" => {
+            let radii: [f64; 3] = required(shape, "radii", "three lengths", faults)?;
+            check(shape, &radii, faults)?;
+            Shape::Ellipsoid(radii)
+        }
+        "plane" => {
+            let normal = match xml::child(shape, "normal") {
+                Some(normal) => faults.numbers(normal)?,
+                None => [0.0, 0.0, 1.0],
+            };
+            let size = match xml::child(shape, "size") {
+                Some(size) => faults.numbers(size)?,
+                None => [1.0, 1.0],
+            };
+            Shape::Plane { normal, size }
+        }
+        "polyline" => polyline(shape, faults)?,
+        other => {
             let what = xml::child(shape, "uri").map(xml::text);
-            let what = what.map_or_else(String::new, |uri| format!(" `{uri}`"));
-            let fault = faults
-                .at(
-                    shape,
-                    format!(
-                        "collision `{name}` is a {kind}{what}, which cannot be read: it is missing"
-                    ),
-                )
-                .warning();
-            faults.push(fault);
-            None
+            let what = what.map_or_else(String::new, |uri| format!(" `{}`", quoted(uri)));
+            Shape::Lack(Kind::Shape(format!("{}{what}", quoted(other))))
         }
-    }
+    })
 }
 
-fn read_sizes(shape: Node<'_, '_>, name: &str, faults: &mut Faults<'_>) -> Option<[f64; 3]> {
-    let Some(size) = xml::child(shape, name) else {
+fn required<const N: usize>(
+    shape: Node<'_, '_>,
+    name: &str,
+    what: &str,
+    faults: &mut Faults<'_>,
+) -> Option<[f64; N]> {
+    let Some(found) = xml::child(shape, name) else {
         let fault = faults
             .at(shape, format!("<{}> has no <{name}>", shape.tag_name().name()))
-            .label("expected three lengths in metres");
+            .label(format!("expected {what} in metres"));
         faults.push(fault);
         return None;
     };
-    faults.numbers(size)
+    faults.numbers(found)
 }
 
 /// Checks `lengths`; returns `None` where one of them is no length, and collects that as a fault.
@@ -99,19 +153,11 @@ fn check(shape: Node<'_, '_>, lengths: &[f64], faults: &mut Faults<'_>) -> Optio
     None
 }
 
-fn polyline(
-    shape: Node<'_, '_>,
-    name: &str,
-    placement: Placement,
-    scale: [f64; 3],
-    faults: &mut Faults<'_>,
-) -> Option<Body> {
+fn polyline(shape: Node<'_, '_>, faults: &mut Faults<'_>) -> Option<Shape> {
     let height = faults.required(shape, "height", "a height in metres");
-    let mut corners = Vec::new();
+    let mut corners: Vec<[f64; 2]> = Vec::new();
     for point in xml::elements(shape).filter(|e| e.tag_name().name() == "point") {
-        let [x, y] = faults.numbers(point)?;
-        let [x, y, _] = placement.apply([x * scale[0], y * scale[1], 0.0]);
-        corners.push(Point::new(x, y));
+        corners.push(faults.numbers(point)?);
     }
     if corners.len() > 1 && corners.first() == corners.last() {
         corners.pop();
@@ -123,20 +169,46 @@ fn polyline(
         faults.push(fault);
         return None;
     }
-    let height = height? * scale[2];
+    let height = height?;
     check(shape, &[height], faults)?;
-    if placement.rotation[2][2] < 1.0 - 1e-9 {
-        let fault = faults
-            .at(
-                shape,
-                format!(
-                    "collision `{name}` is a tilted polyline, which cannot be read: it is missing"
-                ),
-            )
-            .warning();
-        faults.push(fault);
-        return None;
-    }
-    let low = placement.translation[2];
-    Some(Body::Prism { outline: Outline::Polygon(corners), z: [low, low + height] })
+    Some(Shape::Polyline { corners, height })
+}
+
+fn mesh(
+    shape: Node<'_, '_>,
+    file: &File<'_>,
+    reader: &mut Reader<'_>,
+    faults: &mut Faults<'_>,
+) -> Option<Shape> {
+    let uri = xml::child(shape, "uri").map_or("", xml::text);
+    let scale = match xml::child(shape, "scale") {
+        None => [1.0; 3],
+        Some(node) => {
+            let scale = faults.numbers::<3>(node)?;
+            // A mirror is a factor below zero.
+            if !scale.iter().all(|factor| *factor != 0.0 && factor.abs() <= 1e6) {
+                let fault = faults.at(node, "scale out of range");
+                faults.push(fault.label("expected three factors other than zero"));
+                return None;
+            }
+            scale
+        }
+    };
+    let submesh = xml::child(shape, "submesh");
+    let wanted = submesh.map(|submesh| {
+        let centred = xml::child(submesh, "center");
+        let centred = centred.is_some_and(|n| matches!(xml::text(n), "1" | "true"));
+        (xml::child(submesh, "name").map_or("", xml::text).to_owned(), centred)
+    });
+    let mut unknown = |known: &[&str]| {
+        let name = wanted.as_ref().map_or("", |(name, _)| name.as_str());
+        let fault = faults.at(submesh.unwrap_or(shape), format!("the mesh has no part `{name}`"));
+        faults.push(fault.label(format!("its parts are {}", crate::document::listed(known))));
+    };
+    Some(match reader.mesh(uri, file.path, &wanted, &mut unknown) {
+        Found::Mesh(mesh) => Shape::Mesh { mesh, scale },
+        Found::StandIn(solids) => Shape::StandIn(solids),
+        Found::Missing(why) => Shape::Lack(Kind::Mesh { uri: uri.to_owned(), why }),
+        Found::Nothing => Shape::Nothing,
+    })
 }

@@ -1,22 +1,36 @@
-//! Gazebo worlds: SDF `.world` and `.sdf` files (SDFormat 1.4 to 1.9) as solids of one layer, [`LAYER`].
+//! Gazebo worlds: SDF `.world` and `.sdf` files (SDFormat 1.3 to 1.12) as solids of one layer, [`LAYER`].
 //!
-//! Collisions count, visuals do not. Where the file has a `<state>`, its poses and scales are the truth, as in
-//! Gazebo; a scale multiplies sizes, not the poses within a model. What moves in Gazebo stands still here.
-//! Ground planes are left out. Whatever else cannot be read is a warning that names it.
+//! 1. Files are read ([`mod@model`], [`mod@include`], [`mod@geometry`]): the world's own, and once each those that it
+//!    includes. A model's parts are placed in its own frame ([`mod@frames`]).
+//! 2. Models are placed in the world ([`mod@place`]), as often as they stand in it. Where the file has a `<state>`, its
+//!    poses and scales are the truth, as in Gazebo; a scale multiplies sizes, not the poses within a model.
+//! 3. Floors are taken out ([`mod@floor`]).
+//!
+//! Collisions count, visuals do not. What moves in Gazebo stands still here. Whatever cannot be read is a warning that names
+//! it, one for each kind of thing.
 
+mod body;
+mod files;
+mod floor;
+mod frames;
 mod geometry;
-mod mesh;
+mod include;
 mod model;
-mod models;
+mod notes;
+mod place;
+mod reader;
+mod state;
 
-pub use models::{Found, MeshPath, Models, NoModels, Unplaced, mesh_path};
+pub use files::{FilePath, Folders, Models, NoModels, Root, Unplaced};
+pub use floor::{ROLLED_OVER, STEP, WIDE};
 
 use super::World;
 use crate::document::xml::{self, Faults};
 use crate::document::{Diagnostic, Severity, Source};
-use crate::geometry::Placement;
-use model::State;
+use place::Placer;
+use reader::{File, Reader};
 use roxmltree::Node;
+use state::State;
 use std::collections::BTreeMap;
 
 /// Longest file read (bytes).
@@ -25,7 +39,10 @@ pub const MAX_BYTES: usize = 16 << 20;
 /// The layer of every solid of an SDF world.
 pub const LAYER: &str = "walls";
 
-/// Reads a world without its meshes; its `warnings` say what could not be read.
+/// A world so wide (m) is taken to be written in another unit.
+const WIDEST: f64 = 1e4;
+
+/// Reads a world without the files of its models; its `warnings` say what could not be read.
 ///
 /// # Errors
 /// Every fault found, warnings among them, where the file is no SDF world.
@@ -33,51 +50,58 @@ pub fn read(source: &Source) -> Result<World, Vec<Diagnostic>> {
     read_with(source, &mut NoModels)
 }
 
-/// Reads a world with the meshes that `models` hands over.
+/// Reads a world with the models and meshes of which `models` hands over the files.
 ///
 /// # Errors
-/// As [`read`]; also where a mesh is there and cannot be read.
+/// As [`read`]; also where a file is there and cannot be read.
 pub fn read_with(source: &Source, models: &mut dyn Models) -> Result<World, Vec<Diagnostic>> {
     let document = xml::parse(source, MAX_BYTES)?;
     let mut faults = Faults::new(source);
+    let mut reader = Reader::new(models);
     let mut solids = Vec::new();
-    if let Some(world) = world_of(document.root_element(), &mut faults) {
-        let states: BTreeMap<&str, Node<'_, '_>> = xml::child(world, "state")
-            .into_iter()
-            .flat_map(xml::elements)
-            .filter(|e| e.tag_name().name() == "model")
-            .filter_map(|e| Some((e.attribute("name")?, e)))
-            .collect();
-        for element in xml::elements(world) {
-            match element.tag_name().name() {
-                "model" => {
-                    let name = element.attribute("name").unwrap_or("");
-                    let state = State::read(states.get(name).copied(), &mut faults);
-                    let place = model::Place { outer: Placement::IDENTITY, prefix: String::new() };
-                    model::read(element, &place, &state, models, &mut solids, &mut faults);
-                }
-                "include" => model::warn_of_include(element, &mut faults),
-                kind @ ("actor" | "population" | "road") => {
-                    let name = element.attribute("name").unwrap_or("");
-                    let fault = faults
-                        .at(element, format!("<{kind}> `{name}` cannot be read and is missing"))
-                        .warning();
-                    faults.push(fault);
-                }
-                _ => {}
-            }
+    let root = document.root_element();
+    if let Some(world) = world_of(root, &mut faults) {
+        reader.note_version(root, source);
+        check_macros(root, &mut faults);
+        let file = File { path: &FilePath::WORLD, source };
+        let model = model::read(world, &file, 0, &mut reader, &mut faults);
+        let state = State::read(xml::child(world, "state"), &mut faults);
+        let broken = reader.any_error();
+        let Reader { models, notes, .. } = &mut reader;
+        let mut placer = Placer {
+            solids: Vec::new(),
+            models: &mut **models,
+            notes,
+            faults: &mut faults,
+            budget: place::Budget::default(),
+            moving: 0,
+            is_full: false,
+        };
+        if !broken {
+            placer.world(&model, &state);
         }
-        if solids.is_empty() {
-            let fault = faults
+        solids = placer.solids;
+        let found = !solids.is_empty();
+        floor::take(&mut solids, notes);
+        if solids.is_empty() && !broken {
+            let mut fault = faults
                 .at(world, "the world has nothing solid that can be read")
-                .label("expected a model with box, cylinder or polyline collisions");
+                .label("expected a model with collisions");
+            if let Some(lack) = notes.first_lack() {
+                fault = fault.help(lack.message);
+            } else if found {
+                fault = fault.help("all of it lies flat on the ground: it is floor");
+            }
             faults.push(fault);
         }
+    }
+    for fault in reader.take_faults().into_iter().chain(reader.notes.finish()) {
+        faults.push(fault);
     }
     if faults.any_error() {
         return Err(faults.finish());
     }
-    Ok(World {
+    let mut world = World {
         name: stem(&source.name).to_owned(),
         solids,
         regions: Vec::new(),
@@ -90,7 +114,15 @@ pub fn read_with(source: &Source, models: &mut dyn Models) -> Result<World, Vec<
             .filter(|f| f.severity == Severity::Warning)
             .map(said)
             .collect(),
-    })
+    };
+    world.warnings.extend(unit_slip(&world));
+    Ok(world)
+}
+
+/// Returns the minor version of a version of SDFormat that is read: 6 of `1.6`.
+fn known_version(version: &str) -> Option<u32> {
+    let minor: u32 = version.trim().strip_prefix("1.")?.parse().ok()?;
+    (3..=12).contains(&minor).then_some(minor)
 }
 
 /// Returns the one `<world>`, or the `<sdf>` itself where it holds bare models.
@@ -99,8 +131,10 @@ fn world_of<'a, 'i>(root: Node<'a, 'i>, faults: &mut Faults<'_>) -> Option<Node<
     if found != "sdf" {
         let mut fault =
             faults.at(root, "not an SDF world").label(format!("expected <sdf>, found <{found}>"));
-        if found == "robot" {
-            fault = fault.help("a URDF describes a robot; name it under `robot`");
+        match found {
+            "robot" => fault = fault.help("a URDF describes a robot; name it under `robot`"),
+            "mujoco" => fault = fault.help(super::formats::Foreign::Mjcf.help()),
+            _ => {}
         }
         faults.push(fault);
         return None;
@@ -114,6 +148,46 @@ fn world_of<'a, 'i>(root: Node<'a, 'i>, faults: &mut Faults<'_>) -> Option<Node<
     Some(first.unwrap_or(root))
 }
 
+/// Refuses macros in which something solid may stand. Others, as around a plugin, change no solid: Gazebo overlooks them too.
+fn check_macros(root: Node<'_, '_>, faults: &mut Faults<'_>) {
+    let is_macro =
+        |node: &Node<'_, '_>| node.tag_name().namespace().is_some_and(|uri| uri.contains("xacro"));
+    let solid = ["model", "include", "link", "collision", "pose", "geometry", "static"];
+    let matters = |node: &Node<'_, '_>| {
+        let harmless = matches!(node.tag_name().name(), "arg" | "property" | "if" | "unless");
+        !harmless || node.descendants().skip(1).any(|n| solid.contains(&n.tag_name().name()))
+    };
+    let mut macros = root.descendants().filter(|node| node.is_element() && is_macro(node));
+    if let Some(node) = macros.find(matters) {
+        let fault = faults
+            .at(node, "this file is written in macros (xacro)")
+            .label("something solid may depend on this one")
+            .help("expand them first: `xacro my.sdf.xacro > my.sdf`");
+        faults.push(fault);
+    }
+}
+
+/// Warns of a world that is as wide as a town.
+fn unit_slip(world: &World) -> Option<String> {
+    let bounds = world.bounds();
+    let wide = bounds.width().max(bounds.height());
+    if wide < WIDEST {
+        return None;
+    }
+    let extent = |solid: &super::Solid| {
+        let outlines = solid.body.shadow(f64::NEG_INFINITY, f64::INFINITY);
+        let bounds =
+            outlines.iter().fold(crate::geometry::Bounds::EMPTY, |b, o| b.union(o.bounds()));
+        bounds.width().max(bounds.height())
+    };
+    let widest = world.solids.iter().max_by(|a, b| extent(a).total_cmp(&extent(b)))?;
+    Some(format!(
+        "the world is {wide:.0} m wide (`{}` alone {:.0} m): are its lengths in millimetres? Metres are expected",
+        widest.name,
+        extent(widest)
+    ))
+}
+
 /// Returns a warning as one line.
 fn said(warning: &Diagnostic) -> String {
     let place = warning.location().map(|place| place + ": ").unwrap_or_default();
@@ -123,6 +197,7 @@ fn said(warning: &Diagnostic) -> String {
 /// Returns the file's name without folders and extension.
 fn stem(name: &str) -> &str {
     let file = name.rsplit(['/', '\\']).next().unwrap_or(name);
+    let file = file.strip_suffix(".xacro").unwrap_or(file);
     file.rsplit_once('.').map_or(file, |(stem, _)| stem)
 }
 

@@ -1,159 +1,335 @@
-//! Models, links and collisions, placed one inside the other.
+//! Models as they are described: links with their collisions, and models within, each placed in the model's own frame.
+//! A description is read once, however often a world includes it.
 
-use super::{Models, geometry};
+use super::frames::{Frames, Pose, Unplaceable, pose};
+use super::geometry::{self, Shape};
+use super::include;
+use super::notes::Place;
+use super::reader::{File, Reader};
 use crate::document::xml::{self, Faults};
+use crate::document::{MOST_FAULTS, quoted};
 use crate::geometry::Placement;
-use crate::world::Solid;
 use roxmltree::Node;
+use std::collections::BTreeMap;
+use std::sync::Arc;
 
-/// Where a model's own pose is given, and what its parts are called after.
-pub(super) struct Place {
-    pub(super) outer: Placement,
-    pub(super) prefix: String,
+/// How deep models may stand in one another, included ones too.
+pub(super) const MAX_DEPTH: usize = 32;
+
+/// A model, or the world itself.
+#[derive(Debug)]
+pub(super) struct Model {
+    pub(super) name: String,
+    /// Where it stands in whatever it is part of.
+    pub(super) pose: Pose,
+    /// The frame whose place `pose` says; its own where empty.
+    pub(super) placement_frame: String,
+    /// Whether nothing moves it.
+    pub(super) fixed: bool,
+    pub(super) parts: Vec<Part>,
+    /// Its frames, those of merged models among them.
+    frames: BTreeMap<String, Placement>,
+    /// The models within, likewise.
+    models: BTreeMap<String, (Placement, Arc<Model>)>,
 }
 
-/// What the `<state>` says of one model.
-pub(super) struct State<'a, 'i> {
-    node: Option<Node<'a, 'i>>,
-    placement: Option<Placement>,
-    scale: [f64; 3],
+/// A part of a model, in the order written.
+#[derive(Debug)]
+pub(super) enum Part {
+    Link(Link),
+    Model(Child),
+    /// Something that is missing.
+    Lack(Lack),
 }
 
-impl<'a, 'i> State<'a, 'i> {
-    /// Reads the state's `<model>`, if there is one.
-    pub(super) fn read(node: Option<Node<'a, 'i>>, faults: &mut Faults<'_>) -> Self {
-        let placement = node.filter(|n| xml::child(*n, "pose").is_some());
-        let placement = placement.map(|n| pose(n, faults));
-        let scale = node.and_then(|n| xml::child(n, "scale"));
-        let scale = scale.and_then(|n| {
-            let scale = faults.numbers::<3>(n)?;
-            if scale.iter().all(|factor| *factor > 0.0) {
-                return Some(scale);
-            }
-            let fault =
-                faults.at(n, "scale out of range").label("expected three factors above zero");
-            faults.push(fault);
-            None
-        });
-        Self { node, placement, scale: scale.unwrap_or([1.0; 3]) }
+/// What is missing of a model.
+#[derive(Debug)]
+pub(super) struct Lack {
+    pub(super) name: String,
+    /// What it is called where it is told; its name with those of the models that it is in where this is none.
+    pub(super) told_as: Option<String>,
+    pub(super) kind: super::notes::Kind,
+    pub(super) place: Place,
+}
+
+/// A link.
+#[derive(Debug)]
+pub(super) struct Link {
+    pub(super) name: String,
+    /// Its place in the model.
+    pub(super) placement: Placement,
+    pub(super) collisions: Vec<Collision>,
+    pub(super) place: Place,
+}
+
+/// A collision.
+#[derive(Debug)]
+pub(super) struct Collision {
+    pub(super) name: String,
+    /// Its place in the link.
+    pub(super) placement: Placement,
+    pub(super) shape: Shape,
+    pub(super) place: Place,
+}
+
+/// A model within another.
+#[derive(Debug)]
+pub(super) struct Child {
+    pub(super) model: Arc<Model>,
+    pub(super) name: String,
+    /// The place of its own frame in the outer model.
+    pub(super) placement: Placement,
+    pub(super) fixed: bool,
+    /// Whether its parts are parts of the outer model.
+    pub(super) merged: bool,
+    pub(super) place: Place,
+}
+
+impl Model {
+    /// Returns where the frame `name` (`link`, or `model::link`) is in this model.
+    pub(super) fn frame(&self, name: &str) -> Option<Placement> {
+        if name.is_empty() || name == "__model__" {
+            return Some(Placement::IDENTITY);
+        }
+        if let Some(placement) = self.frames.get(name) {
+            return Some(*placement);
+        }
+        let (model, rest) = name.split_once("::")?;
+        let (placement, model) = self.models.get(model)?;
+        Some(placement.compose(&model.frame(rest)?))
     }
-
-    fn of(&self, kind: &str, name: &str) -> Option<Node<'a, 'i>> {
-        xml::elements(self.node?)
-            .find(|e| e.tag_name().name() == kind && e.attribute("name") == Some(name))
-    }
 }
 
-/// Appends the solids of `model`; nested models are read likewise.
+/// A model within, before it is placed.
+pub(super) struct Nested {
+    pub(super) model: Arc<Model>,
+    pub(super) name: String,
+    pub(super) pose: Pose,
+    pub(super) placement_frame: String,
+    pub(super) fixed: bool,
+    pub(super) merged: bool,
+}
+
+/// A part before it is placed.
+enum Unplaced<'a, 'i> {
+    Link(Node<'a, 'i>, Pose),
+    Model(Node<'a, 'i>, Nested),
+    Lack(Lack),
+}
+
+/// Returns whether the child `name` of `node` says yes.
+pub(super) fn says_yes(node: Node<'_, '_>, name: &str) -> Option<bool> {
+    xml::child(node, name).map(|n| matches!(xml::text(n), "1" | "true"))
+}
+
+/// Reads a `<model>`, or a `<world>` (`<sdf>`), and all that is in it.
 pub(super) fn read(
-    model: Node<'_, '_>,
-    place: &Place,
-    state: &State<'_, '_>,
-    models: &mut dyn Models,
-    solids: &mut Vec<Solid>,
+    node: Node<'_, '_>,
+    file: &File<'_>,
+    depth: usize,
+    reader: &mut Reader<'_>,
     faults: &mut Faults<'_>,
-) {
-    let name = format!("{}{}", place.prefix, model.attribute("name").unwrap_or(""));
-    // Poses in a state are in the world's frame, those of links and nested models too.
-    let placement = state.placement.unwrap_or_else(|| place.outer.compose(&pose(model, faults)));
-    let before = solids.len();
-    for element in xml::elements(model) {
-        let part = element.attribute("name").unwrap_or("");
+) -> Model {
+    let is_world = node.tag_name().name() != "model";
+    let own = if is_world { "world" } else { "__model__" };
+    let mut frames = Frames::new(own);
+    let mut unplaced = Vec::new();
+    let mut fixed = says_yes(node, "static").unwrap_or(false);
+    for element in xml::elements(node) {
+        let name = element.attribute("name").unwrap_or("");
         match element.tag_name().name() {
-            "link" => {
-                let within = pose(element, faults);
-                let link = match state.of("link", part).filter(|n| xml::child(*n, "pose").is_some())
-                {
-                    Some(node) => pose(node, faults),
-                    None => placement.compose(&within),
-                };
-                let name = format!("{name}/{part}");
-                read_link(element, &name, &link, state.scale, models, solids, faults);
+            "link" if !is_world => {
+                let pose = pose(element, faults);
+                frames.add(name, &pose, own);
+                unplaced.push(Unplaced::Link(element, pose));
             }
-            "model" => {
-                let inner = State::read(state.of("model", part), faults);
-                let place = Place { outer: placement, prefix: format!("{name}/") };
-                read(element, &place, &inner, models, solids, faults);
+            "frame" => {
+                let pose = pose(element, faults);
+                frames.add(name, &pose, element.attribute("attached_to").unwrap_or(own));
             }
-            "include" => warn_of_include(element, faults),
+            "joint" => {
+                let child = xml::child(element, "child").map_or("", xml::text);
+                let parent = xml::child(element, "parent").map_or("", xml::text);
+                fixed |= element.attribute("type") == Some("fixed") && parent == "world";
+                frames.add(name, &pose(element, faults), child);
+            }
+            kind @ ("model" | "include") => {
+                if depth >= MAX_DEPTH {
+                    let fault = faults.at(element, "models nested too deeply");
+                    faults.push(fault.label(format!("expected at most {MAX_DEPTH} levels")));
+                    continue;
+                }
+                if kind == "include" {
+                    match include::read(element, file, depth + 1, reader, faults) {
+                        include::Read::Nothing => {}
+                        include::Read::Lack(lack) => unplaced.push(Unplaced::Lack(lack)),
+                        include::Read::Model(nested) => {
+                            unplaced.push(Unplaced::Model(element, nested));
+                        }
+                    }
+                } else {
+                    let model = read(element, file, depth + 1, reader, faults);
+                    unplaced.push(Unplaced::Model(element, nested(Arc::new(model))));
+                }
+            }
+            kind @ ("actor" | "population" | "road") => {
+                let kind = super::notes::Kind::Element(kind.to_owned());
+                let place = Place::of(file.source, element);
+                unplaced.push(Unplaced::Lack(Lack {
+                    name: name.to_owned(),
+                    told_as: None,
+                    kind,
+                    place,
+                }));
+            }
             _ => {}
         }
     }
-    let fixed = xml::child(model, "static").is_some_and(|n| matches!(xml::text(n), "1" | "true"));
-    if !fixed && solids.len() > before && place.prefix.is_empty() {
-        let fault = faults
-            .at(model, format!("model `{name}` can move in Gazebo and stands still here"))
-            .warning();
-        faults.push(fault);
-    }
+    let mut model = Model {
+        name: node.attribute("name").unwrap_or("").to_owned(),
+        pose: pose(node, faults),
+        placement_frame: node.attribute("placement_frame").unwrap_or("").to_owned(),
+        fixed,
+        parts: Vec::with_capacity(unplaced.len()),
+        frames: BTreeMap::new(),
+        models: BTreeMap::new(),
+    };
+    place(unplaced, frames, &mut model, file, reader, faults);
+    model
 }
 
-fn read_link(
-    link: Node<'_, '_>,
-    name: &str,
-    placement: &Placement,
-    scale: [f64; 3],
-    models: &mut dyn Models,
-    solids: &mut Vec<Solid>,
+/// Returns a model within, as it is described.
+pub(super) fn nested(model: Arc<Model>) -> Nested {
+    let (name, pose) = (model.name.clone(), model.pose.clone());
+    let (placement_frame, fixed) = (model.placement_frame.clone(), model.fixed);
+    Nested { model, name, pose, placement_frame, fixed, merged: false }
+}
+
+/// Places the parts of `model` by its `frames`.
+fn place(
+    unplaced: Vec<Unplaced<'_, '_>>,
+    mut frames: Frames,
+    model: &mut Model,
+    file: &File<'_>,
+    reader: &mut Reader<'_>,
     faults: &mut Faults<'_>,
 ) {
-    for collision in xml::elements(link).filter(|e| e.tag_name().name() == "collision") {
-        let placement = placement.compose(&pose(collision, faults));
-        let name = format!("{name}/{}", collision.attribute("name").unwrap_or(""));
-        for body in geometry::read(collision, &name, placement, scale, models, faults) {
-            solids.push(Solid { name: name.clone(), layer: super::LAYER.to_owned(), body });
+    // Frames of models within can be named by any part, so all are known first.
+    let mut ready = Vec::with_capacity(unplaced.len());
+    for mut part in unplaced {
+        if let Unplaced::Model(node, nested) = &mut part {
+            if !nested.placement_frame.is_empty() {
+                if let Some(inner) = nested.model.frame(&nested.placement_frame) {
+                    nested.pose.placement = nested.pose.placement.compose(&inner.inverse());
+                } else {
+                    let unknown = format!("unknown frame `{}`", quoted(&nested.placement_frame));
+                    let fault = faults.at(*node, unknown).label("placed by it");
+                    faults.push(fault.help("expected a link, joint, frame or model within"));
+                }
+            }
+            frames.add_model(&nested.name, &nested.pose, &nested.model, nested.merged);
+        }
+        ready.push(part);
+    }
+    let mut merged_in = Vec::new();
+    for part in ready {
+        let part = match part {
+            Unplaced::Lack(lack) => Part::Lack(lack),
+            Unplaced::Link(node, pose) => {
+                let placement = placed(frames.place(&pose, None), node, &frames, faults);
+                let (placement, link) = (placement, node.attribute("name").unwrap_or(""));
+                let collisions = collisions(node, placement, &mut frames, file, reader, faults);
+                let (name, place) = (link.to_owned(), Place::of(file.source, node));
+                Part::Link(Link { name, placement, collisions, place })
+            }
+            Unplaced::Model(node, nested) => {
+                let placement = placed(frames.place(&nested.pose, None), node, &frames, faults);
+                let Nested { model: inner, name, fixed, merged, .. } = nested;
+                if merged {
+                    merged_in.push((placement, Arc::clone(&inner)));
+                } else {
+                    let known = (placement, Arc::clone(&inner));
+                    model.models.entry(name.clone()).or_insert(known);
+                }
+                let place = Place::of(file.source, node);
+                Part::Model(Child { model: inner, name, placement, fixed, merged, place })
+            }
+        };
+        model.parts.push(part);
+    }
+    model.frames = frames.into_placed();
+    // Once for each level, so that a name is never looked for in every model that was ever merged.
+    for (at, inner) in merged_in {
+        for (name, placement) in &inner.frames {
+            model.frames.entry(name.clone()).or_insert_with(|| at.compose(placement));
+        }
+        for (name, (placement, nested)) in &inner.models {
+            let known = || (at.compose(placement), Arc::clone(nested));
+            model.models.entry(name.clone()).or_insert_with(known);
         }
     }
 }
 
-/// Warns that an `<include>` is not followed.
-pub(super) fn warn_of_include(include: Node<'_, '_>, faults: &mut Faults<'_>) {
-    let uri = xml::child(include, "uri").map_or("", xml::text);
-    // Gazebo's own light and floor: nothing solid to miss.
-    if matches!(uri, "model://sun" | "model://ground_plane") {
-        return;
-    }
-    let fault = faults
-        .at(include, format!("<include> of `{uri}` is not followed: the model is missing"))
-        .help("save the world from Gazebo with its models written out")
-        .warning();
+fn collisions(
+    link: Node<'_, '_>,
+    placement: Placement,
+    frames: &mut Frames,
+    file: &File<'_>,
+    reader: &mut Reader<'_>,
+    faults: &mut Faults<'_>,
+) -> Vec<Collision> {
+    let own = link.attribute("name").unwrap_or("");
+    let of_link = xml::elements(link).filter(|e| e.tag_name().name() == "collision");
+    let read = |element| {
+        let pose = pose(element, faults);
+        let within = match pose.frame.as_deref() {
+            None => pose.placement,
+            Some(frame) if frame == own => pose.placement,
+            Some(_) => {
+                let in_model = placed(frames.place(&pose, None), element, frames, faults);
+                placement.inverse().compose(&in_model)
+            }
+        };
+        Collision {
+            name: element.attribute("name").unwrap_or("").to_owned(),
+            placement: within,
+            shape: geometry::read(element, file, reader, faults),
+            place: Place::of(file.source, geometry::shape_of(element).unwrap_or(element)),
+        }
+    };
+    of_link.map(read).collect()
+}
+
+/// Returns a placement, or none with a fault at the pose of `node`.
+fn placed(
+    found: Result<Placement, Unplaceable>,
+    node: Node<'_, '_>,
+    frames: &Frames,
+    faults: &mut Faults<'_>,
+) -> Placement {
+    let why = match found {
+        Ok(placement) => return placement,
+        Err(why) => why,
+    };
+    let at = xml::child(node, "pose").unwrap_or(node);
+    let fault = match why {
+        Unplaceable::Told => return Placement::IDENTITY,
+        Unplaceable::Unknown(name) => {
+            let unknown = format!("pose relative to the unknown frame `{}`", quoted(&name));
+            let fault = faults.at(at, unknown);
+            let fault = fault.label("expected a link, joint, frame or model of the same model");
+            // To look for what was meant takes longer than all the rest.
+            if faults.kept().len() < MOST_FAULTS { fault.help(frames.near(&name)) } else { fault }
+        }
+        Unplaceable::Cycle(mut names) => {
+            names.extend(names.first().cloned());
+            let names: Vec<String> = names.iter().map(|n| format!("`{}`", quoted(n))).collect();
+            let shown: Vec<&str> = names.iter().take(8).map(String::as_str).collect();
+            faults
+                .at(at, format!("poses in a circle: {}", shown.join(" relative to ")))
+                .label("expected a pose that leads to the model's own frame")
+        }
+    };
     faults.push(fault);
-}
-
-/// Farthest (m) that anything may lie from the origin.
-const MAX_DISTANCE: f64 = 1e5;
-
-/// Reads the `<pose>` of an element: identity where it has none, or a fault where it cannot be read.
-fn pose(node: Node<'_, '_>, faults: &mut Faults<'_>) -> Placement {
-    let Some(pose) = xml::child(node, "pose") else { return Placement::IDENTITY };
-    for frame in ["relative_to", "frame"] {
-        if let Some(name) = pose.attribute(frame).filter(|name| !name.is_empty()) {
-            let fault = faults
-                .at(pose, format!("pose relative to `{name}` cannot be read"))
-                .label("expected a pose in the parent's frame");
-            faults.push(fault);
-        }
-    }
-    if pose.attribute("rotation_format").is_some_and(|format| format != "euler_rpy") {
-        let fault =
-            faults.at(pose, "pose with a quaternion").label("expected x y z roll pitch yaw");
-        faults.push(fault);
-        return Placement::IDENTITY;
-    }
-    if xml::text(pose).is_empty() {
-        return Placement::IDENTITY;
-    }
-    let Some(mut numbers) = faults.numbers::<6>(pose) else { return Placement::IDENTITY };
-    if pose.attribute("degrees") == Some("true") {
-        for angle in &mut numbers[3..] {
-            *angle = angle.to_radians();
-        }
-    }
-    if numbers[..3].iter().any(|coordinate| coordinate.abs() > MAX_DISTANCE) {
-        let fault = faults
-            .at(pose, "pose out of range")
-            .label(format!("expected coordinates within {MAX_DISTANCE} m of the origin"));
-        faults.push(fault);
-    }
-    Placement::from_xyz_rpy(numbers)
+    Placement::IDENTITY
 }
