@@ -110,9 +110,12 @@ pub(super) struct ShowArgs {
     /// Cut worlds at this height (m)
     #[arg(long, value_name = "METRES")]
     pub(super) height: Option<f64>,
-    /// The folder of a model that a Gazebo world's meshes are named by (repeatable)
+    /// The folder of a model or package that meshes and included files are named by (repeatable)
     #[arg(long, value_name = "NAME=FOLDER", conflicts_with = "generate")]
     pub(super) models: Vec<String>,
+    /// An argument of a robot's xacro (repeatable)
+    #[arg(long, value_name = "NAME=VALUE", conflicts_with = "generate")]
+    pub(super) argument: Vec<String>,
     /// Layers of a world to draw beside its walls [default: all]
     #[arg(long, value_delimiter = ',', value_name = "LAYERS", conflicts_with = "generate")]
     pub(super) layers: Option<Vec<String>>,
