@@ -75,7 +75,6 @@ const DOORS: &[(&str, &[&str])] = &[
     ("ssh_key", &["verify/signature/allowed_signers.rs", "verify/signature/ssh.rs"]),
     ("strsim", &["document/diagnostic.rs"]),
     ("tempfile", &["store/partial.rs"]),
-    ("urdf_rs", &["robot/urdf.rs"]),
     ("zip", &["bundle/archive.rs"]),
 ];
 

@@ -121,12 +121,15 @@ pub(super) struct ShowArgs {
     /// Cut worlds at this height (m)
     #[arg(long, value_name = "METRES")]
     pub(super) height: Option<f64>,
-    /// The folder of a model that a Gazebo world names (repeatable)
+    /// The folder of a model or package that a world's or robot's files name (repeatable)
     #[arg(long, value_name = "NAME=FOLDER", conflicts_with = "generate")]
     pub(super) models: Vec<String>,
     /// A folder that holds the folders of a Gazebo world's models (repeatable)
     #[arg(long, value_name = "FOLDER", conflicts_with = "generate")]
     pub(super) model_path: Vec<String>,
+    /// An argument of a robot's xacro (repeatable)
+    #[arg(long, value_name = "NAME=VALUE", conflicts_with = "generate")]
+    pub(super) argument: Vec<String>,
     /// Layers of a world to draw beside its walls [default: all]
     #[arg(long, value_delimiter = ',', value_name = "LAYERS", conflicts_with = "generate")]
     pub(super) layers: Option<Vec<String>>,

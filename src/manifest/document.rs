@@ -2,6 +2,7 @@
 
 mod infer;
 mod prior;
+mod robot;
 mod world;
 
 pub use infer::{ChoicePriorDoc, InferDoc, LeftOutDoc};
@@ -9,6 +10,7 @@ pub use prior::{
     Alpha, BoundingBoxOf, DerivedFrom, FloorPlanOf, FootprintOf, MapPrior, OriginDoc, OwnWorld,
     PreviousMapDoc, PreviousMapOf, PriorDoc, PriorFrame, TopoMetricPrior, UnknownAs,
 };
+pub use robot::{RobotDoc, RobotFile};
 pub(super) use world::UpAxisDoc;
 pub use world::{
     FactorRef, GenerateDoc, GeneratedWorld, PlaceDoc, PointDoc, PoseDoc, SeedDoc, StartDoc,
@@ -67,8 +69,8 @@ pub struct ManifestDoc {
     /// Factors whose values see the same noise, trial by trial; tests that need independence are then barred.
     #[serde(default)]
     pub shared_noise: Vec<String>,
-    /// The robot: a URDF file.
-    pub robot: Choice<String>,
+    /// The robot: a URDF, xacro or SDF file, or that and what else is to be said of it.
+    pub robot: Choice<RobotDoc>,
     /// The true world.
     pub world: Choice<WorldDoc>,
     /// Where the robot begins, in the world's frame.

@@ -24,7 +24,7 @@ pub enum WrittenIn {
 pub enum InputKind {
     /// Parameters that several manifests share.
     Settings,
-    /// A robot.
+    /// A robot, or a file that one names.
     Robot,
     /// A world, or a mesh of one.
     World,

@@ -40,7 +40,9 @@ fn scanner(robot: &Robot, faults: &mut Faults<'_>) {
         let fault = faults
             .fault("/robot", format!("the robot `{name}` has no range scanner"))
             .label("this study explores with one");
-        faults.push(fault.help("add a `<gazebo>` ray sensor to the URDF, or name another robot"));
+        faults.push(fault.help(
+            "give it one in the manifest: `robot: {file, lidar: {beams: ..., min-angle-deg: ..., ...}}`, or name another robot",
+        ));
         return;
     };
     if Tick::period_of(lidar.rate_hz).is_none() {

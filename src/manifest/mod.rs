@@ -10,7 +10,7 @@
 //! | `faults` `names` | every fault once; factors, values and near misses |
 //! | `library/` | every file read once, held against its pin, and what was made of it |
 //! | `resolver` | those three and the manifest: what the rooms below work with |
-//! | `parts` `worlds` `models` | robot, world and start of a condition |
+//! | `parts` `robots` `worlds` `models` | robot, world and start of a condition |
 //! | `knowledge` `priors` `previous` | its prior knowledge |
 //! | `calibration` `lint` | what trials rest on; what is wrong or suspicious about a condition |
 //! | `numbers` `requests` `figures` `claims` `sensitivity` `multiverse` | what the paper prints, and what is asked of results |
@@ -46,6 +46,7 @@ mod readers;
 mod requests;
 mod resolve;
 mod resolver;
+mod robots;
 mod schema;
 mod sensitivity;
 mod settings;
@@ -56,8 +57,8 @@ pub use document::{
     Alpha, Author, BoundingBoxOf, ChoicePriorDoc, Cite, DerivedFrom, FactorRef, FloorPlanOf,
     FootprintOf, GenerateDoc, GeneratedWorld, InferDoc, LeftOutDoc, ManifestDoc, MapPrior,
     OriginDoc, OwnWorld, PlaceDoc, PointDoc, PoseDoc, PreviousMapDoc, PreviousMapOf, PriorDoc,
-    PriorFrame, PublishedDoc, PublishedFile, SeedDoc, StartDoc, TopoMetricPrior, UnknownAs,
-    WorldDoc, WorldFile,
+    PriorFrame, PublishedDoc, PublishedFile, RobotDoc, RobotFile, SeedDoc, StartDoc,
+    TopoMetricPrior, UnknownAs, WorldDoc, WorldFile,
 };
 pub use experiment::{
     Assumption, CalibrationRun, Experiment, JointDraws, Meanings, ResolvedCondition, Robustness,

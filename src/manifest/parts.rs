@@ -1,23 +1,22 @@
 //! What the trials of every study need: a robot in a world, where it starts.
 
 use super::document::{FactorRef, StartDoc};
-use super::input::InputKind;
-use super::library::{Known, normalised};
 use super::resolver::Resolver;
 use super::worlds::UsedWorld;
 use crate::condition::Condition;
 use crate::digest::MeaningDigest;
 use crate::geometry::Pose;
-use crate::robot::{Robot, urdf};
+use crate::robot::Robot;
 use crate::units::Radians;
-use serde_json::json;
+use serde_json::{Value, json};
 use std::sync::Arc;
 
 /// What the trials of every study need.
 pub(super) struct Parts {
     pub(super) robot: Arc<Robot>,
     pub(super) robot_meaning: MeaningDigest,
-    pub(super) robot_file: Option<String>,
+    /// The robot as written.
+    pub(super) robot_described: Option<Value>,
     pub(super) world: UsedWorld,
     pub(super) start: Pose,
 }
@@ -27,29 +26,14 @@ impl Resolver<'_> {
     pub(super) fn parts(&mut self, condition: &Condition) -> Option<Parts> {
         let doc = self.doc;
         let robot = self.choose(&doc.robot, "/robot", condition);
-        let robot_file = robot.as_ref().map(|(path, _)| (*path).clone());
-        let robot = robot.and_then(|(path, pointer)| self.robot(path, &pointer));
+        let robot_described = robot.as_ref().map(|(robot, _)| json!(robot));
+        let robot = robot.and_then(|(robot, pointer)| self.robot(robot, &pointer));
         let world = self
             .choose(&doc.world, "/world", condition)
             .and_then(|(world, pointer)| self.world(world, &pointer, condition));
         let start = self.start(world.as_ref(), condition);
         let ((robot, robot_meaning), world, start) = (robot?, world?, start?);
-        Some(Parts { robot, robot_meaning, robot_file, world, start })
-    }
-
-    fn robot(&mut self, path: &str, pointer: &str) -> Known<Robot> {
-        let key = json!([normalised(path), self.faults.written_in(pointer)]).to_string();
-        self.once(
-            |library| &mut library.robots,
-            key,
-            |this| {
-                let source = this.text(path, pointer, InputKind::Robot)?;
-                let (robot, warnings) = this.told(urdf::read(&source))?;
-                this.faults.extend(warnings);
-                let meaning = robot.meaning();
-                Some((Arc::new(robot), meaning))
-            },
-        )
+        Some(Parts { robot, robot_meaning, robot_described, world, start })
     }
 
     fn start(&mut self, world: Option<&UsedWorld>, condition: &Condition) -> Option<Pose> {

@@ -267,7 +267,7 @@ impl Resolver<'_> {
         };
         let setup = doc.study.setup(&mut asked)?;
         let Asked { parts, knowledge, .. } = asked;
-        let Parts { robot_meaning, robot_file, world, .. } = parts?;
+        let Parts { robot_meaning, robot_described, world, .. } = parts?;
         let start = setup.start();
         let start = [start.x, start.y, start.heading].map(f64::to_bits);
         // Conditions share starts; a look at one is enough.
@@ -279,7 +279,7 @@ impl Resolver<'_> {
             world: world.meaning,
             prior: knowledge.as_ref().map(Knowledge::meaning),
         };
-        let mut described = json!({ "robot": robot_file, "world": world.described });
+        let mut described = json!({ "robot": robot_described, "world": world.described });
         if doc.study.keys().contains(&"prior") {
             described["prior"] = json!(knowledge.map(|knowledge| knowledge.described()));
         }

@@ -98,7 +98,7 @@ fn role(as_written: &str) -> &'static str {
         return "multiverse";
     }
     match as_written.rsplit('.').next() {
-        Some("urdf") => "robot",
+        Some("urdf" | "xacro" | "gazebo") => "robot",
         Some("csv") => "published",
         Some("world" | "sdf") => "world",
         Some("png" | "pgm") => "prior",

@@ -4,22 +4,29 @@
 //! with [`Twist`]; nothing else crosses.
 
 mod beams;
+pub mod description;
+mod files;
 #[cfg(test)]
 mod fixture;
+pub mod given;
 mod message;
+mod sdf;
 pub mod urdf;
+mod xacro;
 
 pub use beams::BeamDirections;
+pub use files::{FilePath, Files, NoFiles, Rooted, Unfound};
 pub use message::{CompassReading, Detection, Odometry, Scan, Twist};
 
 use crate::digest::{MeaningDigest, Sha256Digest};
 use crate::geometry::{Outline, Point, Pose};
 use crate::json;
 use crate::math;
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
-/// A wheeled robot as its URDF describes it, reduced to what matters in the plane.
+/// A wheeled robot as its description has it, reduced to what matters in the plane.
 ///
 /// ```
 /// use reenact::document::Source;
@@ -33,7 +40,7 @@ use std::f64::consts::PI;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub struct Robot {
-    /// Name in the URDF.
+    /// Name in the description.
     pub name: String,
     /// Outline of the body seen from above, in the base frame (m); convex.
     pub footprint: Outline,
@@ -85,7 +92,7 @@ pub struct Drive {
 }
 
 /// The two drives of the studies' robots.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum DriveKind {
     /// Two driven wheels and casters.

@@ -1,148 +1,189 @@
-//! Robots as ROS describes them: URDF links and joints with the `<gazebo>` blocks of sensors and drives.
+//! URDF: links and joints as ROS describes them, with the `<gazebo>` blocks of sensors and drives.
 //!
-//! Hermetic: no package path is resolved, no macro expanded, no mesh opened. Joints stand at zero. The base frame is
-//! the root link's. Reading goes as follows:
-//! 1. A strict pass reports, with lines, what `urdf-rs` would let through.
-//! 2. Links and joints are read by `urdf-rs` (this file alone names it).
-//! 3. The collision shapes give the footprint.
-//! 4. The floor is the root link's origin where that link is called `base_footprint` (REP-120), else the lowest point
-//!    of the collision shapes.
-//! 5. The `<gazebo>` blocks give drive and sensors.
+//! A strict pass reports, with lines, what is no tree of links with numbers that are numbers; then the parts are told.
+//! The floor is where a link called `base_footprint` has its origin (REP-120).
 
-mod gazebo;
-mod shape;
 mod strict;
 
 use super::Robot;
+use super::description::parts::{Collision, Geometry, Joint, Mounted, Parts, other_form};
+use super::description::{self, Request, ShapeKind};
+use super::files::{FilePath, NoFiles, Rooted};
+use super::given::Given;
 use crate::document::xml::{self, Faults};
-use crate::document::{Diagnostic, Source};
+use crate::document::{Diagnostic, Source, suggestion};
 use crate::geometry::Placement;
-use shape::{Shape, ShapeKind};
+use roxmltree::{Document, Node};
 use std::collections::BTreeMap;
 
-/// Longest description read (bytes): real ones have some ten thousand.
-pub const MAX_BYTES: usize = 1 << 20;
+/// The link on the floor, whatever prefix its name has.
+const ON_THE_FLOOR: &str = "base_footprint";
 
-/// Largest body read (m): beyond it the unit is wrong.
-const MAX_SIZE: f64 = 20.0;
-
-/// Reads a robot and the warnings about it.
+/// Reads a robot, URDF or SDF, that needs no file besides its own, and the warnings about it.
 ///
 /// # Errors
-/// Every fault found, warnings among them, where the description cannot be used.
+/// As [`description::read`].
 pub fn read(source: &Source) -> Result<(Robot, Vec<Diagnostic>), Vec<Diagnostic>> {
-    let document = xml::parse(source, MAX_BYTES)?;
-    let mut faults = Faults::new(source);
-    // 1. The strict pass.
-    let tree = strict::check(&document, &mut faults);
-    let (Some(tree), false) = (tree, faults.any_error()) else { return Err(faults.finish()) };
-
-    // 2. Links and joints.
-    let description = match urdf_rs::read_from_string(&source.text) {
-        Ok(description) => description,
-        Err(fault) => {
-            faults.push(Diagnostic::placeless(format!("`{}` is not a URDF: {fault}", source.name)));
-            return Err(faults.finish());
-        }
+    let nothing = BTreeMap::new();
+    let request = Request {
+        path: FilePath { path: source.name.to_string(), rooted: Rooted::Robot },
+        gazebo: Vec::new(),
+        packages: &nothing,
+        arguments: &nothing,
+        given: &Given::default(),
+        fault: &|_, message| Diagnostic::placeless(message),
     };
-    let frames = place(&description, &tree.root);
-    // 3. The footprint.
-    let mut shapes = Vec::new();
-    for link in &description.links {
-        for collision in &link.collision {
-            match shape_of(&collision.geometry) {
-                Some(kind) => shapes.push(Shape {
-                    kind,
-                    placement: frames[&link.name].compose(&placement_of(&collision.origin)),
-                }),
-                None => faults.push(
-                    Diagnostic::placeless(format!(
-                        "a mesh collides on link `{}` and is not part of the body",
-                        link.name
-                    ))
-                    .warning()
-                    .help("add a box or cylinder collision of its size"),
-                ),
+    description::read(source, &request, &mut NoFiles)
+}
+
+/// Tells the parts of a URDF; `None` with faults where it is none.
+pub(super) fn parts<'a, 'i>(
+    document: &'a Document<'i>,
+    faults: &mut Faults<'_>,
+) -> Option<Parts<'a, 'i>> {
+    let tree = strict::check(document, faults);
+    let (Some(tree), false) = (tree, faults.any_error()) else { return None };
+    let root = document.root_element();
+    let named =
+        |name: &'static str| xml::elements(root).filter(move |e| e.tag_name().name() == name);
+    let (links, joints) = place(root, &tree.root);
+    let mut parts = Parts {
+        name: root.attribute("name").unwrap_or_default().to_owned(),
+        root,
+        links,
+        masses: Vec::new(),
+        collisions: Vec::new(),
+        joints,
+        plugins: Vec::new(),
+        sensors: Vec::new(),
+        floor: None,
+    };
+    let on_the_floor = parts.links.iter().find(|(name, _)| name.ends_with(ON_THE_FLOOR));
+    parts.floor = on_the_floor.map(|(_, placement)| placement.translation[2]);
+    for link in named("link") {
+        let name = link.attribute("name").unwrap_or_default();
+        let frame = parts.links.get(name).copied().unwrap_or(Placement::IDENTITY);
+        let mass = xml::descend(link, "inertial/mass");
+        parts.masses.push(mass.map_or(0.0, |mass| numbers(mass, "value", [0.0])[0]));
+        for node in xml::elements(link) {
+            match node.tag_name().name() {
+                "collision" => {
+                    let Some(geometry) = xml::child(node, "geometry") else { continue };
+                    parts.collisions.push(Collision {
+                        node,
+                        link: name.to_owned(),
+                        geometry: self::geometry(geometry),
+                        placement: frame.compose(&origin(node)),
+                    });
+                }
+                "sensor" => {
+                    parts.sensors.push(Mounted { node, link: Some(frame), around: link });
+                }
+                _ => {}
             }
         }
     }
-    let Some(footprint) = shape::footprint(&shapes) else {
-        faults.push(
-            Diagnostic::placeless(format!("robot `{}` has no body", description.name))
-                .help("give a link a box, cylinder or sphere collision"),
-        );
-        return Err(faults.finish());
+    for block in named("gazebo") {
+        read_block(block, &mut parts, faults);
+    }
+    Some(parts)
+}
+
+/// Reads a `<gazebo>` block.
+pub(super) fn read_block<'a, 'i>(
+    block: Node<'a, 'i>,
+    parts: &mut Parts<'a, 'i>,
+    faults: &mut Faults<'_>,
+) {
+    let elements = |name: &'static str| {
+        block.descendants().filter(move |e| e.is_element() && e.tag_name().name() == name)
     };
-    let [low, high] = shape::extent(&shapes);
-    let bounds = footprint.bounds();
-    let size = bounds.width().max(bounds.height()).max(high - low);
-    if size.is_nan() || size >= MAX_SIZE {
-        faults.push(
-            Diagnostic::placeless(format!(
-                "robot `{}` is {size} m across: expected less than {MAX_SIZE} m",
-                description.name
-            ))
-            .help("URDF lengths are in metres; is this in millimetres?"),
-        );
-    }
-    // 4. The floor.
-    let ground = if tree.root == "base_footprint" { 0.0 } else { low };
-    let mass: f64 = description.links.iter().map(|link| link.inertial.mass.value).sum();
-    if mass <= 0.0 || !mass.is_finite() {
-        faults.push(
-            Diagnostic::placeless(format!("robot `{}` has no mass", description.name))
-                .help("give its base link an <inertial> with a <mass>"),
-        );
-    }
-    // 5. Drive and sensors.
-    let drive = gazebo::drive(&document, &mut faults);
-    let sensors = gazebo::sensors(&document, &mut faults, &frames, ground);
-    match drive {
-        Some(drive) if !faults.any_error() => {
-            let robot = Robot {
-                name: description.name,
-                footprint,
-                body_z: [low - ground, high - ground],
-                mass,
-                drive,
-                lidar: sensors.lidar,
-                camera: sensors.camera,
-                compass: sensors.compass,
-            };
-            Ok((robot, faults.finish()))
+    parts.plugins.extend(xml::elements(block).filter(|e| e.tag_name().name() == "plugin"));
+    let sensors: Vec<Node<'a, 'i>> = elements("sensor").collect();
+    let reference = block.attribute("reference");
+    if let Some(link) = reference
+        && !parts.links.contains_key(link)
+    {
+        if parts.joints.iter().any(|joint| joint.name == link) && sensors.is_empty() {
+            return;
         }
-        _ => Err(faults.finish()),
+        let mut fault = faults.at(block, format!("reference to an unknown link `{link}`"));
+        if let Some(near) = suggestion(link, parts.links.keys().map(String::as_str)) {
+            fault = fault.help(format!("did you mean `{near}`?"));
+        }
+        // A block that only colours a missing link does no harm.
+        faults.push(if sensors.is_empty() { fault.warning() } else { fault });
+        return;
+    }
+    for node in sensors {
+        // A block may hold a link or a model of SDF.
+        let around = node.ancestors().find(|e| e.tag_name().name() == "link");
+        let name = around.and_then(|link| link.attribute("name")).or(reference);
+        let link = name.and_then(|name| parts.links.get(name)).copied();
+        parts.sensors.push(Mounted { node, link, around: block });
     }
 }
 
-/// Returns the placement of every link in the root link's frame, joints at zero.
-fn place(description: &urdf_rs::Robot, root: &str) -> BTreeMap<String, Placement> {
+/// Returns the placement of every link in the root link's frame, joints at zero, and the joints.
+fn place(robot: Node<'_, '_>, root: &str) -> (BTreeMap<String, Placement>, Vec<Joint>) {
     let mut frames = BTreeMap::from([(root.to_owned(), Placement::IDENTITY)]);
+    let all: Vec<_> = xml::elements(robot)
+        .filter(|e| e.tag_name().name() == "joint")
+        .filter_map(|joint| {
+            let end = |role| xml::child(joint, role)?.attribute("link");
+            Some((joint, end("parent")?, end("child")?))
+        })
+        .collect();
+    let mut joints = Vec::new();
     let mut open = vec![root];
     while let Some(parent) = open.pop() {
-        for joint in description.joints.iter().filter(|joint| joint.parent.link == parent) {
-            let placement = frames[parent].compose(&placement_of(&joint.origin));
-            frames.insert(joint.child.link.clone(), placement);
-            open.push(&joint.child.link);
+        for (joint, _, child) in all.iter().filter(|(_, from, _)| *from == parent) {
+            let placement = frames[parent].compose(&origin(*joint));
+            frames.insert((*child).to_owned(), placement);
+            joints.push(Joint {
+                name: joint.attribute("name").unwrap_or_default().to_owned(),
+                child: (*child).to_owned(),
+                placement,
+                turns: matches!(joint.attribute("type"), Some("continuous" | "revolute")),
+            });
+            open.push(child);
         }
     }
-    frames
+    (frames, joints)
 }
 
-fn placement_of(pose: &urdf_rs::Pose) -> Placement {
-    let ([x, y, z], [roll, pitch, yaw]) = (pose.xyz.0, pose.rpy.0);
+/// Returns the placement that the `<origin>` of `node` says.
+fn origin(node: Node<'_, '_>) -> Placement {
+    let written = |name| {
+        xml::child(node, "origin").map_or([0.0; 3], |origin| numbers(origin, name, [0.0; 3]))
+    };
+    let ([x, y, z], [roll, pitch, yaw]) = (written("xyz"), written("rpy"));
     Placement::from_xyz_rpy([x, y, z, roll, pitch, yaw])
 }
 
-fn shape_of(geometry: &urdf_rs::Geometry) -> Option<ShapeKind> {
-    Some(match *geometry {
-        urdf_rs::Geometry::Box { size } => ShapeKind::Box { size: size.0 },
-        urdf_rs::Geometry::Cylinder { radius, length } => ShapeKind::Cylinder { radius, length },
-        urdf_rs::Geometry::Capsule { radius, length } => {
+/// Returns the numbers of the attribute `name`, which the strict pass has read before; `otherwise` where there is none.
+fn numbers<const N: usize>(node: Node<'_, '_>, name: &str, otherwise: [f64; N]) -> [f64; N] {
+    let written = node.attribute(name).unwrap_or_default().split_whitespace();
+    let found: Vec<f64> = written.filter_map(|number| number.parse().ok()).collect();
+    found.try_into().unwrap_or(otherwise)
+}
+
+fn geometry(node: Node<'_, '_>) -> Geometry {
+    let Some(form) = xml::elements(node).next() else { return Geometry::Other("geometry") };
+    let number = |name| numbers(form, name, [0.0])[0];
+    Geometry::Simple(match form.tag_name().name() {
+        "box" => ShapeKind::Box { size: numbers(form, "size", [0.0; 3]) },
+        "cylinder" => ShapeKind::Cylinder { radius: number("radius"), length: number("length") },
+        "capsule" => {
+            let (radius, length) = (number("radius"), number("length"));
             ShapeKind::Cylinder { radius, length: length + 2.0 * radius }
         }
-        urdf_rs::Geometry::Sphere { radius } => ShapeKind::Sphere { radius },
-        urdf_rs::Geometry::Mesh { .. } => return None,
+        "sphere" => ShapeKind::Sphere { radius: number("radius") },
+        "mesh" => {
+            let uri = form.attribute("filename").unwrap_or_default().to_owned();
+            return Geometry::Mesh { uri, scale: numbers(form, "scale", [1.0; 3]) };
+        }
+        other => return Geometry::Other(other_form(other)),
     })
 }
 

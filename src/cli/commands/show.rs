@@ -4,11 +4,13 @@ use crate::cli::args::{DerivedArg, FamilyArg, ShowArgs};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::load;
 use crate::cli::terminal::Terminal;
-use crate::document::Diagnostic;
+use crate::document::{Diagnostic, Source};
 use crate::geometry::Point;
-use crate::report::show::{self, Derived, Drawing, FetchError, Over};
+use crate::report::show::{self, Derived, Drawing, FetchError, Over, RobotFiles};
+use crate::robot::{FilePath as RobotPath, Files, Unfound};
 use crate::store;
 use crate::world::generate::{self, Family};
+use crate::world::mesh;
 use crate::world::sdf::{FilePath, Folders, Models, Root};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -61,14 +63,43 @@ pub(super) fn shelf(
     path: &[String],
     beside: PathBuf,
 ) -> Result<impl Models, Failure> {
-    let folder_of = |written: &String| match written.split_once('=') {
-        Some((name, folder)) => Ok((name.to_owned(), folder.to_owned())),
-        None => Err(Failure::not_understood(format!(
-            "--models: expected NAME=FOLDER, found `{written}`"
-        ))),
-    };
-    let models: BTreeMap<_, _> = models.iter().map(folder_of).collect::<Result<_, _>>()?;
+    let models = pairs(models, "--models: expected NAME=FOLDER")?;
     Ok(Shelf { beside, folders: Folders { models, path: path.to_vec() } })
+}
+
+/// Returns every `NAME=VALUE` of an option by its name; a fault begins with what was `expected`.
+fn pairs(written: &[String], expected: &str) -> Result<BTreeMap<String, String>, Failure> {
+    let pair = |written: &String| match written.split_once('=') {
+        Some((name, value)) => Ok((name.to_owned(), value.to_owned())),
+        None => Err(Failure::not_understood(format!("{expected}, found `{written}`"))),
+    };
+    written.iter().map(pair).collect()
+}
+
+/// The files that a robot names: by paths that lead from where it lies, or from folders of the command line.
+struct RobotShelf;
+
+impl RobotShelf {
+    fn bytes(file: &RobotPath) -> Result<Vec<u8>, Unfound> {
+        store::read(Path::new(&file.path), load::MOST_INPUT)
+            .map_err(|error| Unfound(store::reason(&error)))
+    }
+}
+
+impl Files for RobotShelf {
+    fn text(&mut self, file: &RobotPath) -> Result<Source, Unfound> {
+        match String::from_utf8(Self::bytes(file)?) {
+            Ok(text) => Ok(Source::new(file.path.as_str(), text)),
+            Err(_) => Err(Unfound("it is not UTF-8 text".to_owned())),
+        }
+    }
+
+    fn corners(&mut self, file: &RobotPath) -> Result<Vec<[f64; 3]>, Unfound> {
+        let parts = mesh::read(&file.path, &Self::bytes(file)?).map_err(|faults| {
+            Unfound(faults.into_iter().next().map_or_else(String::new, |fault| fault.message))
+        })?;
+        Ok(parts.iter().flat_map(|part| &part.triangles).flatten().copied().collect())
+    }
 }
 
 /// Draws what is asked for of the file `name`.
@@ -88,6 +119,8 @@ fn draw(
         terminal.diagnostics(&faults);
         Failure::not_understood(format!("{name}: {}", Terminal::count(&faults)))
     };
+    let packages = pairs(&args.models, "--models: expected NAME=FOLDER")?;
+    let arguments = pairs(&args.argument, "--argument: expected NAME=VALUE")?;
     let mut shelf = shelf(&args.models, &args.model_path, beside(file))?;
     let mut world =
         || show::read_world(name, bytes, args.layers.as_deref(), &mut shelf).map_err(told);
@@ -117,7 +150,10 @@ fn draw(
         }
         (None, None) if args.layers.is_some() => Ok(show::draw_world(&world()?, height)),
         (None, None) => {
-            show::draw(name, bytes, height, &mut shelf, &mut fetch_from(beside(file))).map_err(told)
+            let mut robot =
+                RobotFiles { packages: &packages, arguments: &arguments, files: &mut RobotShelf };
+            show::draw(name, bytes, height, &mut shelf, &mut robot, &mut fetch_from(beside(file)))
+                .map_err(told)
         }
     }
 }

@@ -20,12 +20,15 @@ pub use world::world_svg;
 
 use crate::document::{Diagnostic, Source};
 use crate::grid::OccupancyGrid;
-use crate::robot::urdf;
+use crate::robot::description::{self, Request};
+use crate::robot::given::Given;
+use crate::robot::{FilePath, Files, Rooted};
 use crate::studies::prior_map::tour;
 use crate::world::formats::Foreign;
 use crate::world::map_server::{self, Descriptor};
 use crate::world::topology::{TagFault, TagScheme, Topology};
 use crate::world::{document as world_document, sdf};
+use std::collections::BTreeMap;
 
 /// Height (m) at which worlds are cut where no robot says otherwise: the lidar of the studies' Kobuki.
 pub const CUT_HEIGHT: f64 = 0.1602;
@@ -51,10 +54,21 @@ pub struct FetchError(pub String);
 /// Hands over a file by its path relative to the descriptor's folder.
 pub type Fetch<'f> = dyn FnMut(&str) -> Result<Vec<u8>, FetchError> + 'f;
 
-/// Draws the robot, world or map in the file `name`, distinguished by content: URDF, SDF, `map_server` YAML (with an
-/// `image:`), topo-metric map or world YAML. Worlds are cut at `height` m; all their layers are drawn.
+/// What a robot's description may name besides itself.
+pub struct RobotFiles<'f> {
+    /// Packages by name, and their folders.
+    pub packages: &'f BTreeMap<String, String>,
+    /// Arguments of xacro.
+    pub arguments: &'f BTreeMap<String, String>,
+    /// Who hands over files.
+    pub files: &'f mut dyn Files,
+}
+
+/// Draws the robot, world or map in the file `name`, distinguished by content: URDF or xacro, SDF (a robot where it is a
+/// model that drives or senses), `map_server` YAML (with an `image:`), topo-metric map or world YAML. Worlds are cut at
+/// `height` m; all their layers are drawn.
 ///
-/// `models` is asked for a world's meshes, `fetch` for a map's image.
+/// `models` is asked for a world's meshes, `robot` for what a robot names, `fetch` for a map's image.
 ///
 /// # Errors
 /// Every fault of the file.
@@ -63,6 +77,7 @@ pub fn draw(
     bytes: &[u8],
     height: f64,
     models: &mut dyn sdf::Models,
+    robot: &mut RobotFiles<'_>,
     fetch: &mut Fetch<'_>,
 ) -> Result<Drawing, Vec<Diagnostic>> {
     if let Some(format) = Foreign::of(bytes) {
@@ -70,14 +85,22 @@ pub fn draw(
     }
     let Ok(text) = std::str::from_utf8(bytes) else {
         let fault = Diagnostic::placeless(format!("`{name}` is not text")).help(
-            "show reads URDF robots, SDF or YAML worlds and map_server YAML; of a map image name the YAML",
+            "show reads URDF, xacro and SDF robots, SDF or YAML worlds and map_server YAML; of a map image name the YAML",
         );
         return Err(vec![fault]);
     };
     let source = Source::new(name, text);
     if text.trim_start().starts_with('<') {
-        if root_is(text, "robot") {
-            let (robot, warnings) = urdf::read(&source)?;
+        if description::is_robot(&source) {
+            let request = Request {
+                path: FilePath { path: name.to_owned(), rooted: Rooted::Robot },
+                gazebo: Vec::new(),
+                packages: robot.packages,
+                arguments: robot.arguments,
+                given: &Given::default(),
+                fault: &|_, message| Diagnostic::placeless(message),
+            };
+            let (robot, warnings) = description::read(&source, &request, &mut *robot.files)?;
             let (svg, text) = (robot_svg(&robot), describe_robot(&robot));
             return Ok(Drawing { svg, png: None, text, warnings });
         }
@@ -134,20 +157,6 @@ fn graph_of(world: &crate::world::World) -> Option<Result<Topology, Vec<TagFault
     let is_vertex = |color: &String| [&scheme.corridor, &scheme.room].contains(&color);
     let any = world.tags.iter().any(|tag| is_vertex(&tag.color));
     any.then(|| Topology::read(&world.tags, &scheme))
-}
-
-/// Returns whether the first tag of an XML text, after declarations and comments, is `name`.
-fn root_is(text: &str, name: &str) -> bool {
-    let mut rest = text;
-    while let Some(start) = rest.find('<') {
-        rest = &rest[start + 1..];
-        if let Some(comment) = rest.strip_prefix("!--") {
-            rest = comment.find("-->").map_or("", |end| &comment[end..]);
-        } else if !rest.starts_with(['?', '!']) {
-            return rest.starts_with(name);
-        }
-    }
-    false
 }
 
 #[cfg(test)]

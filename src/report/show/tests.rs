@@ -1,6 +1,7 @@
 use super::*;
 use crate::document::mutation::{edits, mutate};
 use crate::geometry::Point;
+use crate::robot::NoFiles;
 use crate::world::sdf::NoModels;
 use proptest::prelude::*;
 
@@ -13,6 +14,19 @@ const MAP: &str = "image: m.pgm\nresolution: 0.1\norigin: [-1.0, 2.0, 0.0]\nnega
 const WORLD: &str = "<!-- a box --><sdf version='1.6'><world name='w'><model name='m'><static>1</static>\
                      <link name='l'><collision name='c'><geometry><box><size>1 2 3</size></box></geometry>\
                      </collision></link></model></world></sdf>";
+
+/// Draws a file that names no other but, perhaps, an image.
+fn draw(
+    name: &str,
+    bytes: &[u8],
+    height: f64,
+    models: &mut NoModels,
+    fetch: &mut Fetch<'_>,
+) -> Result<Drawing, Vec<Diagnostic>> {
+    let nothing = BTreeMap::new();
+    let mut robot = RobotFiles { packages: &nothing, arguments: &nothing, files: &mut NoFiles };
+    super::draw(name, bytes, height, models, &mut robot, fetch)
+}
 
 fn drawn(name: &str, text: &str) -> Drawing {
     draw(name, text.as_bytes(), CUT_HEIGHT, &mut NoModels, &mut |_| {

@@ -5,8 +5,8 @@
 //! 3. One link has no parent: the root.
 //! 4. Every link leads to the root: there is no loop.
 
-use crate::document::suggestion;
 use crate::document::xml::{self, Faults};
+use crate::document::{quoted, suggestion};
 use roxmltree::{Document, Node};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -46,20 +46,17 @@ enum Least {
 }
 
 /// Elements known below `<robot>`; those after the fourth carry nothing that we use.
-const TOP_LEVEL: [&str; 6] =
-    ["link", "joint", "gazebo", "material", "transmission", "ros2_control"];
+const TOP_LEVEL: [&str; 7] =
+    ["link", "joint", "gazebo", "material", "transmission", "ros2_control", "sensor"];
 
 /// Reports every fault of the document, and returns the tree where its links and joints form one.
 pub(super) fn check(document: &Document<'_>, faults: &mut Faults<'_>) -> Option<Tree> {
     let robot = document.root_element();
     if robot.tag_name().name() != "robot" {
         let found = robot.tag_name().name();
-        let mut fault = faults
+        let fault = faults
             .at(robot, "not a robot description")
-            .label(format!("expected <robot>, found <{found}>"));
-        if found == "sdf" {
-            fault = fault.help("an SDF file is a world here; robots are read from URDF");
-        }
+            .label(format!("expected <robot> of URDF or <sdf>, found <{found}>"));
         faults.push(fault);
         return None;
     }
@@ -96,34 +93,56 @@ fn named<'a>(node: Node<'a, '_>, faults: &mut Faults<'_>) -> Option<&'a str> {
     name
 }
 
+/// Reports what is left of macros, all of it as one fault: it has one cause.
 fn check_macros(document: &Document<'_>, faults: &mut Faults<'_>) {
-    const HELP: &str = "expand the macros first: `xacro robot.urdf.xacro > robot.urdf`";
+    let expression = |text: &str| text.contains("${") || text.contains("$(");
+    let mut first = None;
+    let mut count = 0;
     for node in document.descendants() {
-        let xacro = |uri: Option<&str>| uri.is_some_and(|uri| uri.contains("xacro"));
-        if xacro(node.tag_name().namespace()) {
-            let fault = faults.at(node, "xacro macro left in the description").help(HELP);
-            faults.push(fault);
-        }
-        let expression = |text: &str| text.contains("${") || text.contains("$(");
-        let left = node.attributes().find(|attribute| expression(attribute.value()));
-        if let Some(attribute) = left {
-            let fault = faults
-                .at(node, "xacro expression left in the description")
-                .label(format!("`{}` holds `{}`", attribute.name(), attribute.value()))
-                .help(HELP);
-            faults.push(fault);
-        } else if node.is_text()
-            && node.text().is_some_and(expression)
-            && let Some(parent) = node.parent_element()
-        {
-            let fault = faults.at(parent, "xacro expression left in the description").help(HELP);
-            faults.push(fault);
+        let attributes = node.attributes().filter(|attribute| expression(attribute.value()));
+        let in_text = node.is_text() && node.text().is_some_and(expression);
+        let found = attributes.clone().count() + usize::from(in_text);
+        count += found;
+        if found > 0 && first.is_none() {
+            let place = if in_text { node.parent_element().unwrap_or(node) } else { node };
+            first = Some((place, attributes.map(|a| (a.name(), a.value())).next()));
         }
     }
+    let Some((place, attribute)) = first else { return };
+    let label = match attribute {
+        Some((name, value)) => format!("`{name}` holds `{}`", quoted(value)),
+        None => "its text holds one".to_owned(),
+    };
+    let message = match count {
+        1 => "xacro expression left in the description".to_owned(),
+        many => format!("{many} xacro expressions left in the description"),
+    };
+    let fault = faults.at(place, message).label(label).help(
+        "it does not say that it is xacro: give <robot> the attribute \
+         `xmlns:xacro=\"http://www.ros.org/wiki/xacro\"`, or expand it beforehand: \
+         `xacro robot.urdf.xacro > robot.urdf` (`pip install xacro` does without ROS)",
+    );
+    faults.push(fault);
+}
+
+/// Warns of an axis that does not say which: x, as for whoever reads URDF.
+fn check_axis(axis: Node<'_, '_>, faults: &mut Faults<'_>) {
+    if axis.attribute("xyz").is_some() {
+        return;
+    }
+    let mut fault = faults.at(axis, "<axis> without xyz").label("read as 1 0 0").warning();
+    let written = axis.attributes().find(|attribute| attribute.name() != "rpy");
+    if let Some(written) = written {
+        fault = fault.help(format!("is `{}` meant to be `xyz`?", quoted(written.name())));
+    }
+    faults.push(fault);
 }
 
 fn check_numbers(node: Node<'_, '_>, faults: &mut Faults<'_>) {
     let element = node.tag_name().name();
+    if element == "axis" {
+        check_axis(node, faults);
+    }
     for (_, attribute, count, least) in NUMBERS.iter().filter(|entry| entry.0 == element) {
         let smallest = if *count == 3 {
             faults
@@ -132,6 +151,12 @@ fn check_numbers(node: Node<'_, '_>, faults: &mut Faults<'_>) {
         } else {
             faults.attribute::<1>(node, attribute).map(|[number]| number)
         };
+        if *least == Least::Positive && node.attribute(*attribute).is_none() {
+            let fault = faults
+                .at(node, format!("<{element}> has no {attribute}"))
+                .label(format!("expected an attribute `{attribute}`"));
+            faults.push(fault);
+        }
         let Some(smallest) = smallest else { continue };
         let expected = match least {
             Least::Zero if smallest < 0.0 => "zero or more",

@@ -39,7 +39,9 @@ pub(in crate::studies::deadline) fn remarks(
                 pointer: "/robot",
                 message: format!("the robot `{}` has no {what}", robot.name),
                 label: "this study explores with one".to_owned(),
-                help: Some("add a `<gazebo>` sensor to the URDF, or name another robot".to_owned()),
+                help: Some(
+                    "add a `<gazebo>` sensor to the description, or name another robot".to_owned(),
+                ),
             });
         }
     }

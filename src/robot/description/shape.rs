@@ -10,12 +10,21 @@ pub(super) struct Shape {
     pub(super) placement: Placement,
 }
 
-/// URDF's shapes (m), centred on their placement; a capsule counts as the cylinder around it.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum ShapeKind {
-    Box { size: [f64; 3] },
-    Cylinder { radius: f64, length: f64 },
-    Sphere { radius: f64 },
+/// Shapes (m), centred on their placement; a capsule counts as the cylinder around it.
+#[derive(Debug, Clone)]
+pub(in crate::robot) enum ShapeKind {
+    Box {
+        size: [f64; 3],
+    },
+    Cylinder {
+        radius: f64,
+        length: f64,
+    },
+    Sphere {
+        radius: f64,
+    },
+    /// The corners of a mesh.
+    Points(Vec<[f64; 3]>),
 }
 
 /// Corners of a round outline: within 0.13 % of its radius.
@@ -35,8 +44,23 @@ pub(super) fn footprint(shapes: &[Shape]) -> Option<Outline> {
     {
         return Some(Outline::Circle { center, radius });
     }
-    let hull = convex_hull(&corners);
+    let mut hull = convex_hull(&corners);
+    // A mesh's hull may have thousands of corners: those that stand out most in as many directions as a circle has.
+    let has_mesh = shapes.iter().any(|shape| matches!(shape.kind, ShapeKind::Points(_)));
+    if has_mesh && hull.len() > ROUND as usize {
+        let outermost = |i: u32| {
+            let (sin, cos) = direction(i);
+            let out = |corner: &Point| corner.x * cos + corner.y * sin;
+            hull.iter().copied().max_by(|a, b| out(a).total_cmp(&out(b)))
+        };
+        hull = convex_hull(&(0..ROUND).filter_map(outermost).collect::<Vec<_>>());
+    }
     (hull.len() >= 3).then_some(Outline::Polygon(hull))
+}
+
+/// Returns sine and cosine of the direction `i` of [`ROUND`].
+fn direction(i: u32) -> (f64, f64) {
+    math::sin_cos(std::f64::consts::TAU * f64::from(i) / f64::from(ROUND))
 }
 
 /// Computes the lowest and highest point (m) of all shapes in the base frame.
@@ -67,23 +91,25 @@ impl Shape {
         let signs = [-0.5, 0.5];
         let circle = |radius: f64| {
             (0..ROUND).map(move |i| {
-                let (sin, cos) =
-                    math::sin_cos(std::f64::consts::TAU * f64::from(i) / f64::from(ROUND));
+                let (sin, cos) = direction(i);
                 (radius * cos, radius * sin)
             })
         };
-        match self.kind {
-            ShapeKind::Box { size: [sx, sy, sz] } => signs
+        match &self.kind {
+            ShapeKind::Points(points) => {
+                points.iter().map(|point| self.placement.apply(*point)).collect()
+            }
+            &ShapeKind::Box { size: [sx, sy, sz] } => signs
                 .iter()
                 .flat_map(|x| signs.iter().map(move |y| (x, y)))
                 .flat_map(|(x, y)| signs.iter().map(move |z| [x * sx, y * sy, z * sz]))
                 .map(|corner| self.placement.apply(corner))
                 .collect(),
-            ShapeKind::Cylinder { radius, length } => circle(radius)
+            &ShapeKind::Cylinder { radius, length } => circle(radius)
                 .flat_map(|(x, y)| signs.map(|z| [x, y, z * length]))
                 .map(|corner| self.placement.apply(corner))
                 .collect(),
-            ShapeKind::Sphere { radius } => {
+            &ShapeKind::Sphere { radius } => {
                 let [x, y, z] = self.placement.translation;
                 let mut corners: Vec<_> =
                     circle(radius).map(|(dx, dy)| [x + dx, y + dy, z]).collect();

@@ -3,7 +3,7 @@
 //! Gazebo's frustum, seen from above, ends at planes; ours is a cone that ends at arcs, which differs in the corners. The
 //! frustum's height is left out, since tags have none.
 
-use super::Sensor;
+use super::sensors::Sensor;
 use crate::document::xml::{self, Faults};
 use crate::geometry::Pose;
 use crate::robot::LogicalCamera;
@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 /// Reads a logical camera.
 pub(super) fn read(sensor: &Sensor<'_, '_>, faults: &mut Faults<'_>) -> Option<LogicalCamera> {
     let placement = sensor.level_placement("view", faults)?;
-    let rate_hz = sensor.rate("images per second", faults);
+    let rate_hz = sensor.rate(faults);
     let Some(cone) = xml::child(sensor.node, "logical_camera") else {
         let fault = faults
             .at(sensor.node, format!("{} has no <logical_camera>", sensor.title()))

@@ -1,19 +1,55 @@
 //! The range scanner: `<ray>` of SDF 1.6, `<lidar>` of later versions.
 
-use super::Sensor;
+use super::sensors::Sensor;
 use crate::document::xml::{self, Faults};
-use crate::geometry::Pose;
+use crate::geometry::{Placement, Pose};
 use crate::robot::Lidar;
 use roxmltree::Node;
 use std::f64::consts::TAU;
+
+/// What a look at a scanner shows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Glance {
+    /// Number of beams; 0 where that is not to be read.
+    pub(super) samples: f64,
+    /// How far round it looks (rad); 0 where that is not to be read.
+    pub(super) angle: f64,
+}
+
+/// Looks at a scanner without a word on what is wrong with it.
+pub(super) fn glance(sensor: Node<'_, '_>) -> Glance {
+    let scan = rays(sensor).and_then(|ray| xml::descend(ray, "scan/horizontal"));
+    let number = |name| {
+        let written = scan.and_then(|scan| xml::child(scan, name)).map(xml::text);
+        written.and_then(|text| text.parse::<f64>().ok()).filter(|number| number.is_finite())
+    };
+    let angle = number("min_angle").zip(number("max_angle")).map(|(min, max)| max - min);
+    Glance { samples: number("samples").unwrap_or(0.0), angle: angle.unwrap_or(0.0) }
+}
+
+/// Returns the pose of a sensor on its link, where it can be read.
+pub(super) fn glance_pose(sensor: Node<'_, '_>) -> Placement {
+    let written = xml::child(sensor, "pose").map(xml::text).unwrap_or_default();
+    let numbers: Vec<f64> = written.split_whitespace().filter_map(|n| n.parse().ok()).collect();
+    numbers.try_into().map_or(Placement::IDENTITY, Placement::from_xyz_rpy)
+}
+
+/// Returns what holds a scanner's beams, however old or new its format.
+fn rays<'a, 'i>(sensor: Node<'a, 'i>) -> Option<Node<'a, 'i>> {
+    ["ray", "lidar", "gpu_ray", "gpu_lidar"].into_iter().find_map(|name| xml::child(sensor, name))
+}
+
+fn rounded(angle: f64) -> f64 {
+    (angle * 1e6).round() / 1e6
+}
 
 /// Reads a scanner; `ground` is the floor's height (m) in the base frame.
 pub(super) fn read(sensor: &Sensor<'_, '_>, ground: f64, faults: &mut Faults<'_>) -> Option<Lidar> {
     let name = sensor.name;
     let placement = sensor.level_placement("scan plane", faults)?;
-    let rate_hz = sensor.rate("scans per second", faults);
+    let rate_hz = sensor.rate(faults);
     let sensor = sensor.node;
-    let Some(ray) = xml::child(sensor, "ray").or_else(|| xml::child(sensor, "lidar")) else {
+    let Some(ray) = rays(sensor) else {
         let fault = faults
             .at(sensor, format!("range scanner `{name}` has no <ray>"))
             .label("expected <ray> with <scan> and <range>");
@@ -45,11 +81,18 @@ pub(super) fn read(sensor: &Sensor<'_, '_>, ground: f64, faults: &mut Faults<'_>
     let noise_sd = noise(ray, name, faults);
 
     let beams = beams(scan, samples?, faults);
-    let (min_angle, mut max_angle) = (min_angle?, max_angle?);
+    let (mut min_angle, mut max_angle) = (min_angle?, max_angle?);
     if max_angle <= min_angle || max_angle - min_angle > TAU + 0.01 {
-        let fault = faults
+        let mut fault = faults
             .at(scan, format!("range scanner `{name}` looks from {min_angle} to {max_angle} rad"))
             .label("expected min_angle below max_angle and at most a full turn between them");
+        if max_angle > min_angle && max_angle - min_angle <= 360.0 + 1e-6 {
+            fault = fault.help(format!(
+                "angles are in radians: are these degrees? Then they are {} and {}",
+                rounded(min_angle.to_radians()),
+                rounded(max_angle.to_radians())
+            ));
+        }
         faults.push(fault);
     }
     let beams = beams?;
@@ -67,6 +110,15 @@ pub(super) fn read(sensor: &Sensor<'_, '_>, ground: f64, faults: &mut Faults<'_>
         let fault = faults
             .at(range, format!("range scanner `{name}` sees from {min_range} to {max_range} m"))
             .label("expected zero or more, and a larger maximum");
+        faults.push(fault);
+    }
+    // Seen from above, one that hangs upside down sweeps the other way.
+    if placement.rotation[2][2] < 0.0 {
+        (min_angle, max_angle) = (-max_angle, -min_angle);
+        let fault = faults
+            .at(sensor, format!("range scanner `{name}` hangs upside down"))
+            .label("its beams are read in the other order")
+            .warning();
         faults.push(fault);
     }
     let [x, y, z] = placement.translation;
