@@ -69,8 +69,8 @@ impl Files for Shelf<'_, '_> {
     fn corners(&mut self, file: &FilePath) -> Result<Vec<[f64; 3]>, Unfound> {
         let (path, bytes) = self.bytes(file)?;
         match mesh::read(&path, &bytes) {
-            Ok(parts) => {
-                let triangles = parts.iter().flat_map(|part| &part.triangles);
+            Ok(mesh) => {
+                let triangles = mesh.parts.iter().flat_map(|part| &part.triangles);
                 Ok(triangles.flatten().copied().collect())
             }
             Err(faults) => Err(Unfound(

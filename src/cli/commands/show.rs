@@ -95,10 +95,10 @@ impl Files for RobotShelf {
     }
 
     fn corners(&mut self, file: &RobotPath) -> Result<Vec<[f64; 3]>, Unfound> {
-        let parts = mesh::read(&file.path, &Self::bytes(file)?).map_err(|faults| {
+        let mesh = mesh::read(&file.path, &Self::bytes(file)?).map_err(|faults| {
             Unfound(faults.into_iter().next().map_or_else(String::new, |fault| fault.message))
         })?;
-        Ok(parts.iter().flat_map(|part| &part.triangles).flatten().copied().collect())
+        Ok(mesh.parts.iter().flat_map(|part| &part.triangles).flatten().copied().collect())
     }
 }
 
