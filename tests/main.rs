@@ -22,6 +22,7 @@ mod manifests;
 mod multiverse;
 mod original_worlds;
 mod own_worlds;
+mod robots;
 mod sandbox;
 mod standards;
 mod tutorial;

@@ -96,7 +96,7 @@ pub(super) fn read(sensor: &Sensor<'_, '_>, ground: f64, faults: &mut Faults<'_>
         faults.push(fault);
     }
     let beams = beams?;
-    if max_angle - min_angle >= TAU - 1e-6 {
+    if (TAU - 1e-6..=TAU + 0.01).contains(&(max_angle - min_angle)) {
         // Gazebo would look along the seam twice; the sensor itself does not.
         max_angle = min_angle + TAU * f64::from(beams - 1) / f64::from(beams);
         let fault = faults

@@ -182,7 +182,11 @@ fn choose<'p, 'a, 'i>(
         let own = name(mounted);
         let mut fault = faults.at(mounted.node, format!("range scanner `{own}` is not used"));
         if unfit(mounted) != Some(Unfit::Tilted) {
-            fault = fault.help(format!("choose it by its name: `robot: {{file, lidar: {own}}}`"));
+            fault = fault.help(if own.is_empty() {
+                "give it a name, by which it can be chosen".to_owned()
+            } else {
+                format!("choose it by its name: `robot: {{file, lidar: {own}}}`")
+            });
         }
         faults.push(fault.label(label).warning());
     }

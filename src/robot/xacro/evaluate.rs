@@ -9,6 +9,9 @@ use std::rc::Rc;
 /// Longest text (bytes) and longest list that an expression may yield.
 pub(super) const MAX_LENGTH: usize = 1 << 20;
 
+/// What functions' names may begin with.
+const MODULES: [&str; 3] = ["math", "python", "xacro"];
+
 /// Who knows what a name stands for: `None` where nobody does.
 pub(super) type LookUp<'l> = dyn FnMut(&str) -> Result<Option<Value>, String> + 'l;
 
@@ -114,6 +117,11 @@ pub(super) fn evaluate(expression: &Expression, names: &mut LookUp<'_>) -> Resul
                 return Ok(value);
             }
             match &**called {
+                Expression::Attribute(of, method) if matches!(&**of, Expression::Name(n) if MODULES.contains(&n.as_str())) =>
+                {
+                    let module = full_name(of).unwrap_or_default();
+                    return Err(format!("the function `{module}.{method}` is not known"));
+                }
                 Expression::Attribute(of, method) => {
                     functions::method(&evaluate(of, names)?, method, &values)?
                 }

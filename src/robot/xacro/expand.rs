@@ -87,7 +87,8 @@ impl<'r> Expander<'r> {
     pub(super) fn deeper(&mut self) -> Result<(), Refusal> {
         self.depth += 1;
         if self.depth > MAX_DEPTH {
-            let why = format!("it nests deeper than {MAX_DEPTH} levels: does a macro call itself?");
+            let why =
+                format!("it nests deeper than {MAX_DEPTH} levels, as a macro that calls itself");
             return Err(why.into());
         }
         Ok(())

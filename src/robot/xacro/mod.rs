@@ -53,9 +53,20 @@ pub(super) fn expand(
     files: &mut dyn Files,
 ) -> Result<Expanded, Vec<Diagnostic>> {
     let mut expander = Expander::new(places, arguments, files);
-    let (root, mut nodes) = expander.file(source, places.own.clone())?;
+    // What was left out may be why something else is missing.
+    let told = |expander: &mut Expander<'_>, faults: Vec<Diagnostic>| {
+        let warnings = std::mem::take(&mut expander.warnings);
+        faults.into_iter().chain(warnings).collect::<Vec<_>>()
+    };
+    let (root, mut nodes) = match expander.file(source, places.own.clone()) {
+        Ok(expanded) => expanded,
+        Err(faults) => return Err(told(&mut expander, faults)),
+    };
     for (path, source) in added {
-        nodes.extend(expander.file(source, path.clone())?.1);
+        match expander.file(source, path.clone()) {
+            Ok((_, more)) => nodes.extend(more),
+            Err(faults) => return Err(told(&mut expander, faults)),
+        }
     }
     let name = expander.written(root.attribute("name").unwrap_or_default(), &root.origin);
     let name = name.map_err(|stop| vec![*stop])?;

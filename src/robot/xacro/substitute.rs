@@ -78,7 +78,8 @@ impl Expander<'_> {
             Some(refusal) => refusal,
             None if why.ends_with("is not defined") => Refusal {
                 help: format!(
-                    "give it as `robot: {{file, arguments: {{NAME: VALUE}}}}` where whoever starts the robot does; else {HELP}"
+                    "give it as `robot: {{file, arguments: {{{}: VALUE}}}}` where whoever starts the robot does; else {HELP}",
+                    why.split('`').nth(1).unwrap_or("NAME")
                 ),
                 why,
             },

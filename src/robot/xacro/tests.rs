@@ -171,7 +171,7 @@ error: cannot expand `${side}_wheel`
 2 |   <link name='${side}_wheel'/>
   |   ^^^^^ `side` is not defined
   |
-  = help: give it as `robot: {file, arguments: {NAME: VALUE}}` where whoever starts the robot does; else expand the file \
+  = help: give it as `robot: {file, arguments: {side: VALUE}}` where whoever starts the robot does; else expand the file \
 beforehand: `xacro robot.urdf.xacro > robot.urdf` (`pip install xacro` does without ROS)
 "
     );
@@ -188,6 +188,7 @@ beforehand: `xacro robot.urdf.xacro > robot.urdf` (`pip install xacro` does with
         ("<x a='$(env HOME)'/>", "the environment is not read"),
         ("<x a='$(arg leg)'/>", "the argument `leg` has no default"),
         ("<x a='$(command ls)'/>", "`$(command)` is not known"),
+        ("<x a='${xacro.load_yaml(1)}'/>", "the function `xacro.load_yaml` is not known"),
         ("<xacro:element/>", "<xacro:element> cannot be expanded here"),
         ("<xacro:insert_block name='b'/>", "there is no block `b`"),
         ("<x a='${xacro.error(\"no wheels\")}'/>", "the description says: no wheels"),
@@ -196,7 +197,7 @@ beforehand: `xacro robot.urdf.xacro > robot.urdf` (`pip install xacro` does with
         ("<xacro:include filename='two.xacro' ns='n'/>", "a file included as `n`"),
         (
             "<xacro:macro name='m' params=''><xacro:m/></xacro:macro><xacro:m/>",
-            "does a macro call itself?",
+            "as a macro that calls itself",
         ),
     ] {
         let found = refused(body);
