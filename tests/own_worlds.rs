@@ -81,7 +81,7 @@ fn a_world_of_included_models_is_sealed_verified_and_run_again_from_what_was_sea
     let verified = at.run(&["verify", &bundle, "--level", "5"]);
     assert_eq!(
         ends(&verified, 0),
-        "reached level 5 (re-executed) of level 5 (re-executed): the bundle is what it says"
+        "reached level 5 (full) of level 5 (full): the bundle is what it says"
     );
 }
 

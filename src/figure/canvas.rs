@@ -245,15 +245,13 @@ impl Canvas {
         }
     }
 
-    /// Writes what nobody may overlook, at the end of the second line of the heading.
+    /// Writes what nobody may overlook, below the heading.
     pub(crate) fn remark(&mut self, text: &str) {
-        let (width, _) = self.size();
         let remark = Element::new("text")
-            .at("x", width - 16.0)
-            .at("y", 44.0)
-            .at("font-size", 12.0)
+            .at("x", LEFT)
+            .at("y", 58.0)
+            .at("font-size", 11.0)
             .set("font-weight", "bold")
-            .set("text-anchor", "end")
             .set("fill", ACCENT);
         self.push(remark.text(text));
     }

@@ -249,11 +249,14 @@ impl<'m> Reader<'m> {
         }
         Found::Missing(match &why[..] {
             [(path, problem)] => format!("`{}`: {problem}", self.name(path)),
-            several => {
-                let names =
-                    several.iter().take(6).map(|(path, _)| format!("`{}`", self.name(path)));
-                format!("no such file: {}", names.collect::<Vec<_>>().join(", "))
+            [(first, _), (second, _), others @ ..] => {
+                let more = match others.len() {
+                    0 => String::new(),
+                    n => format!(" and {n} more"),
+                };
+                format!("no such file: `{}`, `{}`{more}", self.name(first), self.name(second))
             }
+            [] => "no such file".to_owned(),
         })
     }
 
