@@ -229,12 +229,14 @@ fn value_at(run: &[(f64, f64)], x: f64) -> f64 {
 
 fn add_differences(line: &mut [CoverageCell], baseline: Option<&str>) {
     let Some(base) = line.iter().find(|c| Some(c.by.as_str()) == baseline).cloned() else { return };
+    // Of nothing there is no percentage: where one look covers all that is asked for, no way was travelled to it.
+    let difference = |of: f64, to: f64| (to > 0.0).then(|| 100.0 * (of / to - 1.0));
     for cell in line.iter_mut().filter(|c| c.by != base.by) {
         if let (Some(ours), Some(theirs)) = (cell.ours, base.ours) {
-            cell.difference_percent = Some(100.0 * (ours.mean / theirs.mean - 1.0));
+            cell.difference_percent = difference(ours.mean, theirs.mean);
         }
         if let (Some(ours), Some(theirs)) = (cell.published, base.published) {
-            cell.published_difference_percent = Some(100.0 * (ours.0 / theirs.0 - 1.0));
+            cell.published_difference_percent = difference(ours.0, theirs.0);
         }
     }
 }

@@ -186,6 +186,7 @@ pub(in crate::studies::prior_map) fn of_reference(parameters: &Parameters) -> Pa
             keyframe_distance_m: mapping.keyframe_distance_m,
             keyframe_turn_rad: mapping.keyframe_turn_rad,
             clip_range_m: mapping.clip_range_m,
+            no_return: mapping.no_return,
             ..Mapping::default()
         },
         navigation: Navigation { obstacle_median_beams: 1, ..navigation.clone() },
