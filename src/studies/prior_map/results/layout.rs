@@ -52,7 +52,7 @@ impl Layout for CoverageTable {
                     "difference-percent",
                     &format!("Difference of the mean to that of `{baseline}`"),
                 )
-                .empty_where("it is the baseline itself or a baseline of 0, or one of both has no runs that got there"),
+                .empty_where("it is the baseline itself, or one of both has no runs that got there"),
                 |cell| cell.difference_percent,
             )
             .with(
