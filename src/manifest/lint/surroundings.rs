@@ -49,6 +49,13 @@ pub(super) fn check(setup: &Setup, faults: &mut Faults<'_>) {
     if own.is_empty() {
         return;
     }
+    if !own.is_closed() {
+        let message = "the world is open: from its start the robot gets past every wall";
+        let label = "exploring it goes on outside for as long as the time limit lets it";
+        let help = "close it with a wall, or say when enough is seen with `mission.stop-at-coverage-percent`";
+        let fault = faults.fault("/world", message.to_owned()).label(label).help(help);
+        faults.push(fault.warning());
+    }
     goals(world, &own, radius, faults);
     let misses = 1.0 - own.covers(&narrow, 2.0 * radius + 0.2);
     if narrow.is_closed() && misses > MAY_MISS {
