@@ -30,6 +30,11 @@ pub fn reason(error: &io::Error) -> String {
     }
 }
 
+/// Removes a folder that this command made, with whatever is in it. What cannot be removed stays.
+pub fn discard(folder: &Path) {
+    let _ = fs::remove_dir_all(folder);
+}
+
 /// Publishes `bytes` as `directory/name`: written beside it, made durable, renamed. A reader sees the old file or the
 /// new one, never a part.
 ///

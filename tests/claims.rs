@@ -12,7 +12,8 @@ fn done_pinned(desk: &Sandbox, words: &[&str]) -> String {
 /// Creates a starter study of two trials that makes these claims.
 fn study(claims: &str) -> Sandbox {
     let desk = Sandbox::new().with_demo();
-    let text = desk.read("demo/demo.yaml");
+    let text = desk.read("demo/demo.yaml").replace("trials: 10", "trials: 5");
+    let (text, _) = text.split_once("claims:\n").unwrap();
     desk.write("demo/demo.yaml", format!("{text}claims:\n{claims}"));
     desk
 }

@@ -135,7 +135,7 @@ fn a_changed_number_is_found_and_named() {
 #[test]
 fn every_fault_of_a_manifest_is_told_at_its_place() {
     let desk = desk();
-    desk.edit("demo/demo.yaml", "trials: 5", "trails: 5");
+    desk.edit("demo/demo.yaml", "trials: 10", "trails: 10");
     desk.edit("demo/demo.yaml", "floor-plan-of:", "floor-plan-off:");
     let answer = desk.run(&["check", "demo/demo.yaml"]);
     assert_eq!((answer.stdout.as_str(), answer.code), ("", 2));

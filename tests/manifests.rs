@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use reenact::bundle::assemble;
 use reenact::document::{Diagnostic, Source};
 use reenact::manifest::{self, CalibrationTrials, Experiment, InputError, Inputs, WrittenIn};
-use reenact::plan::{ENGINE_VERSION, Plan, ResolvedStudy, Selection};
+use reenact::plan::{Plan, ResolvedStudy, Selection, engine_version};
 use reenact::studies::{StudyKind, TrialRecord, TrialSpec};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -287,7 +287,7 @@ fn selections_keep_the_keys_of_what_they_keep() {
 fn the_resolved_study_writes_everything_out() {
     let plan = Plan::of(quickstart());
     let resolved = plan.resolved().to_json();
-    assert_eq!(resolved["engine-version"], ENGINE_VERSION);
+    assert_eq!(resolved["engine-version"], engine_version(plan.experiment.kind));
     assert_eq!(resolved["inputs"][1]["file"], "inputs/basic.yaml");
     assert_eq!(resolved["inputs"][1]["sha256"].as_str().map(str::len), Some(64));
     let condition = &resolved["conditions"][1];

@@ -4,9 +4,15 @@
 use crate::sandbox::{Answer, Sandbox, repository, skipped};
 use reenact::bundle::{Archive, Form, Limits, archive};
 use reenact::digest::Sha256Digest;
-use reenact::plan::ENGINE_VERSION;
+use reenact::plan::engine_version;
+use reenact::studies::StudyKind;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
+
+/// Returns the engine that runs the prior-map study.
+fn engine() -> String {
+    engine_version(StudyKind::named("prior-map").unwrap())
+}
 
 /// Returns the path of the bundle that the repository keeps.
 fn published() -> PathBuf {
@@ -237,7 +243,7 @@ fn a_study_with_its_engine_sealed_in_replicates_and_is_attested() {
     let readme = String::from_utf8(tree["data/README.md"].clone()).unwrap();
     let install = "\n```\ncargo install --path . --locked\n```\n";
     assert!(
-        readme.contains(install) && readme.contains(&format!("(engine {ENGINE_VERSION})")),
+        readme.contains(install) && readme.contains(&format!("(engine {})", engine())),
         "{readme}"
     );
 
@@ -337,7 +343,7 @@ fn the_published_quickstart_bundle_still_verifies() {
     let bundle = published().to_str().unwrap().to_owned();
     let answer = desk.run(&["verify", &bundle, "--level", "5", "--format", "json"]);
     let report: serde_json::Value = serde_json::from_str(&answer.stdout).unwrap();
-    if report["engine"] == ENGINE_VERSION {
+    if report["engine"] == engine() {
         assert_eq!(
             answer.code, 0,
             "{}\nwhere trials were meant to change, publish the quickstart's bundle anew \

@@ -66,7 +66,7 @@ pub(super) fn resolved(
     understood(text(manifest)?, manifest, set, calibrator, terminal)
 }
 
-/// Resolves a manifest that is yet to be written to `manifest`; its faults go to stderr, warnings nowhere.
+/// Resolves a manifest that is about to be replaced in `manifest`; its faults go to stderr, warnings nowhere.
 pub(super) fn draft(
     manifest: &Path,
     text: String,

@@ -15,6 +15,7 @@ use crate::units::Tick;
 use crate::world::World;
 use serde_json::Value;
 use std::f64::consts::TAU;
+use surroundings::spot;
 
 /// How far a prior's walls may lie from the world's (m) and still be taken for them.
 const ALIGNED_WITHIN: f64 = 0.3;
@@ -77,10 +78,6 @@ pub(super) fn start(world: &World, robot: &Robot, start: Pose, faults: &mut Faul
         let help = format!("the world reaches from {} to {}", spot(bounds.min), spot(bounds.max));
         faults.push(fault.label("beyond every wall").help(help).warning());
     }
-}
-
-fn spot(point: Point) -> String {
-    format!("({:.2}, {:.2}) m", point.x, point.y)
 }
 
 /// Warns of values that look as if they were written in another unit, by the unit in their key.

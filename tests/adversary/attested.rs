@@ -5,6 +5,8 @@ use super::study::HONEST;
 use crate::sandbox::{Answer, Sandbox};
 use base64ct::{Base64, Encoding as _};
 use reenact::bundle::{Form, archive};
+use reenact::plan::engine_version;
+use reenact::studies::StudyKind;
 use serde_json::{Value, json};
 use ssh_key::private::Ed25519Keypair;
 use ssh_key::{HashAlg, LineEnding, PrivateKey};
@@ -12,6 +14,11 @@ use std::fs;
 use std::sync::LazyLock;
 
 const TYPE: &str = "application/vnd.in-toto+json";
+
+/// Returns the engine of the honest bundle's study.
+fn engine() -> String {
+    engine_version(StudyKind::named("prior-map").unwrap())
+}
 
 /// The fingerprint of the reviewer's key.
 static REVIEWER: LazyLock<String> = LazyLock::new(|| fingerprint(1));
@@ -121,8 +128,9 @@ fn a_signed_attestation_is_read_back() {
     let date = statement["predicate"]["date"].as_str().unwrap();
     let reviewer = &*REVIEWER;
     let says = format!(
-        "\nattested by reviewer@example.org with the key {reviewer}: level 5 (full) held on {date}, by reenact {}, engine 2\n",
-        env!("CARGO_PKG_VERSION")
+        "\nattested by reviewer@example.org with the key {reviewer}: level 5 (full) held on {date}, by reenact {}, engine {}\n",
+        env!("CARGO_PKG_VERSION"),
+        engine()
     );
     assert!(answer.stdout.contains(&says), "{}", answer.stdout);
     assert!(
@@ -148,7 +156,8 @@ fn a_signed_attestation_is_read_back() {
     let says = "attested: note at level 3: data/x: expected a\\u{1b}[2J, found b reached level 6 (\\u{202e}c)\nattested: not \
                 checked: the host\\u{7}\nreached level 3";
     assert!(answer.stdout.contains(says), "{}", answer.stdout);
-    assert!(answer.stdout.contains(", by reenact\\u{1b}[1A 9, engine 2\n"), "{}", answer.stdout);
+    let says = format!(", by reenact\\u{{1b}}[1A 9, engine {}\n", engine());
+    assert!(answer.stdout.contains(&says), "{}", answer.stdout);
 
     // A second signature by a key that the reader does not trust takes nothing away.
     let to_sign = pae(TYPE, &payload());

@@ -16,7 +16,6 @@ use std::path::{Path, PathBuf};
 /// Writes the world.
 pub(in crate::cli) fn run(args: &ImportArgs, terminal: Terminal) -> Result<Exit, Failure> {
     let file = &args.file;
-    let world = read(args, terminal)?;
     let output = args.output.clone().unwrap_or_else(|| {
         let stem = file.file_stem().unwrap_or_default().to_string_lossy();
         PathBuf::from(format!("{stem}.world.yaml"))
@@ -27,6 +26,7 @@ pub(in crate::cli) fn run(args: &ImportArgs, terminal: Terminal) -> Result<Exit,
             output.display()
         )));
     }
+    let world = read(args, terminal)?;
     let name = file.file_name().unwrap_or_default().to_string_lossy();
     let source = format!("imported from {name} by reenact import, cut at {} m", args.height);
     let doc = WorldDoc::of(&world, source, args.height);

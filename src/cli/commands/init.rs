@@ -9,6 +9,7 @@ use crate::cli::load;
 use crate::cli::terminal::Terminal;
 use crate::geometry::Pose;
 use crate::json;
+use crate::store;
 use crate::units::Radians;
 use from_files::Files;
 use std::path::{Path, PathBuf};
@@ -49,7 +50,7 @@ pub(in crate::cli) fn run(args: &InitArgs, terminal: Terminal) -> Result<Exit, F
     } else {
         let text = of_files(args, &manifest, terminal).inspect_err(|_| {
             // Begun by this command and no study: in the way of the next attempt.
-            let _ = fs_err::remove_dir_all(&folder);
+            store::discard(&folder);
         })?;
         load::write(&manifest, text.as_bytes())?;
         // Whatever is wrong is told now, with the file there to be mended.
@@ -86,6 +87,8 @@ fn of_files(args: &InitArgs, manifest: &Path, terminal: Terminal) -> Result<Stri
          start: {{x-m: {NOWHERE}, y-m: {NOWHERE}}}\n",
         args.name
     );
+    // Its folder has to be there for paths that lead out of it.
+    load::write(manifest, draft.as_bytes())?;
     let read = load::draft(manifest, draft, terminal)?;
     let Some(condition) = read.conditions.first() else {
         return Err(Failure::failed("a manifest without factors has one condition"));

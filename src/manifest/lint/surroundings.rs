@@ -1,7 +1,6 @@
 //! A robot and a world that do not go together: doors too narrow, goals behind walls, scanners that see over or short of
 //! everything, lengths in another unit.
 
-use super::spot;
 use crate::geometry::{Bounds, Outline, Point, Pose};
 use crate::manifest::faults::Faults;
 use crate::robot::Robot;
@@ -141,6 +140,11 @@ fn short_sighted(own: &Reach, visible: &[Outline], range: f64, faults: &mut Faul
     let help =
         "with `mapping.no-return: nothing` a robot that sees no wall learns nothing and gives up";
     faults.push(faults.fault("/robot", message).label(label).help(help).warning());
+}
+
+/// Returns where `point` is, in words.
+pub(super) fn spot(point: Point) -> String {
+    format!("({:.2}, {:.2}) m", point.x, point.y)
 }
 
 /// Says by which factor a prior of the size `drawn` is another's than the world's `true_size`, where it is one.
