@@ -138,7 +138,7 @@ fn a_run_speaks_to_ci() {
         .descendants()
         .filter(|node| node.has_tag_name("testcase"))
         .map(|case| {
-            let came = case.children().find(|node| node.is_element());
+            let came = case.children().find(roxmltree::Node::is_element);
             let came = came.map_or("passed", |node| node.tag_name().name());
             format!("{}: {came}", case.attribute("name").unwrap_or_default())
         })

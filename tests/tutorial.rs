@@ -1,8 +1,8 @@
 //! Every command of docs/tutorial.md, as a reader would type it.
 
-use crate::sandbox::repository;
+use crate::sandbox::{Answer, PROGRAM, Sandbox, repository};
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Command;
 
 /// Returns the shell blocks of a Markdown text.
 fn blocks(text: &str) -> Vec<&str> {
@@ -26,35 +26,26 @@ fn copy(from: &Path, to: &Path) {
 
 #[test]
 fn every_command_of_the_tutorial_does_what_it_says() {
-    let desk = tempfile::tempdir().unwrap();
+    let desk = Sandbox::new();
     for folder in ["robots", "examples"] {
-        copy(&repository().join(folder), &desk.path().join(folder));
+        copy(&repository().join(folder), &desk.path(folder));
     }
     let text = std::fs::read_to_string(repository().join("docs/tutorial.md")).unwrap();
     let blocks = blocks(&text);
     assert!(blocks.len() >= 5, "{}", blocks.len());
-    let program = Path::new(env!("CARGO_BIN_EXE_reenact"));
-    let mut path = vec![program.parent().unwrap().to_owned()];
-    path.extend(std::env::split_paths(&std::env::var_os("PATH").unwrap_or_default()));
+    let program = Path::new(PROGRAM).parent().unwrap();
     for block in blocks {
-        let output = Command::new("sh")
-            .args(["-euc", block])
-            .current_dir(desk.path())
-            .env("PATH", std::env::join_paths(&path).unwrap())
-            .env("REENACT_STORE", desk.path().join("store"))
-            .env("NO_COLOR", "1")
-            .stdin(Stdio::null())
-            .output()
-            .unwrap();
-        let (out, err) =
-            (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
-        assert!(output.status.success(), "{block}\n{out}\n{err}");
+        let mut shell = Command::new("sh");
+        desk.dress(&mut shell).args(["-euc", "PATH=$1:$PATH; eval \"$2\"", "sh"]);
+        let answer = Answer::of(shell.arg(program).arg(block));
+        assert_eq!(answer.code, 0, "{block}\n{answer:?}");
         // Nothing of a tutorial is doubtful.
-        assert!(!err.contains("warning:") && !err.contains("error:"), "{block}\n{err}");
+        let doubts = ["warning:", "error:"].map(|word| answer.stderr.contains(word));
+        assert_eq!(doubts, [false; 2], "{block}\n{answer:?}");
     }
     for file in
         ["burger.svg", "hall.svg", "hall-study.html", "trial.html", "explored.yaml", "explored.pgm"]
     {
-        assert!(desk.path().join(file).is_file(), "{file}");
+        assert!(desk.path(file).is_file(), "{file}");
     }
 }

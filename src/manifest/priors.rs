@@ -22,6 +22,7 @@ use crate::world::floor_plan::FloorPlanSettings;
 use crate::world::map_server::{Descriptor, bag};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
+use std::path::Path;
 use std::sync::Arc;
 
 /// The factor that chooses among prior maps, and the choice of none.
@@ -237,7 +238,7 @@ impl<'a> Resolver<'a> {
     }
 
     fn read_map(&mut self, doc: &MapPrior, place: &str, shift: Point) -> Known<OccupancyGrid> {
-        let grid = if doc.map.ends_with(".mcap") {
+        let grid = if is_bag(&doc.map) {
             self.grid_of_bag(doc, place)?
         } else {
             let source = self.text(&doc.map, place, InputKind::Prior)?;
@@ -286,6 +287,11 @@ impl Resolver<'_> {
         self.faults.extend(descriptor.doubt(&grid));
         Some(grid)
     }
+}
+
+/// Returns whether the name of a map's file is that of a bag.
+fn is_bag(file: &str) -> bool {
+    Path::new(file).extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mcap"))
 }
 
 fn described(doc: &MapPrior) -> Value {

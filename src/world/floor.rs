@@ -129,7 +129,7 @@ impl Reach {
         for cell in &edge {
             wider.frame.index(*cell).into_iter().for_each(|index| covered[index] = true);
         }
-        #[expect(clippy::cast_possible_truncation, reason = "some cells")]
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some cells")]
         let steps = (distance / wider.frame.resolution).ceil().min(1e4) as usize;
         for _ in 0..steps {
             let mut next = Vec::new();

@@ -129,9 +129,10 @@ fn entry(file: &str, more: &[(&str, Option<String>)]) -> String {
         .iter()
         .filter_map(|(key, value)| Some(format!("{key}: {}", value.as_ref()?)))
         .collect();
-    match more.is_empty() {
-        true => scalar(file),
-        false => format!("{{file: {}, {}}}", scalar(file), more.join(", ")),
+    if more.is_empty() {
+        scalar(file)
+    } else {
+        format!("{{file: {}, {}}}", scalar(file), more.join(", "))
     }
 }
 

@@ -233,10 +233,8 @@ impl Done {
                 .filter(|record| record.outcome == Outcome::PANICKED)
                 .map(|record| format!("trial {slug}/{} failed: {}", record.trial, record.cause))
                 .collect();
-            let came = match failed.is_empty() {
-                true => Came::Passed,
-                false => Came::Broken(failed.join("\n")),
-            };
+            let came =
+                if failed.is_empty() { Came::Passed } else { Came::Broken(failed.join("\n")) };
             let name = format!("{} of {slug}", counted(trials.len(), "trial"));
             let case = Case { name, class: RUN, came, said: String::new() };
             (!trials.is_empty()).then_some(case)

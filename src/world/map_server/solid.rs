@@ -58,7 +58,9 @@ pub fn world(name: &str, map: &OccupancyGrid, unknown: UnknownCells) -> World {
         };
         let (same, ended): (Vec<_>, Vec<_>) =
             open.into_iter().partition(|(run, _)| walls.contains(run));
-        ended.into_iter().for_each(|(run, bottom)| close(run, bottom, y));
+        for (run, bottom) in ended {
+            close(run, bottom, y);
+        }
         let known: Vec<[i32; 2]> = same.iter().map(|(run, _)| *run).collect();
         let new = walls.into_iter().filter(|run| !known.contains(run)).map(|run| (run, y));
         open = same.into_iter().chain(new).collect();

@@ -42,8 +42,8 @@ impl Files<'_> {
             let lines = text
                 .lines()
                 .filter(|line| !["meaning:", "warnings:"].iter().any(|key| line.starts_with(key)));
-            let lines: String = lines.map(|line| format!("#   {line}\n")).collect();
-            format!("# What was understood of {file}:\n{lines}")
+            let lines: Vec<String> = lines.map(|line| format!("#   {line}")).collect();
+            format!("# What was understood of {file}:\n{}\n", lines.join("\n"))
         };
         let robot_text = understood(robot_file, &show::describe_robot(robot));
         let world_text = understood(world_file, &show::describe_world(world, height));

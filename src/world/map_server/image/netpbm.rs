@@ -10,9 +10,10 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Image, ImageError> {
     let height = number(bytes, &mut at).ok_or(ImageError::Header("height"))?;
     let kind = bytes[1];
     let has_bits = matches!(kind, b'1' | b'4');
-    let largest = match has_bits {
-        true => 1,
-        false => number(bytes, &mut at).ok_or(ImageError::Header("largest grey"))?,
+    let largest = if has_bits {
+        1
+    } else {
+        number(bytes, &mut at).ok_or(ImageError::Header("largest grey"))?
     };
     let (width, height, count) = checked(width, height)?;
     if !(1..=65535).contains(&largest) {
