@@ -2,7 +2,7 @@
 //!
 //! Hermetic: files come through [`Files`], the environment is not asked. Joints stand at zero. Reading goes as follows:
 //! 1. Xacro is expanded, and files that hold only `<gazebo>` blocks are put in.
-//! 2. [`urdf`](super::urdf) or [`sdf`](super::sdf) tells the parts: links, joints, collisions, plugins, sensors. A URDF's
+//! 2. `urdf` or `sdf` tells the parts: links, joints, collisions, plugins, sensors. A URDF's
 //!    base frame is its root link's, an SDF model's is the model's own.
 //! 3. The collision shapes give the footprint, meshes by their corners.
 //! 4. The floor is the origin of a link called `base_footprint` in URDF (REP-120), else the lowest point of the shapes.

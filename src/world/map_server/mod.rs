@@ -6,7 +6,7 @@
 //! (`raw`). Bytes in, values out: the caller fetches the image.
 //!
 //! As in ROS, a key that means nothing here is no fault: it is warned of. A map whose origin is turned is drawn anew along
-//! the world's axes ([`turned`]).
+//! the world's axes (`turned`).
 
 pub mod bag;
 mod descriptor;

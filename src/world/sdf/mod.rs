@@ -1,10 +1,10 @@
 //! Gazebo worlds: SDF `.world` and `.sdf` files (SDFormat 1.3 to 1.12) as solids of one layer, [`LAYER`].
 //!
-//! 1. Files are read ([`mod@model`], [`mod@include`], [`mod@geometry`]): the world's own, and once each those that it
-//!    includes. A model's parts are placed in its own frame ([`mod@frames`]).
-//! 2. Models are placed in the world ([`mod@place`]), as often as they stand in it. Where the file has a `<state>`, its
+//! 1. Files are read (`model`, `include`, `geometry`): the world's own, and once each those that it
+//!    includes. A model's parts are placed in its own frame (`frames`).
+//! 2. Models are placed in the world (`place`), as often as they stand in it. Where the file has a `<state>`, its
 //!    poses and scales are the truth, as in Gazebo; a scale multiplies sizes, not the poses within a model.
-//! 3. Floors are taken out ([`mod@floor`]).
+//! 3. Floors are taken out (`floor`).
 //!
 //! Collisions count, visuals do not. What moves in Gazebo stands still here. Whatever cannot be read is a warning that names
 //! it, one for each kind of thing.
