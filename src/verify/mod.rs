@@ -36,5 +36,6 @@ pub use pipeline::{
 pub use reexecution::Sample;
 pub use replan::{Reenactment, plan_of};
 pub use replication::{ClaimAgain, Replication, VerdictStanding};
+#[cfg(feature = "shell")]
 pub(crate) use report::printable;
 pub use signature::{NAMESPACE, Signed, Trust, Vouching, path_in_bag};
