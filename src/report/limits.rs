@@ -143,6 +143,7 @@ mod tests {
     use super::super::content_of;
     use super::*;
     use crate::bundle::{Bundle, Limits, assemble};
+    use crate::plan::engine_version;
     use crate::studies::GridCell;
     use crate::verify::plan_of;
 
@@ -236,7 +237,8 @@ mod tests {
         let of =
             |name: &str| facts.iter().find(|(known, _)| known == name).map(|(_, v)| v.as_str());
         assert!(of("time and machine of the run").unwrap().starts_with("not recorded"));
-        assert_eq!((of("engine version"), of("calibration")), (Some("2"), None));
+        let engine = engine_version(plan.experiment.kind);
+        assert_eq!((of("engine version"), of("calibration")), (Some(engine.as_str()), None));
         assert!(content.evaluation.basis.starts_with("The bundle does not tell"));
         let lines = content.evaluation.badges.iter().flat_map(|badge| &badge.commands);
         assert!(
