@@ -11,7 +11,10 @@ const PROBE: [&str; 6] = ["run", "demo/demo.yaml", "--locked", "--probe", "--onl
 fn desk() -> Sandbox {
     let desk = Sandbox::pinned().with_demo();
     let short = "trials: 1\nparameters: {mission: {time-limit-s: 30}}";
-    desk.edit("demo/demo.yaml", "trials: 5", short);
+    let text = desk.read("demo/demo.yaml");
+    // Nothing is claimed: verdicts are not what drifts here.
+    let (text, _) = text.split_once("claims:\n").unwrap();
+    desk.write("demo/demo.yaml", text.replace("trials: 10", short));
     desk
 }
 
