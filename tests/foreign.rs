@@ -83,13 +83,15 @@ fn what_is_imported_is_the_same_world() {
     let desk = desk();
     let told = desk.run(&["import", "rooms.yaml", "-o", "rooms.world.yaml"]);
     assert_eq!(told.code, 0, "{told:?}");
-    let meaning = |text: &str| {
-        let line = text.lines().find(|line| line.starts_with("size:")).unwrap_or_default();
-        line.to_owned()
+    let solids = |text: &str| -> Vec<String> {
+        let lines = text.lines().filter(|l| l.starts_with("size:") || l.starts_with("layer "));
+        lines.map(str::to_owned).collect()
     };
-    let again = desk.run(&["show", "rooms.world.yaml", "-o", "rooms.svg"]);
-    assert_eq!(meaning(&told.stdout), meaning(&again.stdout), "{told:?}\n{again:?}");
-    assert!(meaning(&again.stdout).starts_with("size: 6.5 x "), "{again:?}");
+    let words = ["show", "rooms.world.yaml", "--height", "0.2", "-o", "rooms.svg"];
+    let again = desk.run(&words);
+    assert_eq!(solids(&told.stdout), solids(&again.stdout), "{told:?}\n{again:?}");
+    assert!(solids(&again.stdout)[0].starts_with("size: 6.5 x "), "{again:?}");
+    assert!(solids(&again.stdout)[1].starts_with("layer walls: "), "{again:?}");
     let twice = desk.run(&["import", "rooms.yaml", "-o", "rooms.world.yaml"]);
     assert_eq!(
         (twice.code, twice.stderr.as_str()),

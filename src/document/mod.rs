@@ -11,6 +11,7 @@ pub(crate) mod mutation;
 mod node;
 mod reader;
 mod schema_check;
+pub mod sdf;
 mod secret;
 pub mod xml;
 

@@ -145,6 +145,11 @@ impl<'s> Faults<'s> {
         Self { source, list: FaultList::default() }
     }
 
+    /// Returns the document that they are of.
+    pub fn source(&self) -> &'s Source {
+        self.source
+    }
+
     /// Returns whether one of the faults makes the document unusable.
     pub fn any_error(&self) -> bool {
         self.list.any_error()

@@ -16,11 +16,13 @@ pub(super) fn limits(
 ) -> Vec<String> {
     let experiment = &plan.experiment;
     let mut limits = experiment.limits.clone();
-    limits.push(
-        "Simulated in two dimensions by Reenact's own simulator, with robots and worlds as sealed here; the paper's runs \
-         used other software."
-            .to_owned(),
-    );
+    let simulated = "Simulated in two dimensions by Reenact's own simulator, with robots and worlds as sealed here";
+    // Who re-enacts nobody's study is not compared with anybody's software.
+    limits.push(if experiment.cite.is_some() || !experiment.published.is_empty() {
+        format!("{simulated}; the paper's runs used other software.")
+    } else {
+        format!("{simulated}.")
+    });
     if !experiment.overrides.is_empty() {
         limits.push(format!(
             "Not the manifest as written: {} from the command line.",
@@ -196,6 +198,16 @@ mod tests {
             "1 verdict compares runs of which some never reached the measure: see their details.",
         ];
         assert_eq!(limits, expected);
+    }
+
+    #[test]
+    fn a_study_of_nobody_s_paper_is_not_compared_with_one() {
+        let (_, mut plan, _) = quickstart();
+        plan.experiment.cite = None;
+        plan.experiment.published.clear();
+        let limits = limits(&plan, &[], &[], &[], &[]);
+        assert!(limits.iter().any(|limit| limit.ends_with("worlds as sealed here.")), "{limits:?}");
+        assert!(limits.iter().all(|limit| !limit.contains("paper")), "{limits:?}");
     }
 
     /// Checks that a partial run draws what it has, and nothing where it has nothing.

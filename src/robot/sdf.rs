@@ -8,6 +8,7 @@ mod frames;
 use super::description::ShapeKind;
 use super::description::parts::{Collision, Geometry, Joint, Mounted, Parts, other_form};
 use super::urdf;
+use crate::document::sdf;
 use crate::document::xml::{self, Faults};
 use crate::geometry::Placement;
 use frames::Frames;
@@ -102,6 +103,19 @@ impl<'a, 'i> Reader<'_, 'a, 'i, '_> {
         }
     }
 
+    /// Returns where the frame `of` is, that the pose of `node` on the link `link` names; a fault where there is none.
+    fn named(&mut self, node: Node<'a, 'i>, link: &str, of: &str) -> Option<Placement> {
+        let scope = link.rsplit_once("::").map_or("", |(scope, _)| scope);
+        let name = if scope.is_empty() { of.to_owned() } else { format!("{scope}::{of}") };
+        if !self.frames.has(&name) {
+            let message = format!("a collision on `{link}` is relative to an unknown frame `{of}`");
+            let fault = self.faults.at(node, message);
+            self.faults.push(fault);
+            return None;
+        }
+        self.frames.placement(&name, self.faults)
+    }
+
     fn link(&mut self, link: Node<'a, 'i>, name: &str) {
         let Some(frame) = self.frames.placement(name, self.faults) else { return };
         let mass = xml::descend(link, "inertial/mass");
@@ -114,14 +128,18 @@ impl<'a, 'i> Reader<'_, 'a, 'i, '_> {
         for node in xml::elements(link) {
             match node.tag_name().name() {
                 "collision" => {
-                    let Some(pose) = frames::pose(node, self.faults) else { continue };
+                    let sdf::Pose { frame: of, placement } = sdf::pose(node, self.faults);
+                    let Some(within) = of.map_or(Some(frame), |of| self.named(node, name, &of))
+                    else {
+                        continue;
+                    };
                     let Some(geometry) = xml::child(node, "geometry") else { continue };
                     let Some(geometry) = self.geometry(geometry) else { continue };
                     self.parts.collisions.push(Collision {
                         node,
                         link: name.to_owned(),
                         geometry,
-                        placement: frame.compose(&pose),
+                        placement: within.compose(&placement),
                     });
                 }
                 "sensor" => {

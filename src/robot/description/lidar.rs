@@ -2,7 +2,7 @@
 
 use super::sensors::Sensor;
 use crate::document::xml::{self, Faults};
-use crate::geometry::{Placement, Pose};
+use crate::geometry::Pose;
 use crate::robot::Lidar;
 use roxmltree::Node;
 use std::f64::consts::TAU;
@@ -25,13 +25,6 @@ pub(super) fn glance(sensor: Node<'_, '_>) -> Glance {
     };
     let angle = number("min_angle").zip(number("max_angle")).map(|(min, max)| max - min);
     Glance { samples: number("samples").unwrap_or(0.0), angle: angle.unwrap_or(0.0) }
-}
-
-/// Returns the pose of a sensor on its link, where it can be read.
-pub(super) fn glance_pose(sensor: Node<'_, '_>) -> Placement {
-    let written = xml::child(sensor, "pose").map(xml::text).unwrap_or_default();
-    let numbers: Vec<f64> = written.split_whitespace().filter_map(|n| n.parse().ok()).collect();
-    numbers.try_into().map_or(Placement::IDENTITY, Placement::from_xyz_rpy)
 }
 
 /// Returns what holds a scanner's beams, however old or new its format.

@@ -6,8 +6,8 @@
 
 use super::parts::{Mounted, Parts};
 use super::{Request, amend, asked_scanner, camera, lidar};
-use crate::document::suggestion;
 use crate::document::xml::{self, Faults};
+use crate::document::{sdf, suggestion};
 use crate::geometry::Placement;
 use crate::robot::{Compass, Lidar, LogicalCamera};
 use crate::units::{TICKS_PER_SECOND, Tick};
@@ -142,10 +142,12 @@ fn choose<'p, 'a, 'i>(
         }
         return found.copied();
     }
+    let source = faults.source();
     let unfit = |mounted: &Mounted<'a, 'i>| -> Option<Unfit> {
         let beams = lidar::glance(mounted.node);
         let link = mounted.link.unwrap_or(Placement::IDENTITY);
-        let pose = lidar::glance_pose(mounted.node);
+        // What is wrong with it is told when it is read.
+        let pose = sdf::pose(mounted.node, &mut Faults::new(source)).placement;
         if link.compose(&pose).rotation[2][2].abs() < LEVEL {
             return Some(Unfit::Tilted);
         }
@@ -229,11 +231,13 @@ impl<'a, 'i> Sensor<'a, 'i> {
         plane: &str,
         faults: &mut Faults<'_>,
     ) -> Option<Placement> {
-        let within = match xml::child(self.node, "pose").filter(|pose| !xml::text(*pose).is_empty())
-        {
-            Some(pose) => Placement::from_xyz_rpy(faults.numbers(pose)?),
-            None => Placement::IDENTITY,
-        };
+        let sdf::Pose { frame, placement: within } = sdf::pose(self.node, faults);
+        if let Some(frame) = frame {
+            let message = format!("the pose of {} is relative to `{frame}`", self.title());
+            let fault = faults.at(self.node, message);
+            faults.push(fault.label("expected one in the frame of its link"));
+            return None;
+        }
         let placement = self.link.compose(&within);
         let up = placement.rotation[2][2];
         // A scanner that hangs upside down scans a level plane all the same.

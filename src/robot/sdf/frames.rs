@@ -1,8 +1,8 @@
 //! Where links, joints and frames of a model are: each by a pose relative to another.
 
 use super::NOWHERE;
-use crate::document::suggestion;
 use crate::document::xml::{self, Faults};
+use crate::document::{sdf, suggestion};
 use crate::geometry::Placement;
 use roxmltree::Node;
 use std::collections::BTreeMap;
@@ -47,23 +47,27 @@ impl<'a, 'i> Frames<'a, 'i> {
                 "link" | "model" => "",
                 _ => continue,
             };
-            let written = xml::child(node, "pose").and_then(|pose| pose.attribute("relative_to"));
-            let within = match written.filter(|to| !to.is_empty()).unwrap_or(default) {
+            let sdf::Pose { frame, placement } = sdf::pose(node, faults);
+            let within = match frame.as_deref().unwrap_or(default) {
                 "" => own.clone(),
                 other => format!("{prefix}{other}"),
             };
-            let pose = pose(node, faults).unwrap_or(NOWHERE);
             let name = if kind == "model" {
                 format!("{prefix}{name}::{MODEL}")
             } else {
                 format!("{prefix}{name}")
             };
-            self.0.insert(name, Frame { node, pose, within: Some(within) });
+            self.0.insert(name, Frame { node, pose: placement, within: Some(within) });
             if kind == "model" && depth > 0 {
                 let prefix = format!("{prefix}{}::", node.attribute("name").unwrap_or_default());
                 self.collect(node, &prefix, depth - 1, faults);
             }
         }
+    }
+
+    /// Returns whether there is a frame `name`.
+    pub(super) fn has(&self, name: &str) -> bool {
+        self.0.contains_key(name)
     }
 
     /// Returns the placement of the frame `name` in the robot's; a fault where it is relative to nothing.
@@ -91,36 +95,4 @@ impl<'a, 'i> Frames<'a, 'i> {
         faults.push(fault.label("expected frames that lead to the model's own"));
         None
     }
-}
-
-/// Returns the pose that `node` states; `None` with a fault where it is malformed.
-pub(super) fn pose(node: Node<'_, '_>, faults: &mut Faults<'_>) -> Option<Placement> {
-    let Some(pose) = xml::child(node, "pose").filter(|pose| !xml::text(*pose).is_empty()) else {
-        return Some(NOWHERE);
-    };
-    if pose.attribute("rotation_format") == Some("quat_xyzw") {
-        let [x, y, z, quaternion @ ..] = faults.numbers::<7>(pose)?;
-        let length = quaternion.iter().map(|part| part * part).sum::<f64>().sqrt();
-        if length < 1e-9 {
-            let fault = faults.at(pose, "a quaternion of zeros is no rotation");
-            faults.push(fault);
-            return None;
-        }
-        let [i, j, k, r] = quaternion.map(|part| part / length);
-        return Some(Placement {
-            translation: [x, y, z],
-            rotation: [
-                [1.0 - 2.0 * (j * j + k * k), 2.0 * (i * j - k * r), 2.0 * (i * k + j * r)],
-                [2.0 * (i * j + k * r), 1.0 - 2.0 * (i * i + k * k), 2.0 * (j * k - i * r)],
-                [2.0 * (i * k - j * r), 2.0 * (j * k + i * r), 1.0 - 2.0 * (i * i + j * j)],
-            ],
-        });
-    }
-    let mut numbers = faults.numbers::<6>(pose)?;
-    if pose.attribute("degrees") == Some("true") {
-        for angle in &mut numbers[3..] {
-            *angle = angle.to_radians();
-        }
-    }
-    Some(Placement::from_xyz_rpy(numbers))
 }

@@ -109,6 +109,47 @@ error: the SDF file holds no robot
 }
 
 #[test]
+fn a_collision_stands_where_its_frame_is() {
+    let from = "<collision name=\"c\"><pose>0.05 0 0.1 0 0 0</pose>";
+    let read = |frame: &str| {
+        let to = format!("<collision name='c'><pose relative_to='{frame}'>0.05 0 0.1 0 0 0</pose>");
+        urdf::read(&Source::new("c.sdf", CRATE.replacen(from, &to, 1)))
+    };
+    let (robot, _) = read("scanner").unwrap();
+    let bounds = robot.footprint.bounds();
+    // The scanner's frame is 0.2 m ahead, and its heading of 90 rad turns the box.
+    assert!((f64::midpoint(bounds.min.x, bounds.max.x) - 0.2).abs() < 0.06, "{bounds:?}");
+    let faults = read("sacnner").unwrap_err();
+    assert!(
+        faults.iter().any(|f| {
+            f.message == "a collision on `base` is relative to an unknown frame `sacnner`"
+        }),
+        "{faults:?}"
+    );
+}
+
+#[test]
+fn a_sensor_s_pose_is_read_as_any_other() {
+    let from = "<pose>0 0 0.05 0 0 0</pose>";
+    let link = "<pose relative_to=\"deck\">0.2 0 0 0 0 90</pose>";
+    let read = |pose: &str| {
+        let text = CRATE.replacen(from, pose, 1).replacen(link, "<pose>0.2 0 0.3 0 0 0</pose>", 1);
+        urdf::read(&Source::new("c.sdf", text))
+    };
+    let heading = |pose: &str| {
+        let (robot, _) = read(pose).unwrap();
+        robot.lidar.unwrap().mount.heading.to_degrees()
+    };
+    assert!((heading("<pose degrees='true'>0 0 0.05 0 0 90</pose>") - 90.0).abs() < 1e-9);
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    let quaternion = format!("<pose rotation_format='quat_xyzw'>0 0 0 0 0 {half} {half}</pose>");
+    assert!((heading(&quaternion) - 90.0).abs() < 1e-9);
+    let faults = read("<pose relative_to='deck'>0 0 0.05 0 0 0</pose>").unwrap_err();
+    let said = "the pose of range scanner `lidar` is relative to `deck`";
+    assert!(faults.iter().any(|fault| fault.message == said), "{faults:?}");
+}
+
+#[test]
 fn quaternions_and_degrees_are_rotations() {
     let heading = |pose: &str| {
         let from = "<pose relative_to=\"deck\">0.2 0 0 0 0 90</pose>";

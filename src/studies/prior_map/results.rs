@@ -46,8 +46,12 @@ impl CoverageCurve {
     ) -> Option<Drawn> {
         let tables: Vec<_> = coverage_tables(tables).into_iter().map(|(_, table)| table).collect();
         let chart = findings.coverage_figure(title, self, &tables);
-        let caption = "Median of the trials with a band from the 10th to the 90th percentile; hollow markers are the paper's \
-                       means with one standard deviation.";
+        let caption = if tables.iter().any(|table| table.published.is_some()) {
+            "Median of the trials with a band from the 10th to the 90th percentile; hollow markers are the paper's \
+             means with one standard deviation."
+        } else {
+            "Median of the trials with a band from the 10th to the 90th percentile."
+        };
         (!chart.is_empty())
             .then(|| Drawn::new(("Line chart", title), chart.to_svg(), chart.in_words(), caption))
     }
@@ -227,6 +231,7 @@ fn value_at(run: &[(f64, f64)], x: f64) -> f64 {
     run.iter().take_while(|p| p.0 <= x).last().map_or(0.0, |p| p.1)
 }
 
+/// Adds to the cells of a line how far (percent) their means lie from that of the `baseline`; nothing where that is 0.
 fn add_differences(line: &mut [CoverageCell], baseline: Option<&str>) {
     let Some(base) = line.iter().find(|c| Some(c.by.as_str()) == baseline).cloned() else { return };
     // Of nothing there is no percentage: where one look covers all that is asked for, no way was travelled to it.
@@ -237,6 +242,35 @@ fn add_differences(line: &mut [CoverageCell], baseline: Option<&str>) {
         }
         if let (Some(ours), Some(theirs)) = (cell.published, base.published) {
             cell.published_difference_percent = difference(ours.0, theirs.0);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stats::compatibility::Silence;
+
+    #[test]
+    fn of_nothing_there_is_no_percentage() {
+        let cell = |by: &str, mean: f64| CoverageCell {
+            rows: Condition::default(),
+            percent: 50,
+            by: by.to_owned(),
+            trials: 2,
+            ours: Some(Summary::of(&[mean, mean])),
+            difference_percent: None,
+            published: Some((mean, None, None)),
+            published_difference_percent: None,
+            agreement: Agreement::Silent(Silence::NotPrinted),
+            tests: None,
+        };
+        for (baseline, expected) in [(0.0, None), (4.0, Some(-50.0))] {
+            let mut line = [cell("none", baseline), cell("plan", 2.0)];
+            add_differences(&mut line, Some("none"));
+            let found = (line[1].difference_percent, line[1].published_difference_percent);
+            assert_eq!(found, (expected, expected));
+            assert_eq!(line[0].difference_percent, None, "the baseline itself");
         }
     }
 }

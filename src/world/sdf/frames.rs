@@ -2,50 +2,11 @@
 //! models of one scope are frames of each other, those of a nested model by `model::name`.
 
 use super::model::Model;
-use crate::document::xml::{self, Faults};
-use crate::document::{known_or_near, quoted};
+use crate::document::known_or_near;
+use crate::document::sdf::Pose;
 use crate::geometry::Placement;
-use roxmltree::Node;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
-
-/// A pose as written.
-#[derive(Debug, Clone)]
-pub(super) struct Pose {
-    /// What it is relative to; `None` where it does not say.
-    pub(super) frame: Option<String>,
-    pub(super) placement: Placement,
-}
-
-/// Reads the `<pose>` of an element: identity where it has none, or a fault where it cannot be read.
-pub(super) fn pose(node: Node<'_, '_>, faults: &mut Faults<'_>) -> Pose {
-    let none = Pose { frame: None, placement: Placement::IDENTITY };
-    let Some(pose) = xml::child(node, "pose") else { return none };
-    // Versions before 1.7 say `frame`.
-    let frame = ["relative_to", "frame"].iter().find_map(|name| pose.attribute(*name));
-    let frame = frame.filter(|name| !name.is_empty()).map(str::to_owned);
-    let degrees = pose.attribute("degrees").is_some_and(|v| matches!(v.trim(), "true" | "1"));
-    let placement = match pose.attribute("rotation_format").unwrap_or("euler_rpy") {
-        _ if xml::text(pose).is_empty() => Placement::IDENTITY,
-        "euler_rpy" => match faults.numbers::<6>(pose) {
-            Some([x, y, z, angles @ ..]) => {
-                let [r, p, w] = if degrees { angles.map(f64::to_radians) } else { angles };
-                Placement::from_xyz_rpy([x, y, z, r, p, w])
-            }
-            None => Placement::IDENTITY,
-        },
-        "quat_xyzw" => match faults.numbers::<7>(pose) {
-            Some([x, y, z, turn @ ..]) => Placement::from_xyz_quaternion([x, y, z], turn),
-            None => Placement::IDENTITY,
-        },
-        other => {
-            let fault = faults.at(pose, format!("unknown rotation format `{}`", quoted(other)));
-            faults.push(fault.label("expected euler_rpy or quat_xyzw"));
-            Placement::IDENTITY
-        }
-    };
-    Pose { frame, placement }
-}
 
 /// Why a frame has no place.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -1,12 +1,12 @@
 //! `<include>`: a model that is described in a file of its own.
 
 use super::files::{FilePath, Root, Unplaced, last_name};
+use super::known_version;
 use super::model::{Lack, Nested, nested, says_yes};
 use super::notes::{Kind, Place};
 use super::reader::{File, Reader};
-use super::{frames, known_version};
-use crate::document::Source;
 use crate::document::xml::{self, Faults};
+use crate::document::{Source, sdf};
 use roxmltree::Node;
 
 /// What an include comes to.
@@ -54,7 +54,7 @@ pub(super) fn read(
         nested.fixed = fixed;
     }
     if xml::child(include, "pose").is_some() {
-        nested.pose = frames::pose(include, faults);
+        nested.pose = sdf::pose(include, faults);
     }
     if let Some(frame) = xml::child(include, "placement_frame") {
         xml::text(frame).clone_into(&mut nested.placement_frame);

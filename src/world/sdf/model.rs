@@ -1,11 +1,12 @@
 //! Models as they are described: links with their collisions, and models within, each placed in the model's own frame.
 //! A description is read once, however often a world includes it.
 
-use super::frames::{Frames, Pose, Unplaceable, pose};
+use super::frames::{Frames, Unplaceable};
 use super::geometry::{self, Shape};
 use super::include;
 use super::notes::Place;
 use super::reader::{File, Reader};
+use crate::document::sdf::{Pose, pose};
 use crate::document::xml::{self, Faults};
 use crate::document::{MOST_FAULTS, quoted};
 use crate::geometry::Placement;

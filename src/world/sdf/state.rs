@@ -1,6 +1,6 @@
 //! `<state>`: where the models of a saved world stand, whatever their descriptions say.
 
-use super::frames;
+use crate::document::sdf;
 use crate::document::xml::{self, Faults};
 use crate::geometry::Placement;
 use roxmltree::Node;
@@ -20,7 +20,7 @@ impl<'a, 'i> State<'a, 'i> {
     /// Reads the state of the world, or of a model.
     pub(super) fn read(node: Option<Node<'a, 'i>>, faults: &mut Faults<'_>) -> Self {
         let Some(node) = node else { return Self::default() };
-        let placement = xml::child(node, "pose").map(|_| frames::pose(node, faults).placement);
+        let placement = xml::child(node, "pose").map(|_| sdf::pose(node, faults).placement);
         let scale = xml::child(node, "scale").and_then(|n| {
             let scale = faults.numbers::<3>(n)?;
             if scale.iter().all(|factor| *factor > 0.0) {
@@ -54,6 +54,6 @@ impl<'a, 'i> State<'a, 'i> {
     /// Returns where the link `name` is in the world, if that is said.
     pub(super) fn link(&self, name: &str, faults: &mut Faults<'_>) -> Option<Placement> {
         let node = *self.parts.get(&("link", name))?;
-        xml::child(node, "pose").map(|_| frames::pose(node, faults).placement)
+        xml::child(node, "pose").map(|_| sdf::pose(node, faults).placement)
     }
 }
