@@ -69,3 +69,35 @@ wheel-diameter-m: 0.1}}` (numbers of its wheels' joints)
     assert!(answer.stdout.contains(shown), "{}", answer.stdout);
     assert!(answer.stdout.contains("footprint: 8 corners, 0.4 x 0.52 m"), "{}", answer.stdout);
 }
+
+/// What a file names by a path of some machine is read where whoever runs the study says so, and belongs to the bundle then.
+#[test]
+fn a_mesh_elsewhere_is_read_only_where_it_is_allowed() {
+    let block = "robot: {file: ros/cart/urdf/cart.urdf.xacro, packages: {cart: ros/cart}, gazebo: [ros/cart/urdf/cart.gazebo],
+  drive: {max-linear-m-s: 0.6}, height-m: 0.25}";
+    let sandbox = with_cart(&TINY.replace("robot: robots/kobuki.urdf", block));
+    let mesh = sandbox.path("opt/body.stl");
+    fs::create_dir_all(sandbox.path("opt")).unwrap();
+    fs::rename(sandbox.path("ros/cart/meshes/body.stl"), &mesh).unwrap();
+    let urdf = "ros/cart/urdf/cart.urdf.xacro";
+    let text = fs::read_to_string(sandbox.path(urdf)).unwrap();
+    let uri = format!("file://{}", mesh.display());
+    sandbox.write(urdf, text.replace("package://cart/meshes/body.stl", &uri));
+
+    let label = "a path from the root of some machine is not followed without `--allow FOLDER`";
+    for (allowed, told) in [("ros", true), ("opt", false)] {
+        let answer = sandbox.run(&["check", "tiny.yaml", "--allow", allowed]);
+        assert_eq!(answer.code, 0, "{answer:?}");
+        assert_eq!(answer.stderr.contains(label), told, "--allow {allowed}: {}", answer.stderr);
+    }
+
+    let words = ["run", "tiny.yaml", "--trials", "1", "--only", "prior=none", "--allow", "opt"];
+    let answer = sandbox.run(&words);
+    assert_eq!(answer.code, 0, "{answer:?}");
+    let bundle = answer.last_line().to_owned();
+    fs::remove_dir_all(sandbox.path("opt")).unwrap();
+    let answer = sandbox.run(&["verify", &bundle, "--level", "5", "--format", "json"]);
+    assert_eq!(answer.code, 0, "{answer:?}");
+    let report: serde_json::Value = serde_json::from_str(&answer.stdout).unwrap();
+    assert_eq!(report["reached"], 5, "{report:#}");
+}

@@ -8,6 +8,7 @@ pub(super) use bundles::{
 };
 pub(super) use studies::{CheckArgs, InferArgs, LockArgs, PlanArgs, RunArgs, VaryArgs};
 
+use super::load::Given;
 use clap::{Args, CommandFactory as _, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -101,6 +102,16 @@ pub(super) struct SelectArgs {
     /// Replace a value of the manifest (repeatable), as in `--set world.file=PATH`
     #[arg(long, value_name = "PATH=VALUE")]
     pub(super) set: Vec<String>,
+    /// A folder from which files of robots and worlds may be read that they name by a path out of theirs (repeatable)
+    #[arg(long, value_name = "FOLDER")]
+    pub(super) allow: Vec<PathBuf>,
+}
+
+impl SelectArgs {
+    /// Returns what is said of the manifest itself.
+    pub(super) fn given(&self) -> Given<'_> {
+        Given { set: &self.set, allow: &self.allow }
+    }
 }
 
 #[derive(Debug, Args)]
@@ -127,6 +138,9 @@ pub(super) struct ShowArgs {
     /// A folder that holds the folders of a Gazebo world's models (repeatable)
     #[arg(long, value_name = "FOLDER", conflicts_with = "generate")]
     pub(super) model_path: Vec<String>,
+    /// A folder from which files of robots and worlds may be read that they name by a path out of theirs (repeatable)
+    #[arg(long, value_name = "FOLDER", conflicts_with = "generate")]
+    pub(super) allow: Vec<PathBuf>,
     /// An argument of a robot's xacro (repeatable)
     #[arg(long, value_name = "NAME=VALUE", conflicts_with = "generate")]
     pub(super) argument: Vec<String>,
@@ -173,6 +187,9 @@ pub(super) struct ImportArgs {
     /// A folder that holds folders of models (repeatable)
     #[arg(long, value_name = "FOLDER")]
     pub(super) model_path: Vec<String>,
+    /// A folder from which files of robots and worlds may be read that they name by a path out of theirs (repeatable)
+    #[arg(long, value_name = "FOLDER")]
+    pub(super) allow: Vec<PathBuf>,
     /// What the unknown cells of a map are
     #[arg(long, value_enum, value_name = "AS", default_value = "occupied")]
     pub(super) unknown: UnknownArg,
@@ -263,6 +280,9 @@ pub(super) struct InitArgs {
     /// The folder of a package that the robot's files name (repeatable)
     #[arg(long, value_name = "NAME=FOLDER", requires = "robot")]
     pub(super) packages: Vec<String>,
+    /// A folder from which files of robots and worlds may be read that they name by a path out of theirs (repeatable)
+    #[arg(long, value_name = "FOLDER")]
+    pub(super) allow: Vec<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -33,14 +33,32 @@ pub(super) struct Loaded {
 /// A manifest that was understood with its warnings, or all faults of one that was not.
 pub(super) type Understood = Result<(Loaded, Vec<Diagnostic>), Vec<Diagnostic>>;
 
-/// Reads and resolves `manifest` with the values of `set` replaced; every fault goes to stderr.
+/// What the command line says of a manifest.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Given<'a> {
+    /// Values to replace, as `PATH=VALUE`.
+    pub(super) set: &'a [String],
+    /// Folders from which files may be read that robots and worlds name by a path out of theirs.
+    pub(super) allow: &'a [PathBuf],
+}
+
+impl Given<'_> {
+    /// Returns whether `path` lies in a folder that is allowed, whichever links lead there.
+    pub(super) fn allows(&self, path: &Path) -> bool {
+        let Ok(real) = path.canonicalize() else { return false };
+        let mut allowed = self.allow.iter().filter_map(|folder| folder.canonicalize().ok());
+        allowed.any(|folder| real.starts_with(folder))
+    }
+}
+
+/// Reads and resolves `manifest` as `given` changes it; every fault goes to stderr.
 pub(super) fn manifest(
     manifest: &Path,
-    set: &[String],
+    given: Given<'_>,
     calibrator: Calibrator<'_>,
     terminal: Terminal,
 ) -> Result<Loaded, Failure> {
-    let (found, mut faults) = match resolved(manifest, set, calibrator, terminal)? {
+    let (found, mut faults) = match resolved(manifest, given, calibrator, terminal)? {
         Ok((loaded, warnings)) => (Some(loaded), warnings),
         Err(faults) => (None, faults),
     };
@@ -59,21 +77,22 @@ pub(super) fn manifest(
 /// Reads and resolves `manifest` in the same way; its faults, or warnings, are returned and told nobody.
 pub(super) fn resolved(
     manifest: &Path,
-    set: &[String],
+    given: Given<'_>,
     calibrator: Calibrator<'_>,
     terminal: Terminal,
 ) -> Result<Understood, Failure> {
-    understood(text(manifest)?, manifest, set, calibrator, terminal)
+    understood(text(manifest)?, manifest, given, calibrator, terminal)
 }
 
 /// Resolves a manifest that is about to be replaced in `manifest`; its faults go to stderr, warnings nowhere.
 pub(super) fn draft(
     manifest: &Path,
     text: String,
+    given: Given<'_>,
     terminal: Terminal,
 ) -> Result<Experiment, Failure> {
     let source = Source::new(manifest.display().to_string(), text);
-    match understood(source, manifest, &[], Calibrator::StandIn, terminal)? {
+    match understood(source, manifest, given, Calibrator::StandIn, terminal)? {
         Ok((loaded, _)) => Ok(loaded.experiment),
         Err(mut faults) => {
             faults.sort_by_key(|f| std::cmp::Reverse(f.severity));
@@ -86,7 +105,7 @@ pub(super) fn draft(
 fn understood(
     source: Source,
     manifest: &Path,
-    set: &[String],
+    given: Given<'_>,
     calibrator: Calibrator<'_>,
     terminal: Terminal,
 ) -> Result<Understood, Failure> {
@@ -96,8 +115,8 @@ fn understood(
         let inputs = folder.join(format::INPUTS);
         terminal.note(&format!("inputs are those that the bundle holds in `{}`", inputs.display()));
     }
-    let folder = Folder { path: folder, sealed, calibrator, terminal };
-    Ok(manifest::resolve(&source, set, &folder)
+    let folder = Folder { path: folder, sealed, given, calibrator, terminal };
+    Ok(manifest::resolve(&source, given.set, &folder)
         .map(|(experiment, warnings)| (Loaded { source, experiment }, warnings)))
 }
 
@@ -215,6 +234,7 @@ struct Folder<'a> {
     path: PathBuf,
     /// Where the inputs of an unpacked bundle are.
     sealed: BTreeMap<String, PathBuf>,
+    given: Given<'a>,
     calibrator: Calibrator<'a>,
     terminal: Terminal,
 }
@@ -233,6 +253,12 @@ impl Inputs for Folder<'_> {
                 .or_else(|here| read(beside).map_err(|_| Unread::Anywhere(here))),
         }
         .map_err(InputError::other)
+    }
+
+    fn follows(&self, as_written: &str, written_in: WrittenIn) -> bool {
+        let here = written_in == WrittenIn::CommandLine && self.given.allows(Path::new(as_written));
+        here || self.sealed.contains_key(as_written)
+            || self.given.allows(&self.path.join(as_written))
     }
 
     fn calibrate(

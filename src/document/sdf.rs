@@ -26,6 +26,26 @@ pub fn pose(node: Node<'_, '_>, faults: &mut Faults<'_>) -> Pose {
     Pose { frame, placement: placement(pose, faults).unwrap_or(Placement::IDENTITY) }
 }
 
+/// Returns the `<pose>` elements of a document that turn by more than once around: written in degrees, as it seems, where
+/// radians are read.
+pub fn overturned<'a, 'i>(root: Node<'a, 'i>) -> impl Iterator<Item = Node<'a, 'i>> {
+    root.descendants().filter(|node| {
+        node.has_tag_name("pose")
+            && node.attribute("degrees").is_none()
+            && node.attribute("rotation_format").is_none()
+            && xml::text(*node)
+                .split_ascii_whitespace()
+                .skip(3)
+                .filter_map(|word| word.parse().ok())
+                .any(is_overturn)
+    })
+}
+
+/// Returns whether an angle (radians) is more than once around.
+pub fn is_overturn(angle: f64) -> bool {
+    angle.abs() > std::f64::consts::TAU + 1e-3
+}
+
 /// Returns the placement that a `<pose>` says; `None` with a fault where it is malformed.
 fn placement(pose: Node<'_, '_>, faults: &mut Faults<'_>) -> Option<Placement> {
     let format = pose.attribute("rotation_format").unwrap_or("euler_rpy");
@@ -90,6 +110,17 @@ mod tests {
         }
         let (none, faults) = read("relative_to=''", " ");
         assert_eq!((none.frame, none.placement, faults.len()), (None, Placement::IDENTITY, 0));
+    }
+
+    #[test]
+    fn only_angles_in_radians_turn_by_more_than_once_around() {
+        let source = Source::new(
+            "a.sdf",
+            "<m><pose>0 0 0 0 0 90</pose><pose degrees='1'>0 0 0 0 0 90</pose><pose>400 0 0 0 0 6.28319</pose></m>",
+        );
+        let document = xml::parse(&source, 1000).unwrap();
+        let found: Vec<&str> = overturned(document.root_element()).map(xml::text).collect();
+        assert_eq!(found, ["0 0 0 0 0 90"]);
     }
 
     #[test]

@@ -141,6 +141,11 @@ impl Inputs for OfCalibration<'_, '_> {
         files.read(&path, self.written_in, InputKind::Calibration).map(|bytes| bytes.to_vec())
     }
 
+    fn follows(&self, as_written: &str, _: WrittenIn) -> bool {
+        let path = joined(&self.manifest, as_written);
+        self.library.borrow().files.follows(&path, self.written_in)
+    }
+
     fn calibrates(&self) -> Option<&str> {
         Some(&self.manifest)
     }

@@ -133,6 +133,11 @@ impl Models for Shelf<'_, '_> {
         self.path_of(path).0
     }
 
+    fn follows(&mut self, path: &FilePath) -> bool {
+        let (path, written_in) = self.path_of(path);
+        self.library.files.follows(&path, written_in)
+    }
+
     fn stand_in(&mut self, uri: &str) -> Option<Arc<[Solid]>> {
         if !self.stand_ins.is_empty() {
             self.told.asked.insert(uri.to_owned());

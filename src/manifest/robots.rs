@@ -66,6 +66,10 @@ impl Files for Shelf<'_, '_> {
         Ok(Source::new(name, text))
     }
 
+    fn follows(&mut self, file: &FilePath) -> bool {
+        self.library.files.follows(&normalised(&file.path), self.written_in(file))
+    }
+
     fn corners(&mut self, file: &FilePath) -> Result<Vec<[f64; 3]>, Unfound> {
         let (path, bytes) = self.bytes(file)?;
         match mesh::read(&path, &bytes) {

@@ -234,7 +234,7 @@ impl Reader<'_, '_> {
     /// Returns the corners of the mesh `uri`, or why there are none and what to do.
     fn corners(&mut self, uri: &str) -> Result<Vec<[f64; 3]>, (String, String)> {
         const OR: &str = "or the body as `footprint: {radius-m: ...}`";
-        match self.places.find(uri, &self.places.own) {
+        match self.places.find(uri, &self.places.own, self.files) {
             Ok(file) => match self.files.corners(&file) {
                 Ok(mut corners) => {
                     // Triangles share most of theirs.

@@ -42,6 +42,12 @@ pub trait Files {
     /// # Errors
     /// Why there are none.
     fn corners(&mut self, file: &FilePath) -> Result<Vec<[f64; 3]>, Unfound>;
+
+    /// Returns whether `file` is read though it lies outside the folders that whoever reads the robot names.
+    fn follows(&mut self, file: &FilePath) -> bool {
+        let _ = file;
+        false
+    }
 }
 
 /// No file is at hand but the robot's own.
@@ -63,9 +69,11 @@ impl Files for NoFiles {
 pub(super) enum Unplaced {
     #[error("no folder is given for the package `{0}`")]
     NoFolder(String),
-    #[error("its path leads out of the folders that the manifest names")]
+    #[error(
+        "its path leads out of the folders that the manifest names, where none of `--allow FOLDER` is"
+    )]
     LeadsOut,
-    #[error("a path from the root of some machine is not followed")]
+    #[error("a path from the root of some machine is not followed without `--allow FOLDER`")]
     FromRoot,
     #[error("nothing is fetched by `{0}://`")]
     Scheme(String),
@@ -105,31 +113,44 @@ impl Places<'_> {
             .ok_or_else(|| Unplaced::NoFolder(name.to_owned()))
     }
 
-    /// Returns where the file lies that `beside` names by `uri`.
-    pub(super) fn find(&self, uri: &str, beside: &FilePath) -> Result<FilePath, Unplaced> {
+    /// Returns where the file lies that `beside` names by `uri`. Outside the folders that are named only what `files` follow is
+    /// found.
+    pub(super) fn find(
+        &self,
+        uri: &str,
+        beside: &FilePath,
+        files: &mut dyn Files,
+    ) -> Result<FilePath, Unplaced> {
+        let mut outside = |path: String, rooted, why| {
+            let file = FilePath { path, rooted };
+            if files.follows(&file) { Ok(file) } else { Err(why) }
+        };
         let uri = uri.trim();
         let bare = uri.strip_prefix("file://").unwrap_or(uri);
         let package = bare.strip_prefix("package://").or_else(|| bare.strip_prefix("model://"));
         if let Some(path) = package {
             let (name, rest) = path.split_once('/').unwrap_or((path, ""));
             let folder = self.folder(name)?;
+            let path = format!("{}/{rest}", folder.path);
             if climbs(rest, 0) {
-                return Err(Unplaced::LeadsOut);
+                return outside(path, folder.rooted, Unplaced::LeadsOut);
             }
-            return Ok(FilePath { path: format!("{}/{rest}", folder.path), rooted: folder.rooted });
+            return Ok(FilePath { path, rooted: folder.rooted });
         }
         if let Some((scheme, _)) = bare.split_once("://") {
             return Err(Unplaced::Scheme(scheme.to_owned()));
         }
         if bare.starts_with('/') {
-            return Err(Unplaced::FromRoot);
+            return outside(bare.to_owned(), beside.rooted, Unplaced::FromRoot);
         }
         let folder = beside.path.rsplit_once('/').map_or("", |(folder, _)| folder);
         let named = folder.split('/').filter(|step| !matches!(*step, "" | "." | "..")).count();
-        if climbs(bare, named) {
-            return Err(Unplaced::LeadsOut);
-        }
+        // A path from the root of a file system names all folders of a machine: only a package beside the file's own is meant.
+        let named = if folder.starts_with('/') { named.min(2) } else { named };
         let path = if folder.is_empty() { bare.to_owned() } else { format!("{folder}/{bare}") };
+        if climbs(bare, named) {
+            return outside(path, beside.rooted, Unplaced::LeadsOut);
+        }
         Ok(FilePath { path, rooted: beside.rooted })
     }
 }
@@ -156,7 +177,8 @@ mod tests {
         let packages = BTreeMap::from([("arm".to_owned(), "../ros/arm/".to_owned())]);
         let own = FilePath { path: "../ros/husky/urdf/h.xacro".to_owned(), rooted: Rooted::Robot };
         let places = Places { own: own.clone(), packages: &packages };
-        let found = |uri: &str| places.find(uri, &own).map(|file| (file.path, file.rooted));
+        let found =
+            |uri: &str| places.find(uri, &own, &mut NoFiles).map(|file| (file.path, file.rooted));
         let robot = |path: &str| Ok((path.to_owned(), Rooted::Robot));
         assert_eq!(found("wheel.xacro"), robot("../ros/husky/urdf/wheel.xacro"));
         assert_eq!(found("../meshes/a.stl"), robot("../ros/husky/urdf/../meshes/a.stl"));
@@ -170,5 +192,41 @@ mod tests {
         assert_eq!(found("file:///etc/passwd"), Err(Unplaced::FromRoot));
         assert_eq!(found("https://a/b"), Err(Unplaced::Scheme("https".to_owned())));
         assert_eq!(found("package://leg/a"), Err(Unplaced::NoFolder("leg".to_owned())));
+    }
+
+    /// Files of which those below `/opt/ros` are allowed.
+    struct OptRos;
+
+    impl Files for OptRos {
+        fn text(&mut self, file: &FilePath) -> Result<Source, Unfound> {
+            NoFiles.text(file)
+        }
+
+        fn corners(&mut self, file: &FilePath) -> Result<Vec<[f64; 3]>, Unfound> {
+            NoFiles.corners(file)
+        }
+
+        fn follows(&mut self, file: &FilePath) -> bool {
+            file.path.starts_with("/opt/ros/")
+        }
+    }
+
+    #[test]
+    fn what_is_allowed_is_followed_and_nothing_else() {
+        let packages = BTreeMap::from([("arm".to_owned(), "/opt/ros/arm".to_owned())]);
+        let own = FilePath { path: "h.urdf".to_owned(), rooted: Rooted::Robot };
+        let places = Places { own: own.clone(), packages: &packages };
+        let found = |uri: &str| places.find(uri, &own, &mut OptRos).map(|file| file.path);
+        assert_eq!(found("file:///opt/ros/b/a.stl"), Ok("/opt/ros/b/a.stl".to_owned()));
+        assert_eq!(found("package://arm/../b/a.stl"), Ok("/opt/ros/arm/../b/a.stl".to_owned()));
+        assert_eq!(found("/etc/passwd"), Err(Unplaced::FromRoot));
+        assert_eq!(found("../a.stl"), Err(Unplaced::LeadsOut));
+        let own = FilePath { path: "/opt/ros/arm/urdf/h.urdf".to_owned(), rooted: Rooted::Robot };
+        let found = |uri: &str| places.find(uri, &own, &mut OptRos).map(|file| file.path);
+        assert!(found("../../leg/a.stl").is_ok());
+        assert!(found("../../../leg/a.stl").is_ok(), "allowed as it is written");
+        let found = |uri: &str| places.find(uri, &own, &mut NoFiles).map(|file| file.path);
+        assert!(found("../../leg/a.stl").is_ok());
+        assert_eq!(found("../../../leg/a.stl"), Err(Unplaced::LeadsOut));
     }
 }

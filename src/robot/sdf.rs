@@ -8,6 +8,7 @@ mod frames;
 use super::description::ShapeKind;
 use super::description::parts::{Collision, Geometry, Joint, Mounted, Parts, other_form};
 use super::urdf;
+use crate::document::Diagnostic;
 use crate::document::sdf;
 use crate::document::xml::{self, Faults};
 use crate::geometry::Placement;
@@ -52,6 +53,9 @@ pub(super) fn parts<'a, 'i>(
         let fault = faults.at(model, "<model> without a name");
         faults.push(fault.label("expected an attribute `name`"));
     }
+    for pose in sdf::overturned(model) {
+        faults.push(overturned(faults.at(pose, "a pose turns by more than once around")));
+    }
     let mut frames = Frames::default();
     frames.collect(model, "", MAX_MODELS, faults);
     let mut reader = Reader { frames, parts: &mut parts, faults };
@@ -61,6 +65,11 @@ pub(super) fn parts<'a, 'i>(
         urdf::read_block(block, &mut parts, faults);
     }
     Some(parts)
+}
+
+/// Completes the warning of angles that seem to be degrees.
+pub(super) fn overturned(fault: Diagnostic) -> Diagnostic {
+    fault.label("angles are in radians: are these degrees?").warning()
 }
 
 struct Reader<'r, 'a, 'i, 's> {

@@ -133,6 +133,11 @@ impl Inputs for Sealed<'_> {
         bytes.ok_or_else(|| InputError::other(NotSealed))
     }
 
+    /// What is in the bundle was allowed when it was sealed, and nothing else is at hand.
+    fn follows(&self, as_written: &str, _: WrittenIn) -> bool {
+        self.0.input(as_written).is_some()
+    }
+
     fn calibrate(&self, _: &Experiment, sealed_as: &str) -> Result<CalibrationTrials, InputError> {
         self.read(sealed_as, WrittenIn::Calibration).map(CalibrationTrials::Csv)
     }
@@ -167,6 +172,10 @@ impl<'a> Afresh<'a> {
 impl Inputs for Afresh<'_> {
     fn read(&self, as_written: &str, written_in: WrittenIn) -> Result<Vec<u8>, InputError> {
         self.sealed.read(as_written, written_in)
+    }
+
+    fn follows(&self, as_written: &str, written_in: WrittenIn) -> bool {
+        self.sealed.follows(as_written, written_in)
     }
 
     fn calibrate(

@@ -1,6 +1,7 @@
 //! What can be typed about studies: to run, check, plan, lock and vary them.
 
 use super::{DataFormat, Format, SelectArgs};
+use crate::cli::load::Given;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -52,6 +53,16 @@ pub(in crate::cli) struct CheckArgs {
     /// Replace a value of the manifest (repeatable)
     #[arg(long, value_name = "PATH=VALUE")]
     pub(in crate::cli) set: Vec<String>,
+    /// A folder from which files of robots and worlds may be read that they name by a path out of theirs (repeatable)
+    #[arg(long, value_name = "FOLDER")]
+    pub(in crate::cli) allow: Vec<PathBuf>,
+}
+
+impl CheckArgs {
+    /// Returns what is said of the manifests.
+    pub(in crate::cli) fn given(&self) -> Given<'_> {
+        Given { set: &self.set, allow: &self.allow }
+    }
 }
 
 #[derive(Debug, Args)]
@@ -82,6 +93,9 @@ pub(in crate::cli) struct LockArgs {
     /// Neither read nor write the store of finished trials
     #[arg(long)]
     pub(in crate::cli) no_cache: bool,
+    /// A folder from which files of robots and worlds may be read that they name by a path out of theirs (repeatable)
+    #[arg(long, value_name = "FOLDER")]
+    pub(in crate::cli) allow: Vec<PathBuf>,
 }
 
 #[derive(Debug, Args)]
@@ -103,6 +117,9 @@ pub(in crate::cli) struct VaryArgs {
     /// Neither read nor write the store of finished trials
     #[arg(long)]
     pub(in crate::cli) no_cache: bool,
+    /// A folder from which files of robots and worlds may be read that they name by a path out of theirs (repeatable)
+    #[arg(long, value_name = "FOLDER")]
+    pub(in crate::cli) allow: Vec<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -11,7 +11,7 @@ use crate::plan::{Plan, Selection};
 pub(in crate::cli) fn run(args: &CheckArgs, terminal: Terminal) -> Result<Exit, Failure> {
     let mut failures = Vec::new();
     for manifest in &args.manifests {
-        match load::manifest(manifest, &args.set, Calibrator::StandIn, terminal) {
+        match load::manifest(manifest, args.given(), Calibrator::StandIn, terminal) {
             Ok(loaded) => {
                 let experiment = &loaded.experiment;
                 let (conditions, inputs) = (experiment.conditions.len(), experiment.inputs.len());

@@ -62,7 +62,7 @@ fn read(args: &ImportArgs, terminal: Terminal) -> Result<World, Failure> {
         };
         return Ok(solid::world(&stem, &map, unknown));
     }
-    let mut models = shelf(&args.models, &args.model_path, beside)?;
+    let mut models = shelf(&args.models, &args.model_path, &args.allow, beside)?;
     let mut world = show::read_world(&name, &bytes, None, &mut models).map_err(told)?;
     for warning in std::mem::take(&mut world.warnings) {
         terminal.warning(&warning);

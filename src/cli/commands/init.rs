@@ -54,10 +54,15 @@ pub(in crate::cli) fn run(args: &InitArgs, terminal: Terminal) -> Result<Exit, F
         })?;
         load::write(&manifest, text.as_bytes())?;
         // Whatever is wrong is told now, with the file there to be mended.
-        load::manifest(&manifest, &[], Calibrator::StandIn, terminal)?;
+        load::manifest(&manifest, given(args), Calibrator::StandIn, terminal)?;
     }
     terminal.result(&format!("reenact run {}", manifest.display()));
     Ok(Exit::Yes)
+}
+
+/// Returns what is allowed to the files that `args` name.
+fn given(args: &InitArgs) -> load::Given<'_> {
+    load::Given { set: &[], allow: &args.allow }
 }
 
 /// Writes the manifest of the files that `args` name.
@@ -89,7 +94,7 @@ fn of_files(args: &InitArgs, manifest: &Path, terminal: Terminal) -> Result<Stri
     );
     // Its folder has to be there for paths that lead out of it.
     load::write(manifest, draft.as_bytes())?;
-    let read = load::draft(manifest, draft, terminal)?;
+    let read = load::draft(manifest, draft, given(args), terminal)?;
     let Some(condition) = read.conditions.first() else {
         return Err(Failure::failed("a manifest without factors has one condition"));
     };

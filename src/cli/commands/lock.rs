@@ -42,7 +42,8 @@ fn lock_one(
         read(old, terminal)?;
     }
     let execution = Execution::new(args.jobs, args.no_cache, environment)?;
-    let loaded = load::manifest(manifest, &[], execution.calibrator(), terminal)?;
+    let given = load::Given { set: &[], allow: &args.allow };
+    let loaded = load::manifest(manifest, given, execution.calibrator(), terminal)?;
     let plan = Plan::of(loaded.experiment);
     let Executed { records, .. } = execution.execute(&plan, Times::Once, terminal)?;
     let whole = Selection::default();

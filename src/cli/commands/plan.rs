@@ -24,7 +24,7 @@ pub(in crate::cli) fn run(
         Some(_) => Calibrator::Stored(&store),
         None => Calibrator::AtHand(&store, &missing),
     };
-    let loaded = load::manifest(&args.manifest, &args.select.set, calibrator, terminal)?;
+    let loaded = load::manifest(&args.manifest, args.select.given(), calibrator, terminal)?;
     let (plan, _) = load::plan(loaded.experiment, &args.select)?;
     if let Some(wanted) = &args.explain {
         let spec = plan.find(wanted).map_err(Failure::not_understood)?;

@@ -25,12 +25,13 @@ pub(super) fn run(
     let clock = RunClock::start();
     // What a calibration showed may come from the store: the trials that are probed never do.
     let execution = Execution::new(args.jobs, args.no_cache, environment)?;
-    let loaded = load::manifest(manifest, &args.select.set, execution.calibrator(), terminal)?;
+    let loaded = load::manifest(manifest, args.select.given(), execution.calibrator(), terminal)?;
     let first = SelectArgs {
         only: args.select.only.clone(),
         trials: Some(1),
         shard: None,
         set: args.select.set.clone(),
+        allow: args.select.allow.clone(),
     };
     let (plan, selection) = load::plan(loaded.experiment, &first)?;
     let how = if args.twice { Times::Twice } else { Times::Anew };

@@ -76,7 +76,7 @@ fn run_one(
 ) -> Result<(Exit, Suite), Failure> {
     let clock = RunClock::start();
     let execution = Execution::new(args.jobs, args.no_cache, environment)?;
-    let loaded = load::manifest(manifest, &args.select.set, execution.calibrator(), terminal)?;
+    let loaded = load::manifest(manifest, args.select.given(), execution.calibrator(), terminal)?;
     let (plan, selection) = load::plan(loaded.experiment, &args.select)?;
     let how = if args.twice { Times::Twice } else { Times::Once };
     let Executed { records, cached, doubted, times } = execution.execute(&plan, how, terminal)?;

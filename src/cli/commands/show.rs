@@ -25,12 +25,13 @@ fn building(family: FamilyArg, seed: u64) -> Result<(PathBuf, Vec<u8>), Failure>
 }
 
 /// The models of a world: files in folders of the command line, or beside the world.
-struct Shelf {
+struct Shelf<'a> {
     beside: PathBuf,
     folders: Folders,
+    given: load::Given<'a>,
 }
 
-impl Shelf {
+impl Shelf<'_> {
     fn path_of(&self, path: &FilePath) -> PathBuf {
         match path.root {
             Root::World => self.beside.join(&path.path),
@@ -39,7 +40,7 @@ impl Shelf {
     }
 }
 
-impl Models for Shelf {
+impl Models for Shelf<'_> {
     fn folders(&self) -> Folders {
         self.folders.clone()
     }
@@ -54,17 +55,23 @@ impl Models for Shelf {
     fn name(&self, path: &FilePath) -> String {
         self.path_of(path).display().to_string()
     }
+
+    fn follows(&mut self, path: &FilePath) -> bool {
+        self.given.allows(&self.path_of(path))
+    }
 }
 
 /// Returns the models of a world that lies in the folder `beside`: in the folders that `models` give as `NAME=FOLDER`, and in
-/// those of `path`.
-pub(super) fn shelf(
+/// those of `path`; what lies in folders of `allow` may be named by any path.
+pub(super) fn shelf<'a>(
     models: &[String],
     path: &[String],
+    allow: &'a [PathBuf],
     beside: PathBuf,
-) -> Result<impl Models, Failure> {
+) -> Result<impl Models + use<'a>, Failure> {
     let models = pairs(models, "--models: expected NAME=FOLDER")?;
-    Ok(Shelf { beside, folders: Folders { models, path: path.to_vec() } })
+    let given = load::Given { set: &[], allow };
+    Ok(Shelf { beside, folders: Folders { models, path: path.to_vec() }, given })
 }
 
 /// Returns every `NAME=VALUE` of an option by its name; a fault begins with what was `expected`.
@@ -77,21 +84,25 @@ fn pairs(written: &[String], expected: &str) -> Result<BTreeMap<String, String>,
 }
 
 /// The files that a robot names: by paths that lead from where it lies, or from folders of the command line.
-struct RobotShelf;
+struct RobotShelf<'a>(load::Given<'a>);
 
-impl RobotShelf {
+impl RobotShelf<'_> {
     fn bytes(file: &RobotPath) -> Result<Vec<u8>, Unfound> {
         store::read(Path::new(&file.path), load::MOST_INPUT)
             .map_err(|error| Unfound(store::reason(&error)))
     }
 }
 
-impl Files for RobotShelf {
+impl Files for RobotShelf<'_> {
     fn text(&mut self, file: &RobotPath) -> Result<Source, Unfound> {
         match String::from_utf8(Self::bytes(file)?) {
             Ok(text) => Ok(Source::new(file.path.as_str(), text)),
             Err(_) => Err(Unfound("it is not UTF-8 text".to_owned())),
         }
+    }
+
+    fn follows(&mut self, file: &RobotPath) -> bool {
+        self.0.allows(Path::new(&file.path))
     }
 
     fn corners(&mut self, file: &RobotPath) -> Result<Vec<[f64; 3]>, Unfound> {
@@ -121,7 +132,7 @@ fn draw(
     };
     let packages = pairs(&args.models, "--models: expected NAME=FOLDER")?;
     let arguments = pairs(&args.argument, "--argument: expected NAME=VALUE")?;
-    let mut shelf = shelf(&args.models, &args.model_path, beside(file))?;
+    let mut shelf = shelf(&args.models, &args.model_path, &args.allow, beside(file))?;
     let mut world =
         || show::read_world(name, bytes, args.layers.as_deref(), &mut shelf).map_err(told);
     match (args.derive, &args.over) {
@@ -150,8 +161,9 @@ fn draw(
         }
         (None, None) if args.layers.is_some() => Ok(show::draw_world(&world()?, height)),
         (None, None) => {
+            let mut files = RobotShelf(load::Given { set: &[], allow: &args.allow });
             let mut robot =
-                RobotFiles { packages: &packages, arguments: &arguments, files: &mut RobotShelf };
+                RobotFiles { packages: &packages, arguments: &arguments, files: &mut files };
             show::draw(name, bytes, height, &mut shelf, &mut robot, &mut fetch_from(beside(file)))
                 .map_err(told)
         }

@@ -101,7 +101,8 @@ impl Study<'_> {
     /// Reads the experiment with these values replaced.
     fn experiment(&self, set: &[String]) -> Result<Experiment, Failure> {
         let calibrator = self.execution.calibrator();
-        load::manifest(&self.args.manifest, &self.overrides(set), calibrator, self.terminal)
+        let given = load::Given { set: &self.overrides(set), allow: &self.args.allow };
+        load::manifest(&self.args.manifest, given, calibrator, self.terminal)
             .map(|loaded| loaded.experiment)
     }
 

@@ -55,6 +55,11 @@ impl<'a> InputFiles<'a> {
         file.bytes.clone()
     }
 
+    /// Returns whether `path` is read though it leads out of the folders that the manifest names.
+    pub(in crate::manifest) fn follows(&self, path: &str, written_in: WrittenIn) -> bool {
+        self.source.follows(path, written_in)
+    }
+
     /// Notes that the file `path`, which a calibration read, is a `kind`.
     pub(in crate::manifest) fn say(&mut self, path: &str, written_in: WrittenIn, kind: InputKind) {
         if let Some(file) = self.files.get_mut(&(path.to_owned(), written_in)) {

@@ -38,6 +38,13 @@ pub trait Inputs {
     /// Why there are none.
     fn read(&self, as_written: &str, written_in: WrittenIn) -> Result<Vec<u8>, InputError>;
 
+    /// Returns whether `as_written` is followed where a file of a robot or a world names it, though it leads out of the folders
+    /// that the manifest names: a path from the root of a file system, or above the file's own folder.
+    fn follows(&self, as_written: &str, written_in: WrittenIn) -> bool {
+        let _ = (as_written, written_in);
+        false
+    }
+
     /// Returns what the experiment `calibration` showed, one row a trial; in bundles they are sealed as `sealed_as`.
     ///
     /// # Errors

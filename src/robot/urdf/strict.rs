@@ -5,6 +5,7 @@
 //! 3. One link has no parent: the root.
 //! 4. Every link leads to the root: there is no loop.
 
+use crate::document::sdf;
 use crate::document::xml::{self, Faults};
 use crate::document::{quoted, suggestion};
 use roxmltree::{Document, Node};
@@ -75,6 +76,7 @@ pub(super) fn check(document: &Document<'_>, faults: &mut Faults<'_>) -> Option<
         if matches!(name, "link" | "joint") {
             for node in element.descendants().filter(Node::is_element) {
                 check_numbers(node, faults);
+                check_turn(node, faults);
             }
         }
     }
@@ -123,6 +125,15 @@ fn check_macros(document: &Document<'_>, faults: &mut Faults<'_>) {
          `xacro robot.urdf.xacro > robot.urdf` (`pip install xacro` does without ROS)",
     );
     faults.push(fault);
+}
+
+/// Warns of an `rpy` that seems to be in degrees.
+fn check_turn(origin: Node<'_, '_>, faults: &mut Faults<'_>) {
+    let written = origin.attribute("rpy").unwrap_or_default().split_ascii_whitespace();
+    if written.filter_map(|word| word.parse().ok()).any(sdf::is_overturn) {
+        let fault = faults.at(origin, "an origin turns by more than once around");
+        faults.push(super::super::sdf::overturned(fault));
+    }
 }
 
 /// Warns of an axis that does not say which: x, as for whoever reads URDF.

@@ -222,6 +222,17 @@ fn a_chain_of_joints_mounts_the_sensor_and_the_hull_is_the_footprint() {
 }
 
 #[test]
+fn an_origin_in_degrees_is_noticed() {
+    let text = SKID.replacen("rpy=\"0 0 0.5\"", "rpy=\"0 0 90\"", 1);
+    assert_ne!(text, SKID);
+    let (_, warnings) = read(&Source::new("s.urdf", text)).unwrap();
+    let told = warnings.iter().find(|w| w.message.contains("turns")).map(|w| w.render(false));
+    let told = told.unwrap_or_default();
+    assert!(told.starts_with("warning: an origin turns by more than once around\n"), "{told}");
+    assert!(told.ends_with("angles are in radians: are these degrees?\n"), "{told}");
+}
+
+#[test]
 fn faults_say_where_and_what_to_do() {
     assert_eq!(
         changed("<mass value=\"2.4\"/>", "<mass value=\"-2.4\"/>"),

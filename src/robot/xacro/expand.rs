@@ -266,7 +266,7 @@ impl<'r> Expander<'r> {
         }
         let uri = self.written(written, &element.origin)?;
         let beside = self.open.last().unwrap_or(&self.places.own);
-        let file = match self.places.find(&uri, beside) {
+        let file = match self.places.find(&uri, beside, self.files) {
             Ok(file) => file,
             Err(why) => {
                 // A package that is missed may only hold what this robot does not carry: the macros tell.

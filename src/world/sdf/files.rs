@@ -63,6 +63,12 @@ pub trait Models {
         path.path.clone()
     }
 
+    /// Returns whether the file at `path` is read though it lies outside the folders that whoever reads the world names.
+    fn follows(&mut self, path: &FilePath) -> bool {
+        let _ = path;
+        false
+    }
+
     /// Returns the solids that stand for the mesh `uri`, as the world writes it: upright, in the frame of the collision
     /// that names the mesh (m).
     fn stand_in(&mut self, uri: &str) -> Option<Arc<[Solid]>> {
@@ -109,10 +115,10 @@ pub enum Unplaced {
     #[error("")]
     Untold,
     /// It leads out of its folder.
-    #[error("its path leads out of the folder")]
+    #[error("its path leads out of the folder, where none of `--allow FOLDER` is")]
     LeadsOut,
     /// It begins at the root of a file system.
-    #[error("a path from the root of some machine is not followed")]
+    #[error("a path from the root of some machine is not followed without `--allow FOLDER`")]
     FromRoot,
     /// Of its model no folder is given.
     #[error("no folder is given for the model `{0}`")]
@@ -180,16 +186,27 @@ fn spellings(name: &str) -> Vec<String> {
 
 impl Folders {
     /// Returns where the file that `uri` names may lie, the first place first; `beside` is the file in which that is
-    /// written.
+    /// written. Outside the folders that are named only what `models` follow is found.
     ///
     /// # Errors
     /// Why it lies nowhere.
-    pub fn places(&self, uri: &str, beside: &FilePath) -> Result<Vec<FilePath>, Unplaced> {
+    pub fn places(
+        &self,
+        uri: &str,
+        beside: &FilePath,
+        models: &mut dyn Models,
+    ) -> Result<Vec<FilePath>, Unplaced> {
         let parted = part(uri)?;
+        let mut outside = |place: FilePath, why| {
+            if models.follows(&place) { Ok(vec![place]) } else { Err(why) }
+        };
         let (Parted::Model { rest: path, .. } | Parted::Path(path)) = &parted;
         let mut steps = path.split(['/', '\\']);
         if steps.any(|step| step == "..") || uri.contains("://../") {
-            return Err(Unplaced::LeadsOut);
+            return match &parted {
+                Parted::Path(path) => outside(beside.beside(path), Unplaced::LeadsOut),
+                Parted::Model { .. } => Err(Unplaced::LeadsOut),
+            };
         }
         let mut places = Vec::new();
         let mut push = |place: FilePath| {
@@ -198,7 +215,10 @@ impl Folders {
             }
         };
         match &parted {
-            Parted::Path(path) if path.starts_with('/') => return Err(Unplaced::FromRoot),
+            Parted::Path(path) if path.starts_with('/') => {
+                let place = FilePath { root: Root::World, path: (*path).to_owned() };
+                return outside(place, Unplaced::FromRoot);
+            }
             Parted::Path(path) => {
                 push(beside.beside(path));
                 push(FilePath::WORLD.beside(path));

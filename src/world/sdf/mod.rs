@@ -61,7 +61,7 @@ pub fn read_with(source: &Source, models: &mut dyn Models) -> Result<World, Vec<
     let mut solids = Vec::new();
     let root = document.root_element();
     if let Some(world) = world_of(root, &mut faults) {
-        reader.note_version(root, source);
+        reader.note_oddities(root, source);
         check_macros(root, &mut faults);
         let file = File { path: &FilePath::WORLD, source };
         let model = model::read(world, &file, 0, &mut reader, &mut faults);

@@ -49,6 +49,8 @@ pub(super) enum Kind {
     Floor,
     /// A mesh file says that an axis is up.
     UpAxis(char),
+    /// A pose turns by more than once around.
+    Overturned,
     /// A file says that it is of a version of SDFormat that is not known.
     Version(String),
 }
@@ -181,6 +183,12 @@ fn said(kind: &Kind, note: &Note) -> String {
                 "{meshes} {names} {say} that {axis} is up: taken as Gazebo does, which turns no mesh by that"
             )
         }
+        Kind::Overturned if n == 1 => format!(
+            "the pose of `{name}` turns by more than once around: angles are read as radians, are these degrees? SDFormat has `<pose degrees=\"true\">`"
+        ),
+        Kind::Overturned => format!(
+            "{n} poses (of {names}) turn by more than once around: angles are read as radians, are these degrees? SDFormat has `<pose degrees=\"true\">`"
+        ),
         Kind::Version(version) => format!(
             "`{name}` is of SDFormat {}, which is not known (1.3 to 1.12 are): read as 1.12",
             shortened(version)

@@ -3,8 +3,9 @@
 use super::files::{FilePath, Folders, Models};
 use super::include::{self, Loaded};
 use super::model::{self, Model};
-use super::notes::{Kind, Notes};
+use super::notes::{Kind, Notes, Place};
 use super::{MAX_BYTES, check_macros, known_version};
+use crate::document::sdf;
 use crate::document::xml::{self, Faults};
 use crate::document::{Diagnostic, FaultList, Source, quoted};
 use crate::world::Solid;
@@ -85,8 +86,13 @@ impl<'m> Reader<'m> {
         std::mem::take(&mut self.faults).finish()
     }
 
-    /// Notes the version of an `<sdf>` where it is none that is known.
-    pub(super) fn note_version(&mut self, root: Node<'_, '_>, source: &Source) {
+    /// Notes the version of an `<sdf>` where it is none that is known, and poses whose angles seem to be degrees.
+    pub(super) fn note_oddities(&mut self, root: Node<'_, '_>, source: &Source) {
+        for pose in sdf::overturned(root) {
+            let whose = pose.parent_element().unwrap_or(pose);
+            let name = whose.attribute("name").unwrap_or(whose.tag_name().name());
+            self.notes.add(&Kind::Overturned, name, Some(&Place::of(source, pose)));
+        }
         if let Some(version) = root.attribute("version")
             && known_version(version).is_none()
         {
@@ -102,7 +108,7 @@ impl<'m> Reader<'m> {
         depth: usize,
         fault: &dyn Fn(String) -> Diagnostic,
     ) -> Loaded {
-        let places = self.folders.places(uri, beside);
+        let places = self.folders.places(uri, beside, self.models);
         let mut found = None;
         for place in places.iter().flatten() {
             found = self.description(place);
@@ -194,7 +200,7 @@ impl<'m> Reader<'m> {
         if kind != "sdf" {
             return absent(format!("`{name}` holds <{}>, not <sdf>", quoted(kind)));
         }
-        self.note_version(root, &source);
+        self.note_oddities(root, &source);
         let mut faults = Faults::new(&source);
         check_macros(root, &mut faults);
         let loaded = match xml::child(root, "model") {
@@ -226,7 +232,7 @@ impl<'m> Reader<'m> {
         if let Some(other) = OTHER_MESHES.iter().find(|ending| small.ends_with(*ending)) {
             return Found::Missing(format!("`{other}` is not read (.stl, .obj and .dae are)"));
         }
-        let places = match self.folders.places(uri, beside) {
+        let places = match self.folders.places(uri, beside, self.models) {
             Ok(places) => places,
             Err(why) => return Found::Missing(why.to_string()),
         };

@@ -265,7 +265,8 @@ fn uris_lead_into_folders_that_are_given_and_nowhere_else() {
     let none = Folders::default();
     let inner = FilePath { root: Root::Models, path: "models/house/model.sdf".to_owned() };
     let places = |uri: &str, beside: &FilePath| -> Vec<String> {
-        let places = folders.places(uri, beside).unwrap_or_else(|why| panic!("{uri}: {why}"));
+        let places =
+            folders.places(uri, beside, &mut NoModels).unwrap_or_else(|why| panic!("{uri}: {why}"));
         places.iter().map(|p| format!("{:?} {}", p.root, p.path)).collect()
     };
     for (uri, expected) in [
@@ -312,19 +313,29 @@ fn uris_lead_into_folders_that_are_given_and_nowhere_else() {
         ]
     );
     for (uri, why) in [
-        ("model://house/../a.dae", "its path leads out of the folder"),
-        ("model://../a.dae", "its path leads out of the folder"),
-        ("model://..", "its path leads out of the folder"),
-        ("../a.dae", "its path leads out of the folder"),
-        ("file:///home/a.stl", "a path from the root of some machine is not followed"),
+        (
+            "model://house/../a.dae",
+            "its path leads out of the folder, where none of `--allow FOLDER` is",
+        ),
+        ("model://../a.dae", "its path leads out of the folder, where none of `--allow FOLDER` is"),
+        ("model://..", "its path leads out of the folder, where none of `--allow FOLDER` is"),
+        ("../a.dae", "its path leads out of the folder, where none of `--allow FOLDER` is"),
+        (
+            "file:///home/a.stl",
+            "a path from the root of some machine is not followed without `--allow FOLDER`",
+        ),
         ("https://example.org/a.stl", ""),
         ("", ""),
     ] {
-        assert_eq!(folders.places(uri, &inner).unwrap_err().to_string(), why, "{uri}");
+        assert_eq!(
+            folders.places(uri, &inner, &mut NoModels).unwrap_err().to_string(),
+            why,
+            "{uri}"
+        );
     }
-    assert_eq!(none.places("model://house/a.dae", &inner), Err(Unplaced::Untold));
+    assert_eq!(none.places("model://house/a.dae", &inner, &mut NoModels), Err(Unplaced::Untold));
     let other = Folders { path: Vec::new(), ..folders.clone() };
-    let why = other.places("model://shed/a.dae", &inner).unwrap_err();
+    let why = other.places("model://shed/a.dae", &inner, &mut NoModels).unwrap_err();
     assert_eq!(why.to_string(), "no folder is given for the model `shed`");
 }
 

@@ -67,8 +67,9 @@ impl Study<'_> {
             .map(|(choice, value)| format!("{}={value}", choice.setting))
             .collect();
         let (manifest, set) = (&self.args.manifest, self.overrides(&set));
+        let given = load::Given { set: &set, allow: &self.args.allow };
         let calibrator = self.execution.calibrator();
-        match load::resolved(manifest, &set, calibrator, self.terminal)? {
+        match load::resolved(manifest, given, calibrator, self.terminal)? {
             Err(faults) => Ok(Found::refused_by(&faults)),
             Ok((loaded, _)) => {
                 let (verdicts, records) = self.verdicts(loaded.experiment)?;

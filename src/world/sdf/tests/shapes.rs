@@ -100,6 +100,23 @@ fn what_is_far_too_far_away_is_missing_and_the_rest_stands() {
 }
 
 #[test]
+fn degrees_for_radians_are_noticed() {
+    let cube = "<box><size>1 1 1</size></box>";
+    let models = model("a", "0 0 0.5 0 0 90", cube) + &model("b", "3 0 0.5 0 0 1.5708", cube);
+    let told = |models: &str| read_models(models, &mut Shelf::default()).warnings;
+    let question =
+        "angles are read as radians, are these degrees? SDFormat has `<pose degrees=\"true\">`";
+    let one = told(&models);
+    assert_eq!(one.len(), 1, "{one:?}");
+    let said = format!(": the pose of `a` turns by more than once around: {question}");
+    assert!(one[0].ends_with(&said), "{one:?}");
+    let both = told(&models.replace("1.5708", "180"));
+    assert_eq!(both.len(), 1, "{both:?}");
+    let said = format!(": 2 poses (of `a`, `b`) turn by more than once around: {question}");
+    assert!(both[0].ends_with(&said), "{both:?}");
+}
+
+#[test]
 fn a_town_in_millimetres_is_noticed() {
     let wall = model("wall", "0 0 .5 0 0 0", "<box><size>12000 200 2500</size></box>");
     let world = read_models(&wall, &mut Shelf::default());
