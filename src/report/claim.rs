@@ -1,11 +1,18 @@
 //! A claim as the page shows it: verdict, finding in human words, and every comparison behind it.
 
+mod forest;
+mod statement;
+
 use super::template::{fixed, percent};
+use crate::claims::published::PublishedCell;
 use crate::claims::terms::Correction;
 use crate::claims::verdict::{CellNumbers, ComparisonVerdict, agreement_in_words, rounded};
 use crate::claims::{Claim, ClaimVerdict, Judgement, PaperTable};
 use crate::math::exp;
+use forest::{Quantity, Strip};
 use serde::Serialize;
+use statement::Statement;
+use std::collections::BTreeMap;
 
 /// A claim and what became of it.
 #[derive(Debug, Clone, Default, Serialize)]
@@ -35,6 +42,14 @@ pub struct ClaimRow {
     pub notes: Vec<String>,
     /// Every comparison.
     pub comparisons: Vec<ComparisonRow>,
+    /// What the strip shows, with its unit: `difference, percentage points`; empty where there is no effect to draw.
+    pub quantity: String,
+    /// The effects and their intervals against the claim's line, an SVG; empty where there is none.
+    pub strip: String,
+    /// The axis that all strips of the quantity lie on, an SVG.
+    pub axis: String,
+    /// Whether the strip marks what the paper's own numbers give.
+    pub has_paper: bool,
 }
 
 /// One comparison of a claim.
@@ -61,7 +76,8 @@ pub struct NoVerdicts {
     error: serde_json::Error,
 }
 
-/// Returns the rows of a list of verdicts, the bytes of `path`; `claims` are the manifest's own, for their reasons.
+/// Returns the rows of a list of verdicts, the bytes of `path`; `claims` are the manifest's own, for their reasons, and `published`
+/// the paper's numbers by the name of their table.
 ///
 /// # Errors
 /// Where the bytes are no list of verdicts.
@@ -69,6 +85,7 @@ pub(super) fn rows(
     path: &str,
     bytes: Option<&[u8]>,
     claims: &[Claim],
+    published: &BTreeMap<String, Vec<PublishedCell>>,
 ) -> Result<Vec<ClaimRow>, NoVerdicts> {
     let Some(bytes) = bytes else { return Ok(Vec::new()) };
     let verdicts: Vec<ClaimVerdict> = serde_json::from_slice(bytes)
@@ -77,7 +94,28 @@ pub(super) fn rows(
         let claim = claims.iter().find(|claim| claim.id == id);
         claim.and_then(|claim| claim.why.clone()).unwrap_or_default()
     };
-    Ok(verdicts.into_iter().map(|v| ClaimRow { why: why(&v.id), ..row(v) }).collect())
+    let strips: Vec<Option<Strip>> = verdicts.iter().map(|v| Strip::of(v, published)).collect();
+    let mut alike: BTreeMap<&Quantity, Vec<&Strip>> = BTreeMap::new();
+    for strip in strips.iter().flatten() {
+        alike.entry(&strip.quantity).or_default().push(strip);
+    }
+    let axes: BTreeMap<_, _> = alike
+        .into_iter()
+        .map(|(quantity, strips)| (quantity, forest::axis_of(strips.into_iter())))
+        .collect();
+    let drawn = |verdict: ClaimVerdict, strip: Option<&Strip>| {
+        let row = ClaimRow { why: why(&verdict.id), ..row(verdict) };
+        let Some(strip) = strip else { return row };
+        let axis = &axes[&strip.quantity];
+        ClaimRow {
+            quantity: strip.quantity.name.clone(),
+            strip: strip.draw(axis, &format!("{}: {}", row.id, row.numbers)),
+            axis: forest::draw_axis(axis),
+            has_paper: strip.has_paper(),
+            ..row
+        }
+    };
+    Ok(verdicts.into_iter().zip(&strips).map(|(v, strip)| drawn(v, strip.as_ref())).collect())
 }
 
 fn row(verdict: ClaimVerdict) -> ClaimRow {
@@ -94,6 +132,7 @@ fn row(verdict: ClaimVerdict) -> ClaimRow {
         cite: verdict.cite.unwrap_or_default(),
         why: String::new(),
         notes: verdict.notes,
+        ..ClaimRow::default()
     }
 }
 
@@ -169,7 +208,8 @@ fn censored(verdict: &ClaimVerdict) -> String {
 fn comparison(comparison: &ComparisonVerdict) -> ComparisonRow {
     let reason = comparison.reason.clone().filter(|reason| !reason.is_empty());
     ComparisonRow {
-        about: comparison.about.clone(),
+        about: Statement::read(&comparison.about)
+            .map_or_else(|| comparison.about.clone(), |statement| statement.in_words()),
         verdict: comparison.judgement.to_string(),
         finding: reason.unwrap_or_else(|| effect(comparison)),
         test: test(comparison),
@@ -194,7 +234,8 @@ fn effect(comparison: &ComparisonVerdict) -> String {
     };
     let points = |x: f64| signed(100.0 * x, 0);
     let share = |x: f64| format!("{}\u{a0}%", fixed(100.0 * x, 0));
-    let plain = |x: f64| if x.abs() >= 100.0 { signed(x, 0) } else { signed(x, 2) };
+    let digits = digits(high - low);
+    let plain = |x: f64| signed(x, digits);
     let said = |words: &str, show: &dyn Fn(f64) -> String| {
         let known = Some(effect.confidence).filter(|confidence| confidence.is_finite());
         let confidence = 100.0 * known.unwrap_or(0.95);
@@ -228,7 +269,7 @@ fn effect(comparison: &ComparisonVerdict) -> String {
 
 /// Writes a test: `p = 0.0018 (welch)`, in the direction that was found.
 fn test(comparison: &ComparisonVerdict) -> String {
-    let name = comparison.test.replace('-', " ");
+    let name = test_name(&comparison.test);
     let (of, corrected, raw) = match comparison.judgement {
         Judgement::Contradicted => {
             (" for the opposite", comparison.p_against_corrected, comparison.p_against)
@@ -242,6 +283,41 @@ fn test(comparison: &ComparisonVerdict) -> String {
         format!("p = {}", fixed(p, if p < 0.01 { 4 } else { 2 }))
     };
     format!("{p}{of} ({name})")
+}
+
+/// Returns how many decimals tell the ends of an interval of this width apart: two figures of it.
+fn digits(width: f64) -> usize {
+    const MOST: usize = 6;
+    if width == 0.0 {
+        return 2;
+    }
+    let (mut digits, mut width) = (0, width);
+    while width < 10.0 && digits < MOST {
+        width *= 10.0;
+        digits += 1;
+    }
+    digits
+}
+
+/// Returns what people call the test `name`.
+fn test_name(name: &str) -> String {
+    let known = match name {
+        "fisher-exact" => "Fisher's exact test",
+        "chi-square" => "chi-squared test",
+        "cochran-armitage" => "Cochran-Armitage trend test",
+        "welch" => "Welch's t-test",
+        "anova" => "analysis of variance",
+        "mann-whitney" => "Mann-Whitney U test",
+        "brown-forsythe" => "Brown-Forsythe test of spread",
+        "spearman" => "Spearman's rank correlation, permuted",
+        "tost-newcombe" => "two one-sided tests, Newcombe's interval",
+        "tost-welch" => "two one-sided tests, Welch's",
+        "score" => "score test",
+        "count" => "every trial counted",
+        "bootstrap-over-cells" => "bootstrap over cells",
+        other => return other.replace('-', " "),
+    };
+    known.to_owned()
 }
 
 /// Writes a cell: `start=A, strategy=random: 96 %, 48 of 50 runs`.
@@ -286,7 +362,9 @@ mod tests {
             "id": "D1", "ours": "it is so", "why": "the claim's own words", "expect": {"untestable": {"because": "so"}},
         });
         let claims = [serde_json::from_value(claim).unwrap()];
-        rows("claims.json", Some(verdict.to_string().as_bytes()), &claims).unwrap().remove(0)
+        rows("claims.json", Some(verdict.to_string().as_bytes()), &claims, &BTreeMap::new())
+            .unwrap()
+            .remove(0)
     }
 
     fn compared(verdict: &str) -> Value {
@@ -306,7 +384,7 @@ mod tests {
         let row = one("supported", &[compared("supported")]);
         assert_eq!(
             row.numbers,
-            "+30 percentage points (98\u{a0}% interval 0 to +47); p = 0.02 (fisher exact); 6 of 100 runs compared \
+            "+30 percentage points (98\u{a0}% interval 0 to +47); p = 0.02 (Fisher's exact test); 6 of 100 runs compared \
              never reached the measure"
         );
         assert_eq!((row.differs.as_str(), row.why.as_str()), ("", "the claim's own words"));
@@ -326,7 +404,7 @@ mod tests {
             row.numbers
                 .starts_with("0 of 2 comparisons hold, 1 the other way, 1 undecided; 2 must hold")
         );
-        assert_eq!(row.comparisons[0].test, "p < 0.0001 for the opposite (fisher exact)");
+        assert_eq!(row.comparisons[0].test, "p < 0.0001 for the opposite (Fisher's exact test)");
         assert_eq!(
             row.differs,
             "The paper's own table supports its sentence; our trials contradict it."
@@ -353,11 +431,11 @@ mod tests {
     fn what_has_no_effect_keeps_its_reason_and_what_is_no_list_is_refused() {
         assert_eq!(one("cannot-be-tested", &[]).numbers, "for a reason");
         assert!(
-            rows("claims.json", Some(b"{}"), &[])
+            rows("claims.json", Some(b"{}"), &[], &BTreeMap::new())
                 .unwrap_err()
                 .to_string()
                 .starts_with("claims.json: ")
         );
-        assert!(rows("claims.json", None, &[]).unwrap().is_empty());
+        assert!(rows("claims.json", None, &[], &BTreeMap::new()).unwrap().is_empty());
     }
 }

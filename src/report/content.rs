@@ -10,6 +10,8 @@ use serde::Serialize;
 pub struct ReportContent {
     /// Title of the manifest.
     pub title: String,
+    /// How far it was checked before it was shown, in words; empty where nobody says.
+    pub checked: String,
     /// What is reproduced.
     pub citation: Citation,
     /// Authors of the manifest.

@@ -168,6 +168,7 @@ pub(super) fn content() -> ReportContent {
     };
     ReportContent {
         title: "Exploration with prior knowledge: the basic environment".into(),
+        checked: "checked to level 3 (derived): the bundle is what it says".into(),
         citation: Citation {
             paper: "M. Luperto, M. Antonazzi, F. Amigoni, N. A. Borghese, “Robot exploration of indoor environments using incomplete and inaccurate prior knowledge”, Robotics and Autonomous Systems, 2020".into(),
             section: "section 4.2, Tables 1 and 2".into(),

@@ -8,6 +8,7 @@ use super::evaluation::{Evaluated, evaluation};
 use super::origin::provenance;
 use super::{claim, limits, multiverse};
 use crate::bundle::{Bundle, Fault, assemble};
+use crate::claims::published;
 use crate::plan::{Plan, Selection};
 use crate::studies::{Exhibit, Findings, TrialRecord};
 
@@ -37,7 +38,14 @@ pub fn content_of(
     let cite = experiment.cite.as_ref();
     let machine_verdicts =
         bundle.circumstance_files().find(|(path, _)| *path == "claims.json").map(|(_, b)| b);
-    let rows = |path: &str, bytes: Option<&[u8]>| claim::rows(path, bytes, &experiment.claims);
+    let factors: Vec<String> = experiment.factors.iter().map(|f| f.name.clone()).collect();
+    // A table that cannot be read as numbers of cells marks nothing.
+    let published = experiment.published.iter();
+    let published = published
+        .map(|(name, table)| (name.clone(), published::read(table, &factors).unwrap_or_default()))
+        .collect();
+    let rows =
+        |path: &str, bytes: Option<&[u8]>| claim::rows(path, bytes, &experiment.claims, &published);
     let claims = rows("results/claims.json", bundle.result("claims.json"))?;
     let machine_claims = rows("circumstances/claims.json", machine_verdicts)?;
     let section = cite.and_then(|cite| cite.section.as_deref()).unwrap_or_default();
@@ -61,6 +69,7 @@ pub fn content_of(
     let trial = plan.trials.first().map(|t| format!("{}/{}", t.condition.slug(), t.trial));
     Ok(ReportContent {
         title: experiment.title.clone(),
+        checked: String::new(),
         citation: Citation {
             paper: cite.map(|c| c.paper.clone()).unwrap_or_default(),
             section: cite.and_then(|c| c.section.clone()).unwrap_or_default(),

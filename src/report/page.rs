@@ -1,21 +1,39 @@
 //! The page of one bundle.
 
+use super::finding;
+use super::hinges::Hinges;
 use super::inline_svg::inline_svg;
 use super::pack::base64;
 use super::template::{Template, render_in};
-use super::{ClaimRow, ReportContent, ReportTable};
+use super::{ClaimRow, Command, ReportContent, ReportTable};
 use crate::stats::compatibility::{Agreement, Band, Tally, rules};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
 #[derive(Serialize)]
-#[serde(rename_all = "kebab-case")]
 struct View<'a> {
     report: &'a ReportContent,
+    /// What was found, in a sentence or two.
+    finding: String,
     /// The claims of the paper.
     claims: Vec<&'a ClaimRow>,
+    /// The same by what their effects are quantities of, in the order in which those are met.
+    groups: Vec<Group<'a>>,
     /// What we check besides.
     checks: Vec<&'a ClaimRow>,
+    check_groups: Vec<Group<'a>>,
+    /// The settings that were tried, against the claims of which a verdict hangs on one.
+    hinges: Hinges,
+    /// The commands that check, look and unpack, the quickest first.
+    commands: Vec<&'a Command>,
+    /// Tables that stand open: those with published numbers, where there are any.
+    open_tables: Vec<usize>,
+    /// The others.
+    folded_tables: Vec<usize>,
+    /// Figures that stand open: those that the paper has, where there are any.
+    open_figures: Vec<usize>,
+    /// The others.
+    folded_figures: Vec<usize>,
     score: Score,
     /// The figures' drawings, as they may stand in a page; empty where a figure is none.
     drawings: Vec<String>,
@@ -29,6 +47,32 @@ struct View<'a> {
     rules: Vec<String>,
     /// Mark, words and look of every agreement by its name.
     agreements: BTreeMap<&'static str, [&'static str; 3]>,
+}
+
+/// Claims of which the effects lie on one axis.
+#[derive(Serialize)]
+#[serde(rename_all = "kebab-case")]
+struct Group<'a> {
+    quantity: &'a str,
+    axis: &'a str,
+    claims: Vec<&'a ClaimRow>,
+}
+
+/// Returns `claims` by quantity; those without one come last.
+fn grouped<'a>(claims: &[&'a ClaimRow]) -> Vec<Group<'a>> {
+    let mut groups: Vec<Group<'a>> = Vec::new();
+    for claim in claims {
+        match groups.iter_mut().find(|group| group.quantity == claim.quantity) {
+            Some(group) => group.claims.push(claim),
+            None => groups.push(Group {
+                quantity: &claim.quantity,
+                axis: &claim.axis,
+                claims: vec![claim],
+            }),
+        }
+    }
+    groups.sort_by_key(|group| group.quantity.is_empty());
+    groups
 }
 
 /// The whole report in a few counts: what a reader sees first.
@@ -95,7 +139,7 @@ impl Score {
 }
 
 /// Separates the claims of the paper from what we check besides.
-fn apart(claims: &[ClaimRow]) -> (Vec<&ClaimRow>, Vec<&ClaimRow>) {
+pub(super) fn apart(claims: &[ClaimRow]) -> (Vec<&ClaimRow>, Vec<&ClaimRow>) {
     claims.iter().partition(|claim| claim.ours.is_empty())
 }
 
@@ -162,10 +206,25 @@ fn view(content: &ReportContent) -> View<'_> {
     let cells = content.tables.iter().flat_map(agreements);
     let drawing = |f: &super::Figure| inline_svg(&f.svg, &f.alt).unwrap_or_default();
     let (claims, checks) = apart(&content.claims);
+    let (open_tables, folded_tables) =
+        told_apart(content.tables.iter().map(|table| !table.source.is_empty()));
+    let is_paper = |figure: &super::Figure| {
+        ["Figure ", "Table ", "Fig. "].iter().any(|word| figure.title.starts_with(word))
+    };
+    let (open_figures, folded_figures) = told_apart(content.figures.iter().map(is_paper));
     View {
         report: content,
+        finding: finding::finding(content),
+        groups: grouped(&claims),
+        check_groups: grouped(&checks),
         claims,
         checks,
+        hinges: Hinges::of(content),
+        commands: commands(content),
+        open_tables,
+        folded_tables,
+        open_figures,
+        folded_figures,
         score: Score::of(content),
         drawings: content.figures.iter().map(drawing).collect(),
         files: content.figures.iter().map(|figure| base64(figure.svg.as_bytes())).collect(),
@@ -176,20 +235,37 @@ fn view(content: &ReportContent) -> View<'_> {
     }
 }
 
+/// Returns the numbers of what comes first and of the rest; where nothing does, all comes first.
+fn told_apart(first: impl Iterator<Item = bool>) -> (Vec<usize>, Vec<usize>) {
+    let (first, rest): (Vec<_>, Vec<_>) = first.enumerate().partition(|(_, is_first)| *is_first);
+    let numbers = |of: Vec<(usize, bool)>| of.into_iter().map(|(i, _)| i).collect::<Vec<_>>();
+    if first.is_empty() { (numbers(rest), Vec::new()) } else { (numbers(first), numbers(rest)) }
+}
+
+/// Returns the commands that anybody tries first: those of the badges that ask for a program, without the whole study.
+fn commands(content: &ReportContent) -> Vec<&Command> {
+    let wanted = ["functional", "reusable"];
+    let badges = content.evaluation.badges.iter();
+    badges.filter(|badge| wanted.contains(&badge.id.as_str())).flat_map(|b| &b.commands).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::fixtures::{assert_offline, content};
     use super::*;
 
     #[test]
-    fn limits_come_before_numbers_and_every_part_is_there() {
+    fn the_finding_comes_first_then_limits_and_commands_and_every_part_is_there() {
         let page = page(&content());
         assert_offline(&page);
         let at = |text: &str| page.find(text).unwrap_or_else(|| panic!("no {text} in the page"));
         let order = [
             "<h1>",
-            "id=\"limits\"",
+            "class=\"finding\"",
             "id=\"headline\"",
+            "id=\"limits\"",
+            "id=\"check\"",
+            "id=\"answers\"",
             "id=\"claims\"",
             "id=\"own-checks\"",
             "id=\"machine-claims\"",
@@ -219,8 +295,10 @@ mod tests {
             "reenact verify --level 6 prior-9f86d081.zip",
             "doi:10.1000",
             "<q>a floor plan shortens the way to 90 % coverage</q>",
-            "class=\"wide\">gains here go with those printed",
-            "Apart from them, of <strong>1</strong>",
+            "<span class=\"id\">P3</span> gains here go with those printed",
+            "Of <strong>1</strong> <a href=\"#own-checks\">check of our own</a>",
+            "<td class=\"hinge flips\" title=\"at 0.3: supported → inconclusive\">",
+            "without an effect to draw",
             "15 trials per condition, one setting at a time, same noise",
             "24 draws of 2 choices, 15 trials per condition, seed 7; 1 draw was refused",
             "<td class=\"choice shade-4 out\">",
@@ -228,7 +306,12 @@ mod tests {
         ] {
             at(text);
         }
-        assert_eq!(page.matches("<svg").count(), 3);
+        assert_eq!(
+            page.matches("<svg class=\"key\"").count(),
+            6,
+            "of the plots of claims and checks"
+        );
+        assert_eq!(page.matches("<svg").count(), 3 + 6);
         assert_eq!(page, super::page(&content()), "the same content gives the same bytes");
     }
 

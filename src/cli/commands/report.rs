@@ -12,8 +12,9 @@ use std::path::PathBuf;
 pub(in crate::cli) fn run(args: &ReportArgs, terminal: Terminal) -> Result<Exit, Failure> {
     let checked::Checked { bundle, words, banner } = checked::bundle(&args.bundle, args.unchecked)?;
     let (plan, selection) = plan_of(&bundle).map_err(Failure::not_understood)?;
-    let content = report::content_of(&bundle, &plan, &selection)
+    let mut content = report::content_of(&bundle, &plan, &selection)
         .map_err(|error| Failure { exit: Exit::No, message: error.to_string() })?;
+    content.checked.clone_from(&words);
     let output = args.output.clone().unwrap_or_else(|| {
         let stem = format!("{}-{}", bundle.name(), bundle.results_digest().short());
         PathBuf::from(stem).with_extension("html")

@@ -29,6 +29,7 @@ const DEFINITIONS: &[(&str, &str)] = &[
     define!("sensor_msgs/CompressedImage"),
     define!("sensor_msgs/LaserScan"),
     define!("std_msgs/ColorRGBA"),
+    define!("std_msgs/Float64"),
     define!("std_msgs/Header"),
     define!("tf2_msgs/TFMessage"),
     define!("visualization_msgs/Marker"),

@@ -43,6 +43,13 @@ pub(super) fn nanoseconds(seconds: f64) -> u64 {
     microseconds * 1000
 }
 
+#[derive(Debug, Clone, Copy, Serialize)]
+pub(super) struct Float64 {
+    pub(super) data: f64,
+}
+
+message!(Float64, "std_msgs/Float64");
+
 #[derive(Debug, Clone, Serialize)]
 pub(super) struct Header {
     pub(super) stamp: Time,

@@ -13,8 +13,8 @@ use crate::geometry::{Point, Pose};
 use crate::grid::{GridFrame, Occupancy};
 use crate::studies::recording::{Frame, Recording, Sensed};
 use messages::{
-    Clock, Header, LaserScan, Log, MapMetaData, MarkerArray, OccupancyGrid, Odometry, Path,
-    PoseStamped, TFMessage, Time, TransformStamped,
+    Clock, Float64, Header, LaserScan, Log, MapMetaData, MarkerArray, OccupancyGrid, Odometry,
+    Path, PoseStamped, TFMessage, Time, TransformStamped,
 };
 use std::collections::BTreeMap;
 use writer::BagWriter;
@@ -144,6 +144,11 @@ impl Writing<'_> {
         self.writer.write("/clock", at, &Clock { clock: Time::of(at) })?;
         let pose = PoseStamped { header: header(at, "world"), pose: frame.pose.into() };
         self.writer.write("/ground_truth/pose", at, &pose)?;
+        self.writer.write("/coverage", at, &Float64 { data: frame.coverage_percent })?;
+        self.writer.write("/distance_travelled", at, &Float64 { data: frame.distance_m })?;
+        if let Some(deadline) = self.recording.deadline_s {
+            self.writer.write("/time_left", at, &Float64 { data: deadline - at })?;
+        }
         for (cell, value) in &frame.map_changes {
             if let Some(index) = self.recording.map_frame.index(*cell) {
                 self.map[index] = of_ros(*value);

@@ -71,6 +71,8 @@ fn every_topic_is_there_with_its_type_and_in_order_of_time() {
         told,
         [
             "/clock rosgraph_msgs/msg/Clock 100",
+            "/coverage std_msgs/msg/Float64 100",
+            "/distance_travelled std_msgs/msg/Float64 100",
             "/frontiers visualization_msgs/msg/MarkerArray 10",
             "/graph visualization_msgs/msg/MarkerArray 1",
             "/ground_truth/pose geometry_msgs/msg/PoseStamped 100",
@@ -87,6 +89,29 @@ fn every_topic_is_there_with_its_type_and_in_order_of_time() {
     );
     let counted: u32 = bag.counts.values().sum();
     assert_eq!(counted, types.values().sum::<u32>());
+}
+
+#[test]
+fn what_stays_true_is_offered_to_those_who_come_late() {
+    let mut recording = sensing();
+    recording.deadline_s = Some(30.0);
+    let bag = bag(&recording, None).unwrap();
+    let mut durable = BTreeMap::new();
+    for message in MessageStream::new(&bag.bytes).unwrap() {
+        let channel = message.unwrap().channel;
+        let profiles = &channel.metadata["offered_qos_profiles"];
+        durable.insert(channel.topic.clone(), profiles.contains("durability: 1\n"));
+    }
+    let latched: Vec<&str> =
+        durable.iter().filter(|(_, is)| **is).map(|(topic, _)| topic.as_str()).collect();
+    assert_eq!(latched, ["/map", "/prior_map", "/tf_static", "/world"]);
+    let left = MessageStream::new(&bag.bytes)
+        .unwrap()
+        .map(Result::unwrap)
+        .find(|message| message.channel.topic == "/time_left")
+        .unwrap();
+    let first = recording.frames[0].time_s;
+    assert_eq!(left.data[4..12], (30.0 - first).to_le_bytes());
 }
 
 #[test]

@@ -11,6 +11,21 @@ use std::io::Cursor;
 /// Encapsulation header of little-endian plain CDR (DDSI-RTPS 2.5, section 10.2), as `rmw` writes it.
 const CDR_LE: [u8; 4] = [0, 1, 0, 0];
 
+/// Topics of which the last message stays true: who plays a bag offers it to those who come late.
+const LATCHED: [&str; 4] = ["/map", "/prior_map", "/tf_static", "/world"];
+
+/// Returns the quality of service that `topic` was offered with, as rosbag2 keeps it (a list of `rmw` profiles in YAML), so that a
+/// bag plays with it: all but the latched topics as the default profile of ROS 2.
+fn offered_qos(topic: &str) -> String {
+    // The numbers of rmw/types.h: reliable 1; transient local 1, volatile 2; keep last 1.
+    let (depth, durability) = if LATCHED.contains(&topic) { (1, 1) } else { (10, 2) };
+    let forever = "\n    sec: 9223372036\n    nsec: 854775807\n";
+    format!(
+        "- history: 1\n  depth: {depth}\n  reliability: 1\n  durability: {durability}\n  deadline:{forever}  lifespan:{forever}  liveliness: 1\n  \
+         liveliness_lease_duration:{forever}  avoid_ros_namespace_conventions: false\n"
+    )
+}
+
 /// Why a bag cannot be written, which is a bug.
 #[derive(Debug, thiserror::Error)]
 pub enum BagError {
@@ -69,7 +84,8 @@ impl BagWriter {
         // Where ROS 2 names a type, `msg` stands between package and type.
         let name = M::TYPE.replace('/', "/msg/");
         let schema = self.writer.add_schema(&name, "ros2msg", definition(M::TYPE).as_bytes())?;
-        Ok(self.writer.add_channel(schema, topic, "cdr", &BTreeMap::new())?)
+        let metadata = BTreeMap::from([("offered_qos_profiles".to_owned(), offered_qos(topic))]);
+        Ok(self.writer.add_channel(schema, topic, "cdr", &metadata)?)
     }
 
     /// Returns the file's bytes, and how many messages each topic has.
