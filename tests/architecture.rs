@@ -53,6 +53,7 @@ const DOORS: &[(&str, &[&str])] = &[
     ("cdr_encoding", &["report/bag/writer.rs"]),
     ("clap", &["cli/"]),
     ("clap_complete", &["cli/"]),
+    ("clap_mangen", &["cli/"]),
     ("clarabel", &["cmdp/solve.rs"]),
     ("console", &["cli/"]),
     ("flate2", &["bundle/archive/unpack.rs"]),

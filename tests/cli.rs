@@ -1,6 +1,7 @@
 //! The command line as people meet it: whole texts and exit codes.
 
 use crate::sandbox::{Sandbox, repository};
+use std::fs;
 use std::path::PathBuf;
 
 /// Creates a folder with the starter study in it.
@@ -282,4 +283,32 @@ fn a_derived_prior_laid_over_its_world_lies_on_it() {
         (refused.stderr.as_str(), refused.code),
         ("error: --start: expected x,y (m), found 1 numbers\n", 2)
     );
+}
+
+/// Every command has a page of its own, named by the way to it.
+#[test]
+fn manual_pages_are_written_for_every_command() {
+    let desk = Sandbox::new();
+    let answer = desk.run(&["man", "pages"]);
+    assert_eq!(answer.code, 0, "{answer:?}");
+    let page = fs::read_to_string(desk.path("pages/reenact-cache-prune.1")).unwrap();
+    assert!(page.contains("reenact\\-cache\\-prune"), "{page}");
+    let pages = fs::read_dir(desk.path("pages")).unwrap().count();
+    assert_eq!(answer.stdout, format!("{pages} pages in pages\n"));
+    assert!(pages > 20, "{pages}");
+}
+
+/// What LaTeX is given: a file for each table, and numbers by name.
+#[test]
+fn a_bundle_is_exported_for_latex() {
+    let desk = Sandbox::new();
+    let bundle = repository().join("artifacts/quickstart-published.zip");
+    let bundle = bundle.to_str().unwrap();
+    let answer = desk.run(&["export", bundle, "--latex"]);
+    assert_eq!(answer.code, 0, "{answer:?}");
+    let folder = desk.path(answer.last_line());
+    let numbers = fs::read_to_string(folder.join("numbers.tex")).unwrap();
+    assert!(numbers.contains("csname reenact@table-1/"), "{numbers}");
+    let table = fs::read_to_string(folder.join("table-1.tex")).unwrap();
+    assert!(table.contains("\\toprule") && table.contains(" & ours & paper"), "{table}");
 }

@@ -59,6 +59,8 @@ pub(super) enum Command {
     Schema(SchemaArgs),
     /// Print shell completions
     Completions(CompletionsArgs),
+    /// Write the manual pages
+    Man(ManArgs),
     /// Write a Gazebo world or a `map_server` map as world YAML
     Import(ImportArgs),
     /// Write a working starter manifest
@@ -241,6 +243,12 @@ pub(super) enum SchemaOf {
     Manifest,
     /// World YAML files
     World,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ManArgs {
+    /// The folder to write them to
+    pub(super) folder: PathBuf,
 }
 
 #[derive(Debug, Args)]

@@ -92,6 +92,7 @@ fn dispatch(
         Command::Show(args) => commands::show::run(&args, terminal),
         Command::SolveCmdp(args) => commands::solve_cmdp::run(&args, terminal),
         Command::Schema(args) => Ok(commands::schema::run(&args, terminal)),
+        Command::Man(args) => commands::man::run(&args, terminal),
         Command::Completions(args) => Ok(commands::completions::run(&args, terminal)),
         Command::Import(args) => commands::import::run(&args, terminal),
         Command::Init(args) => commands::init::run(&args, terminal),

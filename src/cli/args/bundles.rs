@@ -133,6 +133,9 @@ pub(in crate::cli) struct ExportArgs {
     /// A folder
     #[arg(long, group = "form")]
     pub(in crate::cli) dir: bool,
+    /// A folder of LaTeX: every table with booktabs beside the paper's numbers, every number by its name in `numbers.tex`
+    #[arg(long, group = "form", conflicts_with = "signature")]
+    pub(in crate::cli) latex: bool,
     /// Put this signature of its `tagmanifest-sha256.txt` into it
     #[arg(long, value_name = "FILE", conflicts_with = "rocrate")]
     pub(in crate::cli) signature: Option<PathBuf>,

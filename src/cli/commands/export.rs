@@ -5,12 +5,24 @@ use crate::cli::args::ExportArgs;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::terminal::Terminal;
 use crate::cli::{checked, load};
-use crate::verify::path_in_bag;
+use crate::report;
+use crate::verify::{path_in_bag, plan_of};
 
 /// Writes a bundle again.
 pub(in crate::cli) fn run(args: &ExportArgs, terminal: Terminal) -> Result<Exit, Failure> {
     let checked::Checked { bundle, words, .. } = checked::bundle(&args.bundle, args.unchecked)?;
     let stem = format!("{}-{}", bundle.name(), bundle.results_digest().short());
+    if args.latex {
+        let (plan, selection) = plan_of(&bundle).map_err(Failure::not_understood)?;
+        let content = report::content_of(&bundle, &plan, &selection)
+            .map_err(|error| Failure { exit: Exit::No, message: error.to_string() })?;
+        let folder = args.out.join(format!("{stem}-latex"));
+        for (name, text) in report::latex(&content) {
+            load::write(&folder.join(name), text.as_bytes())?;
+        }
+        terminal.result(&format!("{words}\n{}", folder.display()));
+        return Ok(Exit::Yes);
+    }
     let mut tree = in_bag(&bundle);
     if let Some(signature) = &args.signature {
         let bytes = load::text_bytes(signature)?;

@@ -13,6 +13,7 @@ pub(super) mod infer;
 pub(super) mod init;
 pub(super) mod lock;
 mod locked;
+pub(super) mod man;
 pub(super) mod plan;
 mod probe;
 pub(super) mod replay;
