@@ -48,6 +48,8 @@ pub struct ClaimRow {
     pub strip: String,
     /// The axis that all strips of the quantity lie on, an SVG.
     pub axis: String,
+    /// How many comparisons the strip leaves out: their effects are of another quantity, or there is none.
+    pub undrawn: usize,
     /// Whether the strip marks what the paper's own numbers give.
     pub has_paper: bool,
 }
@@ -111,6 +113,7 @@ pub(super) fn rows(
             quantity: strip.quantity.name.clone(),
             strip: strip.draw(axis, &format!("{}: {}", row.id, row.numbers)),
             axis: forest::draw_axis(axis),
+            undrawn: row.comparisons.len() - strip.len(),
             has_paper: strip.has_paper(),
             ..row
         }

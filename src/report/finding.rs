@@ -6,8 +6,12 @@ use crate::stats::compatibility::{Agreement, Tally};
 
 /// Returns the finding of `content`: its tables' answers, what became of the paper's claims, and how its printed numbers compare.
 pub(super) fn finding(content: &ReportContent) -> String {
-    let mut sentences: Vec<String> =
-        content.answers.first().map(|found| found.answer.clone()).into_iter().collect();
+    // The page has the rest of the answer a little further down.
+    let first = content.answers.first().map(|found| match found.answer.split_once(". ") {
+        Some((sentence, _)) => format!("{sentence}."),
+        None => found.answer.clone(),
+    });
+    let mut sentences: Vec<String> = first.into_iter().collect();
     let (claims, _) = apart(&content.claims);
     let count = |verdict: &str| claims.iter().filter(|claim| claim.verdict == verdict).count();
     let mut parts = Vec::new();
@@ -75,6 +79,7 @@ mod tests {
     fn answers_come_first_then_claims_and_cells() {
         let mut content = content();
         content.partial = None;
+        content.answers[0].answer.push_str(" It is also the slowest.");
         assert_eq!(
             finding(&content),
             "The third, in 59 % of its trials. Of the paper's 2 claims, 1 holds here and 1 does not; 12 of 15 published means are \

@@ -1,5 +1,6 @@
 //! One instant of a trial of the deadline study: the building, the graph as the robot knows it, its plan, the clock.
 
+use super::still::{ended, ends};
 use crate::figure::svg::{Element, document, number, path_data};
 use crate::geometry::{Outline, Point};
 use crate::math;
@@ -65,6 +66,7 @@ pub(super) fn graph_still(
         body.extend(edges(graph, paper));
         body.extend(policy(graph, paper));
     }
+    body.extend(ends(recording, &|p| paper.place(p)));
     body.extend(robot);
     if let Some(graph) = graph {
         body.extend(
@@ -76,7 +78,8 @@ pub(super) fn graph_still(
     body.push(scale.into_iter().fold(Element::new("g").set("transform", beside), Element::child));
     body.extend(foot(recording, frames, graph, paper));
     let time = frames.last().map_or(0.0, |f| f.time_s);
-    let title = format!("Graph, plan and robot after {} s", number(time));
+    let title =
+        format!("Graph, plan and robot after {} s{}", number(time), ended(recording, frames));
     document(paper.width, paper.height + FOOT, &title, body)
 }
 

@@ -198,7 +198,7 @@ mod tests {
     #[test]
     fn what_latex_would_obey_is_set_as_text() {
         assert_eq!(escaped("a_b & 5 % \\x"), "a\\_b \\& 5 \\% \\textbackslash{}x");
-        assert_eq!(plain("a_b/90 %\n\\x"), "a-b/90 - -x");
+        assert_eq!(plain("a_b/90 %\n\\x"), "a-b/90 ---x");
         assert_eq!(
             (number(-0.5, 1), number(f64::NAN, 1)),
             ("\\ensuremath{-0.5}".into(), "--".into())

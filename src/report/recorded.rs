@@ -47,6 +47,10 @@ pub(super) struct Recorded<'a> {
     /// Deadline study: T (s).
     deadline: Option<f64>,
     graphs: Vec<(usize, &'a GraphView)>,
+    /// Deadline study: the place to reach (m).
+    goal: Option<[f64; 2]>,
+    /// How the trial ended; empty where that is not known.
+    outcome: &'a str,
 }
 
 #[derive(Debug, Serialize)]
@@ -116,6 +120,8 @@ impl<'a> Recorded<'a> {
             rule: &recording.rule,
             deadline: recording.deadline_s,
             graphs: each(frames, |f| f.graph.as_ref()),
+            goal: recording.goal.map(|goal| [short(goal.x), short(goal.y)]),
+            outcome: &recording.outcome,
         }
     }
 }

@@ -97,6 +97,9 @@ pub fn still_svg(recording: &Recording, at: Option<f64>, shown: Shown) -> String
         body.push(candidate.child(title));
     }
     // 6. Robot and scale bar.
+    if is_all {
+        body.extend(ends(recording, &place));
+    }
     if let Some(frame) = frames.last() {
         body.push(robot(recording, frame, &place, scale));
         let nose = frame.pose.transform(Point::new(0.35, 0.0));
@@ -105,8 +108,34 @@ pub fn still_svg(recording: &Recording, at: Option<f64>, shown: Shown) -> String
     body.extend(scale_bar(height, scale));
     let time = frames.last().map_or(0.0, |f| f.time_s);
     let what = if is_all { "Map, frontiers, path and robot" } else { "Map, path and robot" };
-    let title = format!("{what} after {} s", number(time));
+    let title = format!("{what} after {} s{}", number(time), ended(recording, &frames));
     document(width, height, &title, body)
+}
+
+/// Says how the trial ended, where `frames` are all of it.
+pub(super) fn ended(recording: &Recording, frames: &[&Frame]) -> String {
+    let is_end = frames.len() == recording.frames.len() && !recording.outcome.is_empty();
+    if is_end { format!("; the trial ended: {}", recording.outcome) } else { String::new() }
+}
+
+/// Draws where the trial began, and where it was to go.
+pub(super) fn ends(recording: &Recording, place: &impl Fn(Point) -> (f64, f64)) -> Vec<Element> {
+    let mut drawn = Vec::new();
+    if let Some(first) = recording.frames.first() {
+        let (x, y) = place(first.pose.position());
+        let ring = Element::new("circle").at("cx", x).at("cy", y).at("r", 5.0).set("fill", "none");
+        let ring = ring.set("stroke", "#444444").at("stroke-width", 2.0).set("class", "start");
+        drawn.push(ring.child(Element::new("title").text("start")));
+    }
+    if let Some(goal) = recording.goal {
+        let (x, y) = place(goal);
+        let flag = [(0.0, 8.0), (0.0, -10.0), (12.0, -6.0), (0.0, -2.0)];
+        let flag = path_data(flag.map(|(dx, dy)| (x + dx, y + dy)), true);
+        let flag = Element::new("path").set("d", flag).set("fill", "#d55e00").set("class", "goal");
+        let flag = flag.set("stroke", "#444444").at("stroke-width", 1.5);
+        drawn.push(flag.child(Element::new("title").text("goal")));
+    }
+    drawn
 }
 
 /// Draws the robot's map after `frames`.

@@ -119,5 +119,9 @@ fn reenact_into(
     mut recording: recording::Recording,
 ) -> (TrialRecord, recording::Recording) {
     let record = spec.setup.run(spec, Some(&mut recording), &mut ());
+    record.outcome.name().clone_into(&mut recording.outcome);
+    // Who explores for its own sake has no goal, whatever the world names.
+    let mut goals = spec.setup.world().goals.values().filter(|_| recording.deadline_s.is_some());
+    recording.goal = goals.next().copied().filter(|_| goals.next().is_none());
     (record, recording)
 }

@@ -31,6 +31,12 @@ pub struct Recording {
     /// Deadline study: T, the global deadline (s).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub deadline_s: Option<f64>,
+    /// Deadline study: the place to reach (m, world frame).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub goal: Option<Point>,
+    /// How the trial ended: `reached`; empty where that is not known.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub outcome: String,
     /// Every scan that was taken, where a recording was asked for them, in order of time.
     #[serde(skip)]
     pub sensed: Option<Vec<Sensed>>,
@@ -81,6 +87,8 @@ impl Default for Recording {
             plans: Vec::new(),
             rule: String::new(),
             deadline_s: None,
+            goal: None,
+            outcome: String::new(),
             sensed: None,
         }
     }

@@ -79,6 +79,11 @@ pub fn bag_under_banner(
         let scans_end = recording.sensed.iter().flatten().last().map_or(0.0, stamp);
         writing.map(frames_end.max(scans_end))?;
     }
+    if !recording.outcome.is_empty() {
+        let end = recording.frames.last().map_or(0.0, |frame| frame.time_s);
+        let scans_end = recording.sensed.iter().flatten().last().map_or(0.0, stamp);
+        writing.log(end.max(scans_end), &format!("the trial ended: {}", recording.outcome))?;
+    }
     let (bytes, counts) = writing.writer.finish()?;
     Ok(Bag { bytes, counts })
 }
@@ -170,19 +175,14 @@ impl Writing<'_> {
             let markers = markers::graph(at, graph);
             self.writer.write("/graph", at, &MarkerArray { markers })?;
         }
-        if let Some(event) = &frame.event {
-            let log = Log {
-                stamp: Time::of(at),
-                level: INFO,
-                name: "mission",
-                msg: event,
-                file: "",
-                function: "",
-                line: 0,
-            };
-            self.writer.write("/rosout", at, &log)?;
-        }
-        Ok(())
+        frame.event.as_ref().map_or(Ok(()), |event| self.log(at, event))
+    }
+
+    /// Writes a line of the log.
+    fn log(&mut self, at: f64, msg: &str) -> Result<(), BagError> {
+        let (name, file, function) = ("mission", "", "");
+        let log = Log { stamp: Time::of(at), level: INFO, name, msg, file, function, line: 0 };
+        self.writer.write("/rosout", at, &log)
     }
 
     fn map(&mut self, at: f64) -> Result<(), BagError> {

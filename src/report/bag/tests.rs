@@ -95,6 +95,7 @@ fn every_topic_is_there_with_its_type_and_in_order_of_time() {
 fn what_stays_true_is_offered_to_those_who_come_late() {
     let mut recording = sensing();
     recording.deadline_s = Some(30.0);
+    recording.outcome = "late".to_owned();
     let bag = bag(&recording, None).unwrap();
     let mut durable = BTreeMap::new();
     for message in MessageStream::new(&bag.bytes).unwrap() {
@@ -105,6 +106,9 @@ fn what_stays_true_is_offered_to_those_who_come_late() {
     let latched: Vec<&str> =
         durable.iter().filter(|(_, is)| **is).map(|(topic, _)| topic.as_str()).collect();
     assert_eq!(latched, ["/map", "/prior_map", "/tf_static", "/world"]);
+    let last = MessageStream::new(&bag.bytes).unwrap().map(Result::unwrap).last().unwrap();
+    assert_eq!(last.channel.topic, "/rosout");
+    assert!(last.data.windows(21).any(|text| text == b"the trial ended: late"));
     let left = MessageStream::new(&bag.bytes)
         .unwrap()
         .map(Result::unwrap)

@@ -146,6 +146,11 @@ impl Strip {
         })
     }
 
+    /// Returns how many comparisons are drawn.
+    pub(super) fn len(&self) -> usize {
+        self.lines.len()
+    }
+
     /// Returns whether the paper's numbers are marked somewhere.
     pub(super) fn has_paper(&self) -> bool {
         self.lines.iter().any(|line| line.paper.is_some())

@@ -63,13 +63,20 @@ function paintPrior(panel) {
 
 // --- a view of one trial ----------------------------------------------------------------------------------
 
+// What stands above a map and the controls below it: on one screen with them, nothing of it is covered.
+function covered() {
+  const above = element("trials").getBoundingClientRect().top + window.scrollY;
+  const below = document.querySelector(".controls").offsetHeight + 70;
+  return Math.max(0.28 * window.innerHeight, Math.min(above, 260) + below);
+}
+
 // Sizes the canvas to its column and the world's shape, and returns the transform to its pixels.
 function viewport(panel) {
   const { canvas, trial: { view: [x0, y0, x1, y1] } } = panel;
   const ratio = window.devicePixelRatio || 1;
   const width = canvas.clientWidth;
   const wanted = Math.round(width * (y1 - y0) / (x1 - x0));
-  const height = Math.max(160, Math.min(wanted, window.innerHeight * 0.72));
+  const height = Math.max(160, Math.min(wanted, window.innerHeight - covered()));
   if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
     canvas.width = Math.round(width * ratio);
     canvas.height = Math.round(height * ratio);
@@ -118,6 +125,26 @@ function drawWorld({ context, at, scale }, trial) {
     disc(context, at([x, y]), radius * scale);
     context.stroke();
   }
+}
+
+// Where the trial began, and where it was to go.
+function drawEnds({ context, at }, trial) {
+  context.lineWidth = 2;
+  context.font = "600 12px system-ui, sans-serif";
+  context.textAlign = "left";
+  const [x, y] = at([trial.x[0], trial.y[0]]);
+  context.strokeStyle = colour.ink;
+  disc(context, [x, y], 5);
+  context.stroke();
+  halo(context, "start", x + 9, y - 6);
+  if (!trial.goal) return;
+  const [u, v] = at(trial.goal);
+  context.beginPath();
+  for (const [dx, dy] of [[0, 8], [0, -10], [12, -6], [0, -2]]) context.lineTo(u + dx, v + dy);
+  context.fillStyle = colour.chosen;
+  context.fill();
+  context.stroke();
+  halo(context, "goal", u + 9, v + 12);
 }
 
 function drawScan({ context, at }, trial, frame) {

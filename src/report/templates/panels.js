@@ -48,7 +48,7 @@ function panelOf(trial) {
   scroll.append(table, policy);
   side.append(status, scroll, events);
   view.append(canvas, side);
-  const heading = make("h2", "", trial.name);
+  const heading = make("h2", "", trial.outcome ? `${trial.name}: ${trial.outcome.replaceAll("-", " ")}` : trial.name);
   if (trials.length > 1) heading.prepend(swatch(trials.indexOf(trial)));
   section.append(heading, view);
   element("trials").append(section);
@@ -74,6 +74,7 @@ function drawPanel(panel) {
     if (shown("path")) drawPath(view, trial, frame);
     if (shown("frontiers") && decision) drawFrontiers(view, trial, decision[1]);
     if (shown("graph") && graph) drawGraph(view, graph[1]);
+    drawEnds(view, trial);
     drawRobot(view, trial, frame);
   }
   drawScale(view);
@@ -87,7 +88,7 @@ function tell(panel, frame, decision, graph) {
   let text = "not begun";
   if (frame >= 0) {
     const [time, distance, coverage] = [trial.time[frame], trial.distance[frame], trial.coverage[frame]];
-    const ended = now > trial.time.at(-1) ? " · ended" : "";
+    const ended = now > trial.time.at(-1) ? ` · ${trial.outcome || "ended"}` : "";
     const parts = [`${time.toFixed(1)} s`, `${distance.toFixed(2)} m`];
     if (trial.deadline) parts.push(graphStatus(trial, graph?.[1], time));
     else if (mapping) parts.push(`${coverage.toFixed(1)} % covered`);
