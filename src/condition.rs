@@ -1,8 +1,9 @@
 //! A condition of a design.
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::fmt;
 use std::ops::Deref;
+use std::sync::Arc;
 
 /// A value for each of some factors, in the manifest's order; a cell of the design has one for every factor.
 ///
@@ -15,9 +16,28 @@ use std::ops::Deref;
 /// assert_eq!(cell.value("prior"), Some("floor-plan"));
 /// assert_eq!(cell.to_string(), "environment=basic prior=floor-plan");
 /// ```
-#[derive(Debug, Clone, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(transparent)]
-pub struct Condition(Vec<(String, String)>);
+///
+/// All trials of a cell share the one text of its values: a plan may have a million of them.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Condition(Arc<[(String, String)]>);
+
+impl Default for Condition {
+    fn default() -> Self {
+        Self(Arc::new([]))
+    }
+}
+
+impl Serialize for Condition {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.0.as_ref().serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Condition {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Vec::deserialize(deserializer).map(|pairs| Self(pairs.into()))
+    }
+}
 
 impl Condition {
     /// Returns the value of `factor`.
@@ -32,16 +52,14 @@ impl Condition {
 
     /// Adds `value` of `factor` at the end.
     #[must_use]
-    pub fn with(mut self, factor: impl Into<String>, value: impl Into<String>) -> Self {
-        self.0.push((factor.into(), value.into()));
-        self
+    pub fn with(self, factor: impl Into<String>, value: impl Into<String>) -> Self {
+        self.0.iter().cloned().chain([(factor.into(), value.into())]).collect()
     }
 
     /// Adds the values of `other` at the end.
     #[must_use]
-    pub fn and(mut self, other: &Self) -> Self {
-        self.0.extend_from_slice(&other.0);
-        self
+    pub fn and(self, other: &Self) -> Self {
+        self.0.iter().chain(other).cloned().collect()
     }
 
     /// Returns a file name for this cell: the values joined by underscores, `all` where there is no factor. Only

@@ -11,7 +11,7 @@ use crate::digest::Hasher;
 use crate::math;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng as _, SeedableRng as _};
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 /// The identity of a family of streams: the experiment's seed and the trial's declared coordinates.
 ///
@@ -30,13 +30,22 @@ use std::sync::OnceLock;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Seeds {
     experiment: u64,
-    coordinates: Vec<(String, String)>,
+    /// Shared by the trials of a condition.
+    coordinates: Arc<[(String, String)]>,
+    /// The number that stands behind them as the coordinate `trial`, where they are a trial's.
+    trial: Option<u32>,
 }
 
 impl Seeds {
     /// Creates the seeds of the experiment `experiment` at `coordinates`.
     pub fn new(experiment: u64, coordinates: Vec<(String, String)>) -> Self {
-        Self { experiment, coordinates }
+        Self { experiment, coordinates: coordinates.into(), trial: None }
+    }
+
+    /// Returns the seeds of trial `number` of the condition whose coordinates these are: those of one more coordinate, `trial`.
+    #[must_use]
+    pub fn of_trial(&self, number: u32) -> Self {
+        Self { trial: Some(number), ..self.clone() }
     }
 
     /// Returns the stream named `label` at these coordinates.
@@ -47,9 +56,13 @@ impl Seeds {
             // Lengths first, so that ("ab", "c") and ("a", "bc") are different streams.
             hasher.update((text.len() as u64).to_le_bytes()).update(text);
         };
-        for (name, value) in &self.coordinates {
+        for (name, value) in self.coordinates.iter() {
             field(name);
             field(value);
+        }
+        if let Some(number) = self.trial {
+            field("trial");
+            field(&number.to_string());
         }
         field(label);
         Stream { generator: ChaCha8Rng::from_seed(hasher.digest().0), layers: Layers::shared() }

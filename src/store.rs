@@ -3,17 +3,21 @@
 mod directory;
 mod partial;
 mod prune;
+mod scratch;
 mod segments;
 
 pub use directory::{DirectoryStore, Looked};
 pub use partial::abandon;
 pub use prune::Pruned;
+pub use scratch::{DiskScratch, room};
 
-use crate::bundle::{Archive, Fault, archive};
+use crate::bundle::{Archive, Content, Fault, archive};
 use fs_err as fs;
 use partial::Partial;
-use std::io::{self, Read as _};
+use scratch::InFile;
+use std::io::{self, Read as _, Write as _};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Says what went wrong, without the numbers of one operating system.
 pub fn reason(error: &io::Error) -> String {
@@ -41,11 +45,23 @@ pub fn discard(folder: &Path) {
 /// # Errors
 /// Where the file system refuses.
 pub fn publish(directory: &Path, name: &str, bytes: &[u8]) -> io::Result<PathBuf> {
+    publish_with(directory, name, |out| out.write_all(bytes))
+}
+
+/// Does the same with what `write` writes piece by piece.
+///
+/// # Errors
+/// Where the file system refuses, or `write` fails.
+pub fn publish_with(
+    directory: &Path,
+    name: &str,
+    write: impl FnOnce(&mut io::BufWriter<&mut std::fs::File>) -> io::Result<()>,
+) -> io::Result<PathBuf> {
     fs::create_dir_all(directory)?;
     let path = directory.join(name);
     partial::sweep(directory);
     let mut file = Partial::new(directory)?;
-    file.write(bytes)?;
+    file.write_with(write)?;
     file.persist(&path)?;
     sync_folder(directory)?;
     Ok(path)
@@ -151,7 +167,7 @@ pub fn open_bundle(
     let too_big = |found: Option<u64>| {
         let expected = format!("at most {} bytes", limits.bytes);
         let found = found.map_or_else(|| "more".to_owned(), |bytes| format!("{bytes} bytes"));
-        Err(vec![Fault::new("(archive)", expected, found)])
+        Err(vec![Fault::new("(archive)", expected, found).hint(archive::TOO_LARGE)])
     };
     let metadata = fs::metadata(path)?;
     if !metadata.is_dir() {
@@ -162,12 +178,19 @@ pub fn open_bundle(
                 "a device or a pipe",
             )]));
         }
-        return Ok(match content(path, limits.bytes)? {
-            Ok(bytes) => archive::read(&bytes, limits),
-            Err(found) => too_big(found),
-        });
+        let file = open(path)?;
+        let metadata = file.metadata()?;
+        if let Some(found) = odd(&metadata) {
+            return Err(no_file(found));
+        }
+        if metadata.len() > limits.bytes {
+            return Ok(too_big(Some(metadata.len())));
+        }
+        let source = Arc::new(InFile(file.into_parts().0));
+        return archive::read_from(source, metadata.len(), limits);
     }
-    let (mut files, mut faults, mut total, mut entries) = (Vec::new(), Vec::new(), 0, 0);
+    let (mut files, mut faults, mut total, mut held, mut entries) =
+        (Vec::new(), Vec::new(), 0, 0, 0);
     let mut folders = vec![(path.to_owned(), String::new())];
     while let Some((folder, prefix)) = folders.pop() {
         for entry in fs::read_dir(&folder)? {
@@ -182,18 +205,26 @@ pub fn open_bundle(
             let kind = entry.file_type()?;
             if kind.is_dir() {
                 // Its entry says that it is there, should nothing be in it.
-                files.push((format!("{name}/"), Vec::new()));
+                files.push((format!("{name}/"), Content::Held(Vec::new())));
                 folders.push((entry.path(), format!("{name}/")));
             } else if kind.is_file() {
-                match content(&entry.path(), limits.bytes - total)? {
-                    Ok(bytes) => {
-                        total += bytes.len() as u64;
-                        files.push((name, bytes));
-                    }
-                    Err(found) => {
-                        return Ok(too_big(found.map(|bytes| total.saturating_add(bytes))));
-                    }
+                let file = open(&entry.path())?;
+                let length = file.metadata()?.len();
+                total += length;
+                if total > limits.bytes {
+                    return Ok(too_big(Some(total)));
                 }
+                let source = Arc::new(InFile(file.into_parts().0));
+                let file = archive::file_of_folder(&name, source, length)?;
+                held += file.as_file().held().map_or(0, |bytes| bytes.len() as u64);
+                if held > limits.held {
+                    let expected = format!(
+                        "at most {} bytes beside records and tables of trials",
+                        limits.held
+                    );
+                    return Ok(Err(vec![Fault::new("(archive)", expected, "more")]));
+                }
+                files.push((name, file));
             } else {
                 let found = if kind.is_symlink() { "a symbolic link" } else { "a special file" };
                 faults.push(Fault::new(name, "a plain file", found));

@@ -93,6 +93,25 @@ pub struct Table {
     pub rows: Vec<Vec<Value>>,
 }
 
+/// Writes a line of CSV (RFC 4180), ended by a line feed.
+pub fn csv_line(fields: impl Iterator<Item = String>) -> String {
+    let mut line = String::new();
+    for (i, field) in fields.enumerate() {
+        if i > 0 {
+            line.push(',');
+        }
+        if field.contains([',', '"', '\n', '\r']) {
+            line.push('"');
+            line.push_str(&field.replace('"', "\"\""));
+            line.push('"');
+        } else {
+            line.push_str(&field);
+        }
+    }
+    line.push('\n');
+    line
+}
+
 /// Why a text is not a table.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("line {line}: {problem}")]
@@ -130,25 +149,9 @@ impl Table {
 
     /// Writes RFC 4180 with LF line ends and a header line.
     pub fn to_csv(&self) -> String {
-        let mut text = String::new();
-        let mut line = |fields: &mut dyn Iterator<Item = String>| {
-            for (i, field) in fields.enumerate() {
-                if i > 0 {
-                    text.push(',');
-                }
-                if field.contains([',', '"', '\n', '\r']) {
-                    text.push('"');
-                    text.push_str(&field.replace('"', "\"\""));
-                    text.push('"');
-                } else {
-                    text.push_str(&field);
-                }
-            }
-            text.push('\n');
-        };
-        line(&mut self.columns.iter().cloned());
+        let mut text = csv_line(self.columns.iter().cloned());
         for row in &self.rows {
-            line(&mut row.iter().map(ToString::to_string));
+            text.push_str(&csv_line(row.iter().map(ToString::to_string)));
         }
         text
     }

@@ -70,12 +70,13 @@ const DOORS: &[(&str, &[&str])] = &[
     ("rapier2d", &["sim/engine.rs"]),
     ("rayon", &["runner/scheduler.rs"]),
     ("roxmltree", &["document/", "robot/", "world/", "report/"]),
+    ("rustix", &["store/scratch.rs"]),
     ("serde_yaml", &["document/reader.rs"]),
     ("sha2", &["digest.rs"]),
     ("signal_hook", &["cli/interrupt.rs"]),
     ("ssh_key", &["verify/signature/allowed_signers.rs", "verify/signature/ssh.rs"]),
     ("strsim", &["document/diagnostic.rs"]),
-    ("tempfile", &["store/partial.rs"]),
+    ("tempfile", &["store/partial.rs", "store/scratch.rs"]),
     ("zip", &["bundle/archive.rs"]),
 ];
 

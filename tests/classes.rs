@@ -90,7 +90,7 @@ fn copy(from: &Path, to: &Path) {
 /// Runs `verify --level LEVEL`, without rows of robustness tables.
 fn verify(tree: &Tree, level: Level) -> Report {
     let options = Options { level, sample: 59, rows: Some(Rows::Drawn(0)), seed: 4 };
-    let archive = Archive { form: Form::Bag, tree: tree.clone() };
+    let archive = Archive::of(Form::Bag, tree.clone());
     climb(Ok(archive), &options, &Reenactment::new(1).unwrap())
 }
 
@@ -273,7 +273,7 @@ fn fabricated(bundle: &Bundle, path: &str) -> Fabricated {
         return Fabricated::Follows;
     }
     forger::reseal(&mut tree);
-    let forged = Bundle::open(Archive { form: Form::Bag, tree: tree.clone() }).unwrap();
+    let forged = Bundle::open(Archive::of(Form::Bag, tree.clone())).unwrap();
     match plan_of(&forged) {
         Ok(_) => Fabricated::Whole(forger::rederive(tree)),
         Err(_) => Fabricated::Unplannable(tree),

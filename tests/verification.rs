@@ -96,7 +96,7 @@ fn a_bundle_signed_with_openssh_verifies_by_its_allowed_signers() {
     assert!(unchecked.stdout.contains("name those you trust with `--trust FILE`"), "{unchecked:?}");
 
     // One digit of one digest.
-    let Archive { form: Form::Bag, mut tree } = opened else { panic!("a bag") };
+    let Archive { form: Form::Bag, mut tree, .. } = opened else { panic!("a bag") };
     let list = tree.get_mut("tagmanifest-sha256.txt").unwrap();
     list[0] = if list[0] == b'0' { b'1' } else { b'0' };
     desk.write("changed.zip", archive::write(&tree, "changed", Form::Bag));

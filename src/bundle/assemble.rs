@@ -1,17 +1,21 @@
 //! From a plan and its records to everything a bundle says: the one function that `run` seals with and
 //! `verify` derives with.
 
-use super::content::{BundleContent, Person, Publication, SealedCondition, SealedInput};
-use super::{format, wall_time};
+use super::content::{BundleContent, Person, Publication, SealedCondition, SealedInput, in_parts};
+use super::{Content, Gathered, InMemory, LargeFile, Scratch, Spool, format, wall_time};
 use crate::claims::multiverse::Explanation;
+use crate::claims::observations::TrialColumns;
 use crate::claims::observations::TrialsTableError;
 use crate::claims::{self, ClaimVerdict, Observations};
 use crate::json::AsWritten;
 use crate::manifest::InputKind;
 use crate::plan::{Plan, Selection, engine_version};
-use crate::studies::{Dictionary, Exhibit, Findings, Outcome, TrialRecord};
-use crate::table::{Column, DescribedTable, Table};
+use crate::studies::{Dictionary, Exhibit, Findings, Ledger, Outcome, TrialRecord};
+use crate::table::{Column, DescribedTable, Table, Value, csv_line};
 use serde_json::json;
+use std::collections::BTreeMap;
+use std::io::{self, Write as _};
+use std::sync::Arc;
 
 /// Makes the content of the bundle of `plan`, whose trials yielded `records` (in plan order).
 ///
@@ -23,18 +27,36 @@ pub fn assemble(
     selection: &Selection,
     records: &[TrialRecord],
 ) -> Result<BundleContent, TrialsTableError> {
-    let verdicts = verdicts(plan, records)?;
-    Ok(assemble_judged(plan, study_yaml, selection, records, &verdicts))
+    let Gathered { ledger, conditions } = Gathered::of(plan, records);
+    let verdicts = verdicts_of(plan, &ledger)?;
+    let asked = Asked { plan, study_yaml, selection };
+    let content = assemble_judged(asked, &ledger, conditions, &verdicts, &InMemory::default());
+    Ok(content.expect("memory takes every byte"))
 }
 
-/// Makes the content of the bundle of `plan` where its claims are judged already: `verdicts` are those of [`verdicts`].
+/// What was asked: a plan, and what it was made from.
+#[derive(Debug, Clone, Copy)]
+pub struct Asked<'a> {
+    /// The plan.
+    pub plan: &'a Plan,
+    /// The manifest, byte for byte.
+    pub study_yaml: &'a [u8],
+    /// The part of it that was run.
+    pub selection: &'a Selection,
+}
+
+/// Makes the content of the bundle of what was `asked` where its claims are judged already: `ledger` and `conditions` were gathered
+/// from the records, `verdicts` are those of [`verdicts_of`]. What is large is written to `scratch`.
+///
+/// # Errors
+/// Where it cannot be written.
 pub fn assemble_judged(
-    plan: &Plan,
-    study_yaml: &[u8],
-    selection: &Selection,
-    records: &[TrialRecord],
+    Asked { plan, study_yaml, selection }: Asked<'_>,
+    ledger: &Ledger,
+    conditions: Vec<SealedCondition>,
     verdicts: &[ClaimVerdict],
-) -> BundleContent {
+    scratch: &dyn Scratch,
+) -> io::Result<BundleContent> {
     let experiment = &plan.experiment;
     let mut resolved = plan.resolved();
     if plan.partial {
@@ -61,11 +83,12 @@ pub fn assemble_judged(
         let input = experiment.inputs.iter().find(|input| input.as_written == as_written)?;
         Some(format!("{}{}", format::INPUTS, input.name))
     };
-    let (results, mut tables) = results(plan, records, verdicts);
+    let Results { held: results, large: large_results, mut tables } =
+        results(plan, ledger, verdicts, !in_parts(&conditions), scratch)?;
     tables.extend(described_inputs(plan));
     // What was found before what was given.
     tables.sort_by_key(|table| (table.path.starts_with(format::INPUTS), table.path.clone()));
-    BundleContent {
+    Ok(BundleContent {
         name: experiment.name.clone(),
         title: experiment.title.clone(),
         description,
@@ -86,13 +109,14 @@ pub fn assemble_judged(
         study_yaml: study_yaml.to_vec(),
         resolved,
         inputs: inputs.collect(),
-        conditions: sealed_conditions(plan, records),
+        conditions,
         results,
+        large_results,
         tables,
         robustness: experiment.sensitivity.as_ref().and_then(|known| sealed_at(&known.as_written)),
         multiverse: experiment.multiverse.as_ref().and_then(|known| sealed_at(&known.as_written)),
         partial: plan.partial,
-    }
+    })
 }
 
 /// Judges the claims of `plan`'s manifest about the study and returns the verdicts as `results/claims.json` holds them:
@@ -104,46 +128,62 @@ pub fn verdicts(
     plan: &Plan,
     records: &[TrialRecord],
 ) -> Result<Vec<ClaimVerdict>, TrialsTableError> {
+    verdicts_of(plan, &Ledger::of(records))
+}
+
+/// Does the same with the trials of `ledger`.
+///
+/// # Errors
+/// As [`verdicts`].
+pub fn verdicts_of(plan: &Plan, ledger: &Ledger) -> Result<Vec<ClaimVerdict>, TrialsTableError> {
     if plan.partial {
         return Ok(Vec::new());
     }
     let experiment = &plan.experiment;
     let context =
         claims::Context::new(&experiment.published, &experiment.shared_noise, experiment.seed);
-    let trials = findings(plan, records).trials();
     let about_the_study: Vec<_> =
         experiment.claims.iter().filter(|claim| !claim.circumstance).collect();
     if about_the_study.is_empty() {
         return Ok(Vec::new());
     }
     // Read once: to read thousands of trials takes longer than to judge a claim by them.
-    let observations = Observations::read(&trials)?;
+    let observations = observed(plan, ledger)?;
     let judged = about_the_study
         .into_iter()
         .map(|claim| claims::judge_observations(claim, &observations, &context));
     Ok(judged.collect())
 }
 
-/// Returns what tables and figures of `plan` are made from.
-pub fn findings<'a>(plan: &'a Plan, records: &'a [TrialRecord]) -> Findings<'a> {
-    let experiment = &plan.experiment;
-    Findings::new(&experiment.factors, records, &experiment.published).designed(experiment.design())
+/// Returns the trials of `ledger` as claims are judged by them.
+fn observed(plan: &Plan, ledger: &Ledger) -> Result<Observations, TrialsTableError> {
+    let factors = &plan.experiment.factors;
+    let measures = findings(plan, ledger).measures();
+    let mut names: BTreeMap<&str, Arc<str>> = BTreeMap::new();
+    let columns = ledger.groups().iter().map(|group| {
+        let value = |name: &String| group.condition().value(name).unwrap_or_default().to_owned();
+        let mut outcome = |outcome: Outcome| {
+            let name = outcome.name();
+            Arc::clone(names.entry(name).or_insert_with(|| name.into()))
+        };
+        TrialColumns {
+            values: factors.iter().map(|factor| value(&factor.name)).collect(),
+            numbers: group.entries().map(|trial| i64::from(trial.trial())).collect(),
+            outcomes: group.entries().map(|trial| outcome(trial.outcome())).collect(),
+            measures: group
+                .measures()
+                .map(|name| (name.to_owned(), group.column(name).collect()))
+                .collect(),
+        }
+    });
+    let factors = factors.iter().map(|factor| factor.name.clone()).collect();
+    Observations::of_columns(factors, measures.into_iter().map(str::to_owned).collect(), columns)
 }
 
-fn sealed_conditions(plan: &Plan, records: &[TrialRecord]) -> Vec<SealedCondition> {
-    let mut conditions: Vec<SealedCondition> = Vec::new();
-    for (spec, record) in plan.trials.iter().zip(records) {
-        let slug = spec.condition.slug();
-        if conditions.last().is_none_or(|last| last.slug != slug) {
-            let label = spec.condition.to_string();
-            conditions.push(SealedCondition { slug, label, records: Vec::new(), failed: 0 });
-        }
-        if let Some(last) = conditions.last_mut() {
-            last.records.push(record.to_line());
-            last.failed += usize::from(record.outcome == Outcome::PANICKED);
-        }
-    }
-    conditions
+/// Returns what tables and figures of `plan` are made from.
+pub fn findings<'a>(plan: &'a Plan, ledger: &'a Ledger) -> Findings<'a> {
+    let experiment = &plan.experiment;
+    Findings::new(&experiment.factors, ledger, &experiment.published).designed(experiment.design())
 }
 
 /// Writes an author's ORCID iD, in whatever form a manifest gives it, as the address that identifies a person.
@@ -152,12 +192,47 @@ fn orcid_address(written: &str) -> String {
     format!("https://orcid.org/{id}")
 }
 
-/// Files under `results/`: paths there, and bytes; and what the columns of their tables say.
-type Results = (Vec<(String, Vec<u8>)>, Vec<DescribedTable>);
+/// Files under `results/`, by their paths there.
+#[derive(Default)]
+struct Results {
+    held: Vec<(String, Vec<u8>)>,
+    large: Vec<(String, LargeFile)>,
+    /// What the columns of their tables say.
+    tables: Vec<DescribedTable>,
+}
 
-fn results(plan: &Plan, records: &[TrialRecord], verdicts: &[ClaimVerdict]) -> Results {
+impl Results {
+    /// Adds the table of these columns and rows, which has a row for each trial or more.
+    fn add_rows(
+        &mut self,
+        path: &str,
+        columns: &[String],
+        rows: impl Iterator<Item = Vec<Value>>,
+        scratch: &dyn Scratch,
+    ) -> io::Result<()> {
+        let mut spool = Spool::new(scratch);
+        spool.write_all(csv_line(columns.iter().cloned()).as_bytes())?;
+        for row in rows {
+            spool.write_all(csv_line(row.iter().map(ToString::to_string)).as_bytes())?;
+        }
+        match spool.finish()? {
+            Content::Held(bytes) => self.held.push((path.to_owned(), bytes)),
+            Content::Large(file) => self.large.push((path.to_owned(), file)),
+        }
+        Ok(())
+    }
+}
+
+fn results(
+    plan: &Plan,
+    ledger: &Ledger,
+    verdicts: &[ClaimVerdict],
+    with_series: bool,
+    scratch: &dyn Scratch,
+) -> io::Result<Results> {
     let experiment = &plan.experiment;
-    let findings = findings(plan, records);
+    let mut found = Results::default();
+    let findings = findings(plan, ledger);
     let further_outcomes = further_outcomes(plan);
     let dictionary = dictionary(plan, &further_outcomes);
     let in_results = |path: &str| format!("{}{path}", format::RESULTS);
@@ -180,8 +255,8 @@ fn results(plan: &Plan, records: &[TrialRecord], verdicts: &[ClaimVerdict]) -> R
             })
         });
     }
-    let mut files = vec![("trials.csv".to_owned(), trials.to_csv().into_bytes())];
-    if experiment.kind.has_series() {
+    found.add_rows("trials.csv", &trials.columns, findings.trial_rows(), scratch)?;
+    if with_series && experiment.kind.has_series() {
         let series = findings.series();
         let row = "one point of a trial's curve: where coverage first crosses a whole percent, and every 10 s";
         described.push(DescribedTable::of(
@@ -190,8 +265,9 @@ fn results(plan: &Plan, records: &[TrialRecord], verdicts: &[ClaimVerdict]) -> R
             ("Curves of the trials", row),
             |name| dictionary.of_series(name),
         ));
-        files.push(("series.csv".to_owned(), series.to_csv().into_bytes()));
+        found.add_rows("series.csv", &series.columns, findings.series_rows(), scratch)?;
     }
+    let files = &mut found.held;
     for request in &experiment.tables {
         let exhibit = request.exhibit(&findings, &experiment.tables);
         let path = |extension| format!("tables/{}.{extension}", request.id);
@@ -220,7 +296,8 @@ fn results(plan: &Plan, records: &[TrialRecord], verdicts: &[ClaimVerdict]) -> R
         files.push(("multiverse.csv".to_owned(), tidy.to_csv().into_bytes()));
         files.push(("multiverse.md".to_owned(), explanation.to_markdown().into_bytes()));
     }
-    (files, described)
+    found.tables = described;
+    Ok(found)
 }
 
 /// Returns how trials of `plan` can end besides the study's own ways.

@@ -1,6 +1,6 @@
 //! The bag's tag files (RFC 8493): written in one form, read in every harmless one.
 
-use super::{Circumstance, Fault, Limits, Tree, format, names};
+use super::{Circumstance, Fault, FileRef, Files, Limits, format, names};
 use crate::digest::{ResultsDigest, Sha256Digest, StudyDigest};
 
 /// The declaration.
@@ -12,10 +12,10 @@ pub(crate) const AGENT: &str = "Bag-Software-Agent";
 pub(crate) const IDENTIFIER: &str = "External-Identifier";
 
 /// Writes the manifest lines of `files`, in their order.
-pub(super) fn manifest<'a>(files: impl IntoIterator<Item = (&'a String, &'a Vec<u8>)>) -> String {
+pub(super) fn manifest<'a>(files: impl Iterator<Item = (&'a String, FileRef<'a>)>) -> String {
     let mut text = String::new();
-    for (path, bytes) in files {
-        text.push_str(&format!("{}  {path}\n", Sha256Digest::of(bytes)));
+    for (path, file) in files {
+        text.push_str(&format!("{}  {path}\n", file.digest()));
     }
     text
 }
@@ -75,18 +75,19 @@ pub struct BagInfo(pub Vec<(String, String)>);
 impl BagInfo {
     /// Returns the labels that this program writes; without circumstances where it bags a payload whose bag was lost.
     pub(crate) fn of(
-        payload: &Tree,
+        payload: Files<'_>,
+        version: u64,
         circumstance: Option<&Circumstance>,
         results: ResultsDigest,
         study: StudyDigest,
         partial: bool,
         uuid: &str,
     ) -> Self {
-        let octets: usize = payload.values().map(Vec::len).sum();
-        let version = circumstance.map_or(format::VERSION, |c| c.version.as_str());
+        let octets: u64 = payload.iter().map(|(_, file)| file.size()).sum();
+        let program = circumstance.map_or(format::VERSION, |c| c.version.as_str());
         let mut labels = vec![
-            (AGENT, format!("reenact {version} <{}>", format::HOME)),
-            ("Bundle-Format", format::FORMAT.to_string()),
+            (AGENT, format!("reenact {program} <{}>", format::HOME)),
+            ("Bundle-Format", version.to_string()),
             (IDENTIFIER, format!("urn:uuid:{uuid}")),
             ("Partial", partial.to_string()),
             ("Payload-Oxum", format!("{octets}.{}", payload.len())),
@@ -199,7 +200,7 @@ pub(super) fn one_line(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Moment;
+    use super::super::{LargeFiles, Moment, Tree};
     use super::*;
     use proptest::prelude::*;
 
@@ -232,7 +233,8 @@ mod tests {
         };
         let (results, study) = (Sha256Digest::of("r"), Sha256Digest::of("s"));
         let info = BagInfo::of(
-            &Tree::new(),
+            Files { tree: &Tree::new(), large: &LargeFiles::new() },
+            format::WHOLE,
             Some(&circumstance),
             ResultsDigest(results),
             StudyDigest(study),

@@ -1,6 +1,6 @@
 //! What goes into a bundle, as values: the content, the same for everyone, and the circumstances of one run.
 
-use super::{Moment, names};
+use super::{Content, LargeFile, Moment, format, names};
 use crate::digest::FileDigest;
 use crate::digest::Sha256Digest;
 use crate::plan::ResolvedStudy;
@@ -36,6 +36,8 @@ pub struct BundleContent {
     pub conditions: Vec<SealedCondition>,
     /// Tables, figures and verdicts: paths relative to `results/`, and bytes.
     pub results: Vec<(String, Vec<u8>)>,
+    /// Tables of a line for each trial that are not held in memory: paths relative to `results/`.
+    pub large_results: Vec<(String, LargeFile)>,
     /// What the columns of CSV files say, also of such as are there only where the machine was measured: paths relative to
     /// the payload.
     pub tables: Vec<DescribedTable>,
@@ -45,6 +47,18 @@ pub struct BundleContent {
     pub multiverse: Option<String>,
     /// Whether only part of the study was run.
     pub partial: bool,
+}
+
+impl BundleContent {
+    /// Returns the version of the layout that holds it: the oldest that can.
+    pub fn format(&self) -> u64 {
+        if in_parts(&self.conditions) { format::IN_PARTS } else { format::WHOLE }
+    }
+}
+
+/// Returns whether the records of some condition go on in further files. Then no table repeats the curves that are in them.
+pub(super) fn in_parts(conditions: &[SealedCondition]) -> bool {
+    conditions.iter().any(|condition| condition.parts.len() > 1)
 }
 
 /// A person who wrote the manifest.
@@ -83,16 +97,18 @@ pub struct SealedInput {
 }
 
 /// The records of one cell.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct SealedCondition {
     /// File name of the cell, as `Condition::slug` makes it.
     pub slug: String,
     /// The cell in words.
     pub label: String,
-    /// Canonical record lines in plan order, without line feeds.
-    pub records: Vec<String>,
+    /// How many records it has.
+    pub trials: usize,
     /// How many of them panicked.
     pub failed: usize,
+    /// Canonical record lines in plan order, each ended by a line feed, in files of at most [`super::format::PART`] bytes.
+    pub parts: Vec<Content>,
 }
 
 /// Gives every file (path as written, bytes, licence) its name under `inputs/`. Files of equal bytes share a name; files
@@ -144,7 +160,7 @@ impl Circumstance {
     /// Returns the circumstances of a run that must be byte-identical everywhere: nothing but the given instant.
     pub fn reproducible(at: Moment) -> Self {
         Self {
-            version: super::format::VERSION.to_owned(),
+            version: format::VERSION.to_owned(),
             started: at,
             ended: at,
             environment: Vec::new(),

@@ -2,7 +2,7 @@
 
 use super::crate_entities::Entity;
 use super::crate_metadata::Graph;
-use super::{bag, format};
+use super::{SealedCondition, bag, format};
 
 impl Graph<'_> {
     /// Describes what was done: the run, one action a condition, the analysis, and who had them done.
@@ -11,8 +11,10 @@ impl Graph<'_> {
         let (content, circumstance) = (self.content, self.circumstance);
         let inputs: Vec<String> = self.inputs().into_iter().map(|i| i.path).collect();
         let outputs: Vec<String> = self.outputs().into_iter().map(|o| o.path).collect();
-        let records: Vec<String> =
-            content.conditions.iter().map(|c| format::records_path(&c.slug)).collect();
+        let parts = |c: &SealedCondition| -> Vec<String> {
+            (1..=c.parts.len().max(1)).map(|part| format::records_part(&c.slug, part)).collect()
+        };
+        let records: Vec<String> = content.conditions.iter().flat_map(parts).collect();
         let environment: Vec<String> =
             (1..=circumstance.environment.len()).map(|i| format!("#environment-{i}")).collect();
         let timed = |entity: Entity| {
@@ -35,7 +37,7 @@ impl Graph<'_> {
             })
         };
         let failed: usize = content.conditions.iter().map(|c| c.failed).sum();
-        let all: usize = content.conditions.iter().map(|c| c.records.len()).sum();
+        let all: usize = content.conditions.iter().map(|c| c.trials).sum();
         let trials: Vec<String> =
             content.conditions.iter().map(|c| format!("#condition-{}", c.slug)).collect();
 
@@ -53,16 +55,17 @@ impl Graph<'_> {
             .refer_all("environment", &environment),
         ];
         for (condition, id) in content.conditions.iter().zip(&trials) {
-            let count = condition.records.len();
+            let (count, records) = (condition.trials, parts(condition));
             let description =
                 format!("{count} trials of {} with seed {}", condition.label, content.seed);
             let name = format!("Condition {}", condition.label);
-            entities.push(
-                action(id, name, description, condition.failed, count)
-                    .refer("instrument", &simulate)
-                    .refer_all("object", inputs.iter().map(String::as_str).chain(["#seed"]))
-                    .refer("result", &format::records_path(&condition.slug)),
-            );
+            let action = action(id, name, description, condition.failed, count)
+                .refer("instrument", &simulate)
+                .refer_all("object", inputs.iter().map(String::as_str).chain(["#seed"]));
+            entities.push(match &records[..] {
+                [whole] => action.refer("result", whole),
+                parts => action.refer_all("result", parts),
+            });
         }
         entities.push(
             action(

@@ -7,7 +7,7 @@
 use super::crate_entities::Entity;
 use super::crate_people::People;
 use super::readme::license_address;
-use super::{BundleContent, Circumstance, Tree, bag, format, in_payload};
+use super::{BundleContent, Circumstance, FileRef, Files, bag, format, in_payload};
 use crate::digest::{ResultsDigest, Sha256Digest, StudyDigest};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
@@ -25,14 +25,12 @@ const PROFILES: [(&str, &str, &str); 4] = [
 pub(super) fn document(
     content: &BundleContent,
     circumstance: &Circumstance,
-    payload: &Tree,
+    payload: Files<'_>,
     results: ResultsDigest,
     study: StudyDigest,
 ) -> Vec<u8> {
-    let files: BTreeMap<&str, &[u8]> = payload
-        .iter()
-        .filter_map(|(path, bytes)| Some((in_payload(path)?, bytes.as_slice())))
-        .collect();
+    let files: BTreeMap<&str, FileRef<'_>> =
+        payload.iter().filter_map(|(path, file)| Some((in_payload(path)?, file))).collect();
     let graph = Graph { content, circumstance, files, people: People::of(content) };
     let entities: Vec<Value> = std::iter::empty()
         .chain(graph.root(results, study))
@@ -60,7 +58,7 @@ pub(super) fn document(
 pub(super) struct Graph<'a> {
     pub(super) content: &'a BundleContent,
     pub(super) circumstance: &'a Circumstance,
-    files: BTreeMap<&'a str, &'a [u8]>,
+    files: BTreeMap<&'a str, FileRef<'a>>,
     pub(super) people: People,
 }
 
@@ -158,7 +156,7 @@ impl Graph<'_> {
                 .text("url", format::HOME)
                 .text("version", version)
         };
-        let bytes = self.files.get(format::STUDY).copied().unwrap_or_default();
+        let manifest = self.files.get(format::STUDY).copied().unwrap_or(FileRef::Held(&[]));
         let study = Entity::new(
             format::STUDY,
             &["File", "SoftwareSourceCode", "ComputationalWorkflow", "HowTo"],
@@ -167,7 +165,7 @@ impl Graph<'_> {
             described(
                 study,
                 format::STUDY,
-                bytes,
+                manifest,
                 "Study manifest",
                 "The manifest, byte for byte as written; it determines every trial",
             )
@@ -260,9 +258,9 @@ impl Graph<'_> {
             .iter()
             .filter_map(|i| Some((format!("{}{}", format::INPUTS, i.name), i.license.as_ref()?)))
             .collect();
-        for (&path, &bytes) in self.files.iter().filter(|(path, _)| **path != format::STUDY) {
+        for (&path, &file) in self.files.iter().filter(|(path, _)| **path != format::STUDY) {
             let (name, description) = title(path);
-            let entity = described(Entity::new(path, &["File"]), path, bytes, &name, &description)
+            let entity = described(Entity::new(path, &["File"]), path, file, &name, &description)
                 .with(parameters.get(path), |file, parameter| {
                     file.refer("exampleOfWork", parameter)
                 })
@@ -311,13 +309,19 @@ pub(super) struct Parameter {
     parameter: String,
 }
 
-fn described(entity: Entity, path: &str, bytes: &[u8], name: &str, description: &str) -> Entity {
+fn described(
+    entity: Entity,
+    path: &str,
+    file: FileRef<'_>,
+    name: &str,
+    description: &str,
+) -> Entity {
     entity
         .text("name", name)
         .text("description", description)
         .text("encodingFormat", format::media_type(path))
-        .text("contentSize", bytes.len().to_string())
-        .text("sha256", Sha256Digest::of(bytes).hex())
+        .text("contentSize", file.size().to_string())
+        .text("sha256", file.digest().hex())
 }
 
 /// Returns the name and description of a payload file.

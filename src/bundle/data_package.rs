@@ -2,8 +2,8 @@
 //! `data-dictionary.md` for people, both made of the same descriptions.
 
 use super::readme::license_address;
-use super::{BundleContent, BundlePath, Tree, format};
-use crate::digest::{ResultsDigest, Sha256Digest};
+use super::{BundleContent, BundlePath, FileRef, Files, format};
+use crate::digest::ResultsDigest;
 use crate::table::{Column, DescribedTable, Kind};
 use serde_json::{Map, Value, json};
 
@@ -11,14 +11,14 @@ use serde_json::{Map, Value, json};
 pub(super) fn package(
     content: &BundleContent,
     tables: &[DescribedTable],
-    payload: &Tree,
+    payload: Files<'_>,
     digest: ResultsDigest,
 ) -> Vec<u8> {
     let resources: Vec<Value> = tables
         .iter()
         .map(|table| {
             let path = BundlePath::payload(&table.path);
-            resource(table, payload.get(&*path).map_or(&[][..], Vec::as_slice))
+            resource(table, payload.get(&path).unwrap_or(FileRef::Held(&[])))
         })
         .collect();
     let mut package = json!({
@@ -60,7 +60,7 @@ pub(super) fn package(
     format!("{package:#}\n").into_bytes()
 }
 
-fn resource(table: &DescribedTable, bytes: &[u8]) -> Value {
+fn resource(table: &DescribedTable, file: FileRef<'_>) -> Value {
     let name = table.path.trim_end_matches(".csv").replace('/', "-").to_ascii_lowercase();
     let fields: Vec<Value> = table.columns.iter().map(field).collect();
     let mut schema = json!({"fields": fields, "missingValues": [""]});
@@ -76,8 +76,8 @@ fn resource(table: &DescribedTable, bytes: &[u8]) -> Value {
         "format": "csv",
         "mediatype": "text/csv",
         "encoding": "utf-8",
-        "bytes": bytes.len(),
-        "hash": format!("sha256:{}", Sha256Digest::of(bytes)),
+        "bytes": file.size(),
+        "hash": format!("sha256:{}", file.digest()),
         "schema": schema,
     })
 }

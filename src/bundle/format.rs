@@ -5,7 +5,17 @@ use super::Fault;
 /// Version of the layout and of everything that is derived in it; what this program writes, and the newest it reads. Engine and
 /// format together say every byte that follows from manifest, inputs, records and circumstances: whoever changes a table, a
 /// figure or a description raises it.
-pub const FORMAT: u64 = 2;
+pub const FORMAT: u64 = IN_PARTS;
+
+/// The version of bundles of which each condition's records are one file. What fits is written so, and stays what it was.
+pub const WHOLE: u64 = 2;
+
+/// The version of bundles of which some condition's records go on in further files ([`records_part`]), and which have no table of
+/// the curves that are in them. Everything else is as in [`WHOLE`].
+pub const IN_PARTS: u64 = 3;
+
+/// Most bytes of a file of records, unless one record alone has more: what a person's tools still open.
+pub const PART: u64 = 16 << 20;
 
 /// The oldest that this program reads: up to level 2, as it derives nothing the way that was done then.
 pub const OLDEST: u64 = 1;
@@ -74,6 +84,15 @@ pub fn install_words(version: &str) -> String {
 /// Returns the path of a condition's records, relative to the payload.
 pub fn records_path(slug: &str) -> String {
     format!("{TRIALS}{slug}.jsonl")
+}
+
+/// Returns the path of the part `number`, from 1, of a condition's records. A slug has as many underscores as any other slug of its
+/// bundle, so that no part is called like another condition.
+pub fn records_part(slug: &str, number: usize) -> String {
+    match number {
+        0 | 1 => records_path(slug),
+        number => format!("{TRIALS}{slug}_part-{number:04}.jsonl"),
+    }
 }
 
 /// Says what to do about a bundle of the newer format `found`.

@@ -21,7 +21,9 @@ mod crate_people;
 mod data_package;
 mod departure;
 mod fault;
+mod file;
 pub mod format;
+mod gather;
 mod moment;
 pub mod names;
 mod path;
@@ -44,9 +46,13 @@ pub use content::{
 };
 pub use departure::{Departure, shell_word};
 pub use fault::{Fault, visible};
+pub use file::{
+    Content, FileRef, Files, Forgetful, InMemory, LargeFile, LargeFiles, Scratch, Source, Spool,
+};
+pub use gather::{Gathered, Gathering, in_parts};
 pub use moment::Moment;
 pub use path::{BundlePath, in_payload};
-pub use reader::{Bundle, OpenError};
+pub use reader::{Bundle, OpenError, RecordLine};
 pub use resolved::{ConditionEntry, InputEntry, Resolved};
 pub use told::is_version;
 pub use writer::{Additions, SealError, Sealed, in_bag, in_bag_info, seal, seal_with};
@@ -54,7 +60,7 @@ pub use writer::{Additions, SealError, Sealed, in_bag, in_bag_info, seal, seal_w
 use crate::digest::{ResultsDigest, Sha256Digest};
 use std::collections::BTreeMap;
 
-/// Every file of a bundle by its path relative to the bag's root (`bagit.txt`, `data/study.yaml`), sorted bytewise.
+/// Every file of a bundle that is held in memory, by its path relative to the bag's root (`bagit.txt`, `data/study.yaml`), sorted bytewise.
 pub type Tree = BTreeMap<String, Vec<u8>>;
 
 /// Returns whether `path`, relative to `data/`, belongs to the result half: what is byte-identical for everyone.
@@ -67,11 +73,16 @@ pub fn in_result_half(path: &str) -> bool {
 /// Computes the results digest of a tree: SHA-256 over the sorted lines `<hex>  <path>` of its result half, each ended
 /// by a line feed, paths relative to `data/`.
 pub fn results_digest(tree: &Tree) -> ResultsDigest {
-    let mut lines: Vec<String> = tree
+    results_digest_of(Files { tree, large: &LargeFiles::new() })
+}
+
+/// Does the same for files of which some are not in memory.
+pub fn results_digest_of(files: Files<'_>) -> ResultsDigest {
+    let mut lines: Vec<String> = files
         .iter()
-        .filter_map(|(path, bytes)| Some((in_payload(path)?, bytes)))
+        .filter_map(|(path, file)| Some((in_payload(path)?, file)))
         .filter(|(path, _)| in_result_half(path))
-        .map(|(path, bytes)| format!("{}  {path}\n", Sha256Digest::of(bytes)))
+        .map(|(path, file)| format!("{}  {path}\n", file.digest()))
         .collect();
     lines.sort_unstable();
     ResultsDigest(Sha256Digest::of(lines.concat()))

@@ -1,6 +1,6 @@
 //! `ro-crate-preview.html`: the page that archives show for a crate. No script, nothing from the network.
 
-use super::{BundleContent, Circumstance, Tree, format, in_payload};
+use super::{BundleContent, Circumstance, Files, format, in_payload};
 use crate::digest::ResultsDigest;
 use crate::figure::svg::escape;
 
@@ -13,7 +13,7 @@ td:last-child,th:last-child{text-align:right;padding-right:0}img{max-width:100%;
 pub(super) fn page(
     content: &BundleContent,
     circumstance: &Circumstance,
-    payload: &Tree,
+    payload: Files<'_>,
     digest: ResultsDigest,
 ) -> String {
     let mut facts = String::new();
@@ -43,7 +43,7 @@ pub(super) fn page(
     }
 
     let (mut figures, mut files) = (String::new(), String::new());
-    for (path, bytes) in payload {
+    for (path, file) in payload.iter() {
         let path = escape(in_payload(path).unwrap_or(path));
         if format::media_type(&path) == "image/svg+xml" && path.starts_with(format::RESULTS) {
             figures.push_str(&format!(
@@ -52,7 +52,7 @@ pub(super) fn page(
         }
         files.push_str(&format!(
             "<tr><td><a href=\"{path}\">{path}</a></td><td>{} bytes</td></tr>\n",
-            bytes.len()
+            file.size()
         ));
     }
     if !figures.is_empty() {

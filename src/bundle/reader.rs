@@ -1,11 +1,12 @@
 //! A bundle by meaning: what an opened archive says, with every reference inside it resolved.
 
 use super::{
-    Archive, BundlePath, Circumstance, ConditionEntry, Fault, Form, InputEntry, Limits, Resolved,
-    Tree, archive, bag, format, in_payload, results_digest, told,
+    Archive, BundlePath, Circumstance, ConditionEntry, Fault, FileRef, Files, Form, Gathered,
+    Gathering, InputEntry, LargeFiles, Limits, Resolved, Scratch, Tree, archive, bag, format,
+    in_payload, results_digest_of, told,
 };
 use crate::digest::{BundleId, ResultsDigest, Sha256Digest, StudyDigest};
-use crate::plan::{ResolvedStudy, StudyInput};
+use crate::plan::{Plan, ResolvedStudy, StudyInput};
 use crate::studies::TrialRecord;
 use thiserror::Error;
 
@@ -46,6 +47,7 @@ const HEAVIEST_RECORDS: usize = 80 << 20;
 pub struct Bundle {
     form: Form,
     tree: Tree,
+    large: LargeFiles,
     resolved: Resolved,
     study_inputs: Vec<StudyInput>,
 }
@@ -65,7 +67,8 @@ impl Bundle {
     /// [`OpenError::Newer`] for a newer format, [`OpenError::Damaged`] where the manifest, the resolved study or a
     /// file that it names is missing or unreadable.
     pub fn open(archive: Archive) -> Result<Self, OpenError> {
-        let Archive { form, tree } = archive;
+        let Archive { form, tree, large } = archive;
+        let files = Files { tree: &tree, large: &large };
         check_version(&tree).map_err(OpenError::Newer)?;
         let missing = |path: &str, of: &str| Fault::new(BundlePath::payload(path), of, "no file");
         let payload = |path: &str| tree.get(&*BundlePath::payload(path));
@@ -85,24 +88,20 @@ impl Bundle {
             faults.push(missing(&input.path, &format!("the input `{}`", input.as_written)));
         }
         for condition in &resolved.conditions {
-            let path = format::records_path(&condition.slug);
-            match payload(&path).map(|bytes| std::str::from_utf8(bytes)) {
-                Some(Ok(_)) => {}
-                Some(Err(_)) => {
-                    faults.push(Fault::new(
-                        BundlePath::payload(&path),
-                        "UTF-8 text",
-                        "other bytes",
-                    ));
-                }
-                None => faults.push(missing(&path, "the condition's records")),
+            let mut parts = record_parts(files, &condition.slug).peekable();
+            if parts.peek().is_none() {
+                let path = format::records_path(&condition.slug);
+                faults.push(missing(&path, "the condition's records"));
+            }
+            for (path, _) in parts.filter(|(_, file)| !file.is_text()) {
+                faults.push(Fault::new(path, "UTF-8 text", "other bytes"));
             }
         }
         if faults.is_empty() {
             // What is no input is reported at level 3, where the whole document is derived again.
             let inputs = resolved.study.inputs.read().unwrap_or_default();
             let study_inputs = inputs.iter().filter_map(|input| input.read().ok()).collect();
-            Ok(Self { form, tree, resolved, study_inputs })
+            Ok(Self { form, tree, large, resolved, study_inputs })
         } else {
             Err(OpenError::Damaged(faults))
         }
@@ -113,9 +112,19 @@ impl Bundle {
         self.form
     }
 
-    /// Returns every file, by its path in the bag.
+    /// Returns every file that is in memory, by its path in the bag.
     pub fn tree(&self) -> &Tree {
         &self.tree
+    }
+
+    /// Returns every file that is not in memory, by its path in the bag: of records, and of tables that have a line for each trial.
+    pub fn large(&self) -> &LargeFiles {
+        &self.large
+    }
+
+    /// Returns every file, by its path in the bag.
+    pub fn files(&self) -> Files<'_> {
+        Files { tree: &self.tree, large: &self.large }
     }
 
     /// Returns the study's short name.
@@ -171,13 +180,75 @@ impl Bundle {
         &self.resolved.conditions
     }
 
-    /// Returns the record lines of a condition, in plan order; none where there is no such condition.
-    pub fn record_lines(&self, slug: &str) -> impl Iterator<Item = &str> {
-        let bytes = self.payload(&format::records_path(slug)).unwrap_or_default();
-        std::str::from_utf8(bytes).unwrap_or_default().lines()
+    /// Returns the files of a condition's records, in their order, by their paths in the bag; none where there is no such condition.
+    pub fn record_parts(&self, slug: &str) -> impl Iterator<Item = (String, FileRef<'_>)> {
+        record_parts(self.files(), slug)
     }
 
-    /// Reads all records, in plan order.
+    /// Hands over the record lines of a condition, in plan order, until `take` says not to go on; none where there is no such
+    /// condition.
+    pub fn record_lines(&self, slug: &str, mut take: impl FnMut(RecordLine<'_>) -> bool) {
+        for (path, file) in self.record_parts(slug) {
+            let (mut number, mut goes_on) = (0, true);
+            file.lines(|text| {
+                number += 1;
+                goes_on = take(RecordLine { path: &path, number, text });
+                goes_on
+            });
+            if !goes_on {
+                return;
+            }
+        }
+    }
+
+    /// Counts the record lines of a condition.
+    pub fn record_count(&self, slug: &str) -> usize {
+        self.record_parts(slug).map(|(_, file)| file.line_count()).sum()
+    }
+
+    /// Gathers all records, in plan order, for the content of the bundle of `plan`; what of it is large is written to `scratch`.
+    ///
+    /// # Errors
+    /// Every line that is no record, up to a hundred; and where all of them together would take more memory than honest ones can,
+    /// or cannot be written.
+    pub fn gathered(&self, plan: &Plan, scratch: &dyn Scratch) -> Result<Gathered, Vec<Fault>> {
+        const MOST_FAULTS: usize = 100;
+        let unwritten = |error: std::io::Error| {
+            let path = BundlePath::payload(format::TRIALS);
+            vec![Fault::new(path, "records that can be written again", error.to_string())]
+        };
+        let mut gathering = Gathering::new(plan, scratch);
+        let (mut faults, mut ended, mut weight, mut text) = (Vec::new(), None, 0, 0);
+        for condition in &self.resolved.conditions {
+            self.record_lines(&condition.slug, |line| {
+                text += line.text.len();
+                match TrialRecord::from_line(line.text) {
+                    Ok(record) => {
+                        weight += gathering.weight_of(&record);
+                        if weight > HEAVIEST_RECORDS + text {
+                            ended = Some(vec![too_heavy()]);
+                        } else if let Err(error) = gathering.take(&record) {
+                            ended = Some(unwritten(error));
+                        }
+                    }
+                    Err(problem) => {
+                        faults.push(Fault::new(
+                            line.place(),
+                            "a trial record",
+                            problem.to_string(),
+                        ));
+                    }
+                }
+                ended.is_none() && faults.len() < MOST_FAULTS
+            });
+            if let Some(ended) = ended {
+                return Err(ended);
+            }
+        }
+        if faults.is_empty() { gathering.finish().map_err(unwritten) } else { Err(faults) }
+    }
+
+    /// Reads all records into memory, in plan order.
     ///
     /// # Errors
     /// Every line that is no record; and where all of them together would take more memory than honest ones can.
@@ -185,25 +256,24 @@ impl Bundle {
         let (mut records, mut faults) = (Vec::new(), Vec::new());
         let mut weight = 0;
         for condition in &self.resolved.conditions {
-            for (i, line) in self.record_lines(&condition.slug).enumerate() {
-                match TrialRecord::from_line(line) {
+            self.record_lines(&condition.slug, |line| {
+                match TrialRecord::from_line(line.text) {
                     Ok(record) => {
                         weight += record.weight();
                         records.push(record);
-                        if weight > HEAVIEST_RECORDS {
-                            let path = BundlePath::payload(format::TRIALS);
-                            let expected = format!(
-                                "records that take at most {} MiB of memory",
-                                HEAVIEST_RECORDS >> 20
-                            );
-                            return Err(vec![Fault::new(path, expected, "more")]);
-                        }
                     }
                     Err(problem) => {
-                        let place = BundlePath::records(&condition.slug).line(i + 1);
-                        faults.push(Fault::new(place, "a trial record", problem.to_string()));
+                        faults.push(Fault::new(
+                            line.place(),
+                            "a trial record",
+                            problem.to_string(),
+                        ));
                     }
                 }
+                weight <= HEAVIEST_RECORDS
+            });
+            if weight > HEAVIEST_RECORDS {
+                return Err(vec![too_heavy()]);
             }
         }
         if faults.is_empty() { Ok(records) } else { Err(faults) }
@@ -214,7 +284,14 @@ impl Bundle {
         self.payload(&format!("{}{path}", format::RESULTS))
     }
 
-    /// Returns every file under `results/`, by its path there.
+    /// Returns every file under `results/`, also those that are not in memory, by its path there.
+    pub fn result_files(&self) -> impl Iterator<Item = (&str, FileRef<'_>)> {
+        self.files().iter().filter_map(|(path, file)| {
+            Some((in_payload(path)?.strip_prefix(format::RESULTS)?, file))
+        })
+    }
+
+    /// Returns every file under `results/` that is in memory, by its path there.
     pub fn results(&self) -> impl Iterator<Item = (&str, &[u8])> {
         self.under(format::RESULTS)
     }
@@ -228,7 +305,7 @@ impl Bundle {
 
     /// Computes the digest of what came out from the files themselves.
     pub fn results_digest(&self) -> ResultsDigest {
-        results_digest(&self.tree)
+        results_digest_of(self.files())
     }
 
     /// Computes the digest of what was asked from the resolved study.
@@ -263,6 +340,41 @@ impl Bundle {
     fn payload(&self, path: &str) -> Option<&[u8]> {
         self.tree.get(&*BundlePath::payload(path)).map(Vec::as_slice)
     }
+}
+
+/// A line of a file of records.
+#[derive(Debug, Clone, Copy)]
+pub struct RecordLine<'a> {
+    /// The file, by its path in the bag.
+    pub path: &'a str,
+    /// The line's number in it, from 1.
+    pub number: usize,
+    /// The line.
+    pub text: &'a str,
+}
+
+impl RecordLine<'_> {
+    /// Returns where it stands: `data/trials/none.jsonl:2`.
+    pub fn place(&self) -> String {
+        format!("{}:{}", self.path, self.number)
+    }
+}
+
+fn record_parts<'f>(
+    files: Files<'f>,
+    slug: &str,
+) -> impl Iterator<Item = (String, FileRef<'f>)> + use<'f> {
+    let slug = slug.to_owned();
+    (1..).map_while(move |part| {
+        let path = BundlePath::payload(&format::records_part(&slug, part));
+        let file = files.get(&path)?;
+        Some((path.into(), file))
+    })
+}
+
+fn too_heavy() -> Fault {
+    let expected = format!("records that take at most {} MiB of memory", HEAVIEST_RECORDS >> 20);
+    Fault::new(BundlePath::payload(format::TRIALS), expected, "more")
 }
 
 /// Checks that this program reads the version, which stands in the bag's facts and in the resolved study; either may
@@ -308,7 +420,19 @@ mod tests {
         assert_eq!(bundle.input("../worlds/none.yaml"), None);
         let slugs: Vec<_> = bundle.conditions().iter().map(|c| c.slug.as_str()).collect();
         assert_eq!(slugs, ["none", "floor-plan"], "plan order, not alphabetical");
-        let lines: Vec<_> = content.conditions.iter().flat_map(|c| c.records.clone()).collect();
+        let lines: Vec<String> = content
+            .conditions
+            .iter()
+            .flat_map(|c| &c.parts)
+            .flat_map(|part| {
+                let mut lines = Vec::new();
+                part.as_file().lines(|line| {
+                    lines.push(line.to_owned());
+                    true
+                });
+                lines
+            })
+            .collect();
         let back: Vec<_> = bundle.records().unwrap().iter().map(TrialRecord::to_line).collect();
         assert_eq!(back, lines);
         assert_eq!(bundle.results().count(), content.results.len());
@@ -323,12 +447,12 @@ mod tests {
     fn a_newer_format_is_not_mistaken_for_damage() {
         let mut archive = archive::read(sample::zip(), &Limits::default()).unwrap();
         let info = String::from_utf8(archive.tree["bag-info.txt"].clone()).unwrap();
-        let info = info.replace("Bundle-Format: 2", "Bundle-Format: 3");
+        let info = info.replace("Bundle-Format: 2", "Bundle-Format: 4");
         archive.tree.insert("bag-info.txt".into(), info.into_bytes());
         let error = Bundle::open(archive).unwrap_err();
         assert!(matches!(error, OpenError::Newer(_)));
         assert!(error.to_string().starts_with(
-            "bag-info.txt: expected bundle format 2 or older, found bundle format 3 (this is reenact "
+            "bag-info.txt: expected bundle format 3 or older, found bundle format 4 (this is reenact "
         ));
     }
 

@@ -55,11 +55,11 @@ impl Resolved {
     /// Creates the document for `content`.
     pub(crate) fn of(content: &BundleContent) -> Self {
         Self {
-            bundle_format: format::FORMAT,
+            bundle_format: content.format(),
             conditions: content
                 .conditions
                 .iter()
-                .map(|c| ConditionEntry { slug: c.slug.clone(), trials: c.records.len() })
+                .map(|c| ConditionEntry { slug: c.slug.clone(), trials: c.trials })
                 .collect(),
             engine: content.engine.clone(),
             inputs: content
@@ -139,7 +139,7 @@ mod tests {
     fn older_and_missing_formats_are_refused_with_help() {
         assert_eq!(
             Resolved::read(br#"{"bundle-format": 0}"#).unwrap_err().to_string(),
-            "data/study.resolved.json: expected bundle format 1 to 2, found bundle format 0 (no release wrote that format: ask the \
+            "data/study.resolved.json: expected bundle format 1 to 3, found bundle format 0 (no release wrote that format: ask the \
              author for the bundle as `reenact run` sealed it, or run its study.yaml again)"
         );
         assert_eq!(
@@ -156,8 +156,8 @@ mod tests {
         assert_eq!(
             fault.to_string(),
             format!(
-                "data/study.resolved.json: expected bundle format 2 or older, found bundle format 7 (this is reenact {}, \
-                 which reads formats 1 to 2; install the version named after `Bag-Software-Agent` in bag-info.txt (or \
+                "data/study.resolved.json: expected bundle format 3 or older, found bundle format 7 (this is reenact {}, \
+                 which reads formats 1 to 3; install the version named after `Bag-Software-Agent` in bag-info.txt (or \
                  any newer one) to read format 7)",
                 format::VERSION
             )

@@ -1,8 +1,8 @@
 //! A small bundle for tests, and tools to damage it.
 
 use super::{
-    BundleContent, Circumstance, Form, Moment, Person, Publication, Sealed, SealedCondition, Tree,
-    bag, format, seal, seal_inputs,
+    BundleContent, Circumstance, Content, FileRef, Form, Moment, Person, Publication, Sealed,
+    SealedCondition, Tree, bag, format, in_parts, seal, seal_inputs,
 };
 use crate::condition::Condition;
 use crate::digest::{Sha256Digest, TrialKey};
@@ -100,6 +100,11 @@ pub(crate) fn resolved(document: serde_json::Value) -> ResolvedStudy {
     serde_json::from_value(document).unwrap()
 }
 
+fn lines_in_parts(records: &[TrialRecord]) -> Vec<Content> {
+    let lines: Vec<String> = records.iter().map(TrialRecord::to_line).collect();
+    in_parts(lines.iter().map(String::as_str))
+}
+
 /// Returns the content that sealing the sample study with `records` (by condition) yields.
 pub(crate) fn content_of(
     study_yaml: &[u8],
@@ -139,11 +144,13 @@ pub(crate) fn content_of(
             .map(|(slug, records)| SealedCondition {
                 slug: (*slug).into(),
                 label: format!("prior={slug}"),
-                records: records.iter().map(TrialRecord::to_line).collect(),
+                trials: records.len(),
                 failed: 0,
+                parts: lines_in_parts(records),
             })
             .collect(),
         results: results(&all),
+        large_results: Vec::new(),
         tables: tables(),
         robustness: None,
         multiverse: None,
@@ -204,6 +211,9 @@ pub(crate) fn replace(bytes: &mut [u8], from: &[u8], to: &[u8]) {
 /// Makes every checksum of a tree right again: what a forger does. Digests and sizes in the crate's metadata, the
 /// results digest wherever it stands, the bag's manifests and its count of bytes.
 pub(crate) fn recompute(tree: &mut Tree) {
+    fn held(tree: &Tree) -> impl Iterator<Item = (&String, FileRef<'_>)> {
+        tree.iter().map(|(path, bytes)| (path, FileRef::Held(bytes)))
+    }
     let text = |tree: &Tree, path: &str| String::from_utf8(tree[path].clone()).unwrap();
     let mut metadata: serde_json::Value =
         serde_json::from_slice(&tree["data/ro-crate-metadata.json"]).unwrap();
@@ -239,11 +249,11 @@ pub(crate) fn recompute(tree: &mut Tree) {
         })
         .collect();
     tree.insert(format::BAG_INFO.into(), info.into_bytes());
-    tree.insert(format::MANIFEST.into(), bag::manifest(&payload).into_bytes());
+    tree.insert(format::MANIFEST.into(), bag::manifest(held(&payload)).into_bytes());
     let tags: Tree = tree
         .iter()
         .filter(|(p, _)| !p.starts_with("data/") && *p != format::TAG_MANIFEST)
         .map(|(p, b)| (p.clone(), b.clone()))
         .collect();
-    tree.insert(format::TAG_MANIFEST.into(), bag::manifest(&tags).into_bytes());
+    tree.insert(format::TAG_MANIFEST.into(), bag::manifest(held(&tags)).into_bytes());
 }

@@ -7,7 +7,7 @@ use crate::claims::{self, ClaimVerdict};
 use crate::digest::TrialKey;
 use crate::factor::Factor;
 use crate::plan::Plan;
-use crate::studies::TrialRecord;
+use crate::studies::Ledger;
 use crate::table::{Table, Value};
 use std::collections::BTreeMap;
 
@@ -38,7 +38,7 @@ pub struct MachineResults {
 /// Where no claim can be judged by such records.
 pub fn measured(
     plan: &Plan,
-    records: &[TrialRecord],
+    ledger: &Ledger,
     times: Result<&WallTimes, &str>,
 ) -> Result<MachineResults, TrialsTableError> {
     let claims = &plan.experiment.claims;
@@ -52,7 +52,7 @@ pub fn measured(
     let mut files = Vec::new();
     let verdicts = match times {
         Ok(times) => {
-            let table = table(plan, records, times);
+            let table = table(plan, ledger, times);
             files.push(("wall-times.csv".to_owned(), table.to_csv().into_bytes()));
             let judged = claims.iter().map(|claim| claims::judge(claim, &table, &context));
             judged.collect::<Result<Vec<_>, _>>()?
@@ -76,17 +76,17 @@ pub(super) fn columns(factors: &[Factor]) -> Vec<&str> {
 }
 
 /// Makes a table of one row a trial: key, factors, number, outcome and the columns of [`WALL_TIME_COLUMNS`].
-fn table(plan: &Plan, records: &[TrialRecord], times: &WallTimes) -> Table {
+fn table(plan: &Plan, ledger: &Ledger, times: &WallTimes) -> Table {
     let factors = &plan.experiment.factors;
     let mut table = Table::new(columns(factors));
-    for record in records {
-        let mut row: Vec<Value> = vec![record.key.hex().into()];
+    for trial in ledger.entries() {
+        let mut row: Vec<Value> = vec![trial.key().hex().into()];
         row.extend(
-            factors.iter().map(|f| record.condition.value(&f.name).map(str::to_owned).into()),
+            factors.iter().map(|f| trial.condition().value(&f.name).map(str::to_owned).into()),
         );
-        row.push(i64::from(record.trial).into());
-        row.push(record.outcome.name().into());
-        let time = times.get(&record.key);
+        row.push(i64::from(trial.trial()).into());
+        row.push(trial.outcome().name().into());
+        let time = times.get(&trial.key());
         let selections = time.map_or(&[][..], |time| &time.selections_s);
         let longest = selections.iter().copied().reduce(f64::max);
         #[expect(clippy::cast_precision_loss, reason = "choices of one trial")]

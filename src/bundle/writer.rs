@@ -2,11 +2,12 @@
 
 use super::path::PAYLOAD;
 use super::{
-    Bundle, BundleContent, BundlePath, Capsule, Circumstance, Form, Limits, Resolved, Tree,
-    archive, bag, citation, crate_metadata, data_package, format, in_payload, names, preview,
-    readme, results_digest,
+    Bundle, BundleContent, BundlePath, Capsule, Circumstance, Content, FileRef, Files, Form,
+    LargeFile, LargeFiles, Limits, Resolved, Tree, archive, bag, citation, crate_metadata,
+    data_package, format, in_payload, names, preview, readme, results_digest_of,
 };
 use crate::digest::{BundleId, ResultsDigest, Sha256Digest, StudyDigest};
+use std::io::{self, Seek, Write};
 use thiserror::Error;
 
 /// Why content cannot be sealed.
@@ -35,23 +36,29 @@ pub enum SealError {
     /// More than readers take.
     #[error(
         "the bundle would hold {files} files of {bytes} bytes: expected at most {} files and {} bytes, so that anyone can \
-         check it; run the study in parts (--only), or make it smaller",
-        Limits::default().entries,
-        Limits::default().bytes
+         check it; run the study in parts (--only), or allow it more with --max-size, as whoever checks it must too",
+        limits.entries,
+        limits.bytes
     )]
     Size {
         /// How many files.
         files: usize,
         /// Their bytes together.
         bytes: u64,
+        /// What was allowed.
+        limits: Limits,
     },
-    /// A record that spans lines.
-    #[error("{path}: expected one line for each record, found a line feed in record {record}")]
-    Record {
-        /// The condition's file.
-        path: String,
-        /// Index of the record.
-        record: usize,
+    /// More than readers hold in memory.
+    #[error(
+        "the bundle would hold {bytes} bytes beside its records and the tables of them: expected at most {}, so that anyone can \
+         check it; make its inputs smaller",
+        limits.held
+    )]
+    Held {
+        /// The bytes of all files that are held.
+        bytes: u64,
+        /// What was allowed.
+        limits: Limits,
     },
 }
 
@@ -60,8 +67,10 @@ pub enum SealError {
 pub struct Sealed {
     /// File name without extension: `<name>-<first 8 hex of the results digest>`.
     pub stem: String,
-    /// Every file.
+    /// Every file that is in memory.
     pub tree: Tree,
+    /// The others.
+    pub large: LargeFiles,
     /// What came out.
     pub results_digest: ResultsDigest,
     /// What was asked.
@@ -76,9 +85,22 @@ impl Sealed {
         format!("{}.zip", self.stem)
     }
 
-    /// Writes the archive, byte-identical for equal trees.
+    /// Returns every file.
+    pub fn files(&self) -> Files<'_> {
+        Files { tree: &self.tree, large: &self.large }
+    }
+
+    /// Returns the archive, byte-identical for equal files.
     pub fn zip(&self, form: Form) -> Vec<u8> {
-        archive::write(&self.tree, &self.stem, form)
+        archive::write_files(self.files(), &self.stem, form)
+    }
+
+    /// Writes the same archive to `out`, file by file.
+    ///
+    /// # Errors
+    /// Where it cannot be written, or a large file not be read.
+    pub fn write(&self, form: Form, out: impl Write + Seek) -> io::Result<()> {
+        archive::write_to(self.files(), &self.stem, form, out)
     }
 }
 
@@ -95,6 +117,8 @@ pub fn seal(content: &BundleContent, circumstance: &Circumstance) -> Result<Seal
 pub struct Additions<'a> {
     /// The source of the engine that ran it.
     pub source: Option<&'a Capsule>,
+    /// What readers take.
+    pub limits: Limits,
 }
 
 /// Seals `content` together with `additions`.
@@ -115,21 +139,17 @@ pub fn seal_with(
         payload.add_shared(&format!("{}{}", format::INPUTS, input.name), &input.bytes)?;
     }
     for condition in &content.conditions {
-        let path = format::records_path(&condition.slug);
-        let mut lines = String::new();
-        for (record, line) in condition.records.iter().enumerate() {
-            if line.contains('\n') {
-                return Err(SealError::Record { path, record });
-            }
-            lines.push_str(line);
-            lines.push('\n');
+        for (part, lines) in (1..).zip(&condition.parts) {
+            payload.add_content(&format::records_part(&condition.slug, part), lines)?;
         }
-        payload.add(&path, lines.into_bytes())?;
     }
     for (path, bytes) in &content.results {
         payload.add(&format!("{}{path}", format::RESULTS), bytes.clone())?;
     }
-    let results_digest = results_digest(&payload.tree);
+    for (path, file) in &content.large_results {
+        payload.add_large(&format!("{}{path}", format::RESULTS), file.clone())?;
+    }
+    let results_digest = results_digest_of(payload.files());
     for (path, bytes) in &circumstance.files {
         payload.add(&format!("{}{path}", format::CIRCUMSTANCES), bytes.clone())?;
     }
@@ -139,10 +159,10 @@ pub fn seal_with(
     if let Some(capsule) = additions.source {
         payload.add(&capsule.path, capsule.bytes.clone())?;
     }
-    let there = |path: &String| payload.tree.contains_key(&*BundlePath::payload(path));
+    let there = |path: &String| payload.files().get(&BundlePath::payload(path)).is_some();
     let tables: Vec<_> =
         content.tables.iter().filter(|table| there(&table.path)).cloned().collect();
-    let package = data_package::package(content, &tables, &payload.tree, results_digest);
+    let package = data_package::package(content, &tables, payload.files(), results_digest);
     payload.add(format::DATA_PACKAGE, package)?;
     payload.add(format::DICTIONARY, data_package::dictionary(content, &tables).into())?;
     payload.add(format::CITATION, citation::cff(content, circumstance, results_digest).into())?;
@@ -153,35 +173,61 @@ pub fn seal_with(
     let metadata = crate_metadata::document(
         content,
         circumstance,
-        &payload.tree,
+        payload.files(),
         results_digest,
         study_digest,
     );
     payload.add(format::METADATA, metadata)?;
-    let page = preview::page(content, circumstance, &payload.tree, results_digest);
+    let page = preview::page(content, circumstance, payload.files(), results_digest);
     payload.add(format::PREVIEW, page.into())?;
 
     let digests = (results_digest, study_digest);
-    let (tree, bundle_id) = bagged(payload.tree, Some(circumstance), digests, content.partial);
-    check_size(&tree, &Limits::default())?;
-    Ok(Sealed { stem, tree, results_digest, study_digest, bundle_id })
+    let Payload { tree, large, .. } = payload;
+    let facts = Facts { format: content.format(), digests, partial: content.partial };
+    let (tree, bundle_id) = bagged(tree, &large, Some(circumstance), facts);
+    check_size(Files { tree: &tree, large: &large }, additions.limits)?;
+    Ok(Sealed { stem, tree, large, results_digest, study_digest, bundle_id })
 }
 
 #[derive(Default)]
 struct Payload {
     tree: Tree,
+    large: LargeFiles,
     names: names::Names,
 }
 
 impl Payload {
-    fn add(&mut self, path: &str, bytes: Vec<u8>) -> Result<(), SealError> {
+    fn files(&self) -> Files<'_> {
+        Files { tree: &self.tree, large: &self.large }
+    }
+
+    /// Enters the name of a file, and returns its path in the bag.
+    fn enter(&mut self, path: &str) -> Result<String, SealError> {
         check_name(path)?;
         let path = String::from(BundlePath::payload(path));
-        if let Some(other) = self.names.enter(&path) {
-            return Err(SealError::Clash { path, other });
+        match self.names.enter(&path) {
+            Some(other) => Err(SealError::Clash { path, other }),
+            None => Ok(path),
         }
+    }
+
+    fn add(&mut self, path: &str, bytes: Vec<u8>) -> Result<(), SealError> {
+        let path = self.enter(path)?;
         self.tree.insert(path, bytes);
         Ok(())
+    }
+
+    fn add_large(&mut self, path: &str, file: LargeFile) -> Result<(), SealError> {
+        let path = self.enter(path)?;
+        self.large.insert(path, file);
+        Ok(())
+    }
+
+    fn add_content(&mut self, path: &str, content: &Content) -> Result<(), SealError> {
+        match content {
+            Content::Held(bytes) => self.add(path, bytes.clone()),
+            Content::Large(file) => self.add_large(path, file.clone()),
+        }
     }
 
     /// Adds a file that may be there already, if its bytes are the same.
@@ -204,61 +250,83 @@ fn check_name(path: &str) -> Result<(), SealError> {
     Err(SealError::Name { path: path.to_owned(), found })
 }
 
-/// Returns the files of `bundle` in a bag: as they are, or in a new one where only the crate is there.
-pub fn in_bag(bundle: &Bundle) -> Tree {
+/// Returns the files of `bundle` in a bag, those in memory and the others: as they are, or in a new one where only the crate is
+/// there.
+pub fn in_bag(bundle: &Bundle) -> (Tree, LargeFiles) {
+    let (tree, large) = (bundle.tree(), bundle.large());
     if bundle.form() != Form::Crate {
-        return bundle.tree().clone();
+        return (tree.clone(), large.clone());
     }
-    let payload = bundle.tree().iter().filter(|(path, _)| in_payload(path).is_some());
-    let payload = payload.map(|(path, bytes)| (path.clone(), bytes.clone())).collect();
-    let digests = (bundle.results_digest(), bundle.study_digest());
-    bagged(payload, None, digests, bundle.is_partial()).0
+    (bagged(payload_of(tree), large, None, facts_of(bundle)).0, large.clone())
 }
 
 /// Returns what `bag-info.txt` says of `bundle`, with the circumstances of its run or without any.
 pub fn in_bag_info(bundle: &Bundle, circumstance: Option<&Circumstance>) -> bag::BagInfo {
-    let payload = bundle.tree().iter().filter(|(path, _)| in_payload(path).is_some());
-    let payload: Tree = payload.map(|(path, bytes)| (path.clone(), bytes.clone())).collect();
-    let digests = (bundle.results_digest(), bundle.study_digest());
-    info_of(&payload, circumstance, digests, bundle.is_partial())
+    let payload = payload_of(bundle.tree());
+    info_of(Files { tree: &payload, large: bundle.large() }, circumstance, facts_of(bundle))
 }
 
-fn info_of(
-    payload: &Tree,
-    circumstance: Option<&Circumstance>,
-    (results, study): (ResultsDigest, StudyDigest),
-    partial: bool,
-) -> bag::BagInfo {
-    let uuid = uuid(&Sha256Digest::of(bag::manifest(payload)));
-    bag::BagInfo::of(payload, circumstance, results, study, partial, &uuid)
+/// Returns the files of the payload that are in memory.
+fn payload_of(tree: &Tree) -> Tree {
+    let payload = tree.iter().filter(|(path, _)| in_payload(path).is_some());
+    payload.map(|(path, bytes)| (path.clone(), bytes.clone())).collect()
 }
 
-/// Returns `payload` with the tag files of its bag.
-fn bagged(
-    payload: Tree,
-    circumstance: Option<&Circumstance>,
+/// What a bag says of its payload.
+struct Facts {
+    format: u64,
     digests: (ResultsDigest, StudyDigest),
     partial: bool,
+}
+
+fn facts_of(bundle: &Bundle) -> Facts {
+    let digests = (bundle.results_digest(), bundle.study_digest());
+    // A bundle that claims another format than ours is bagged by us all the same.
+    let format = bundle.format().clamp(format::WHOLE, format::FORMAT);
+    Facts { format, digests, partial: bundle.is_partial() }
+}
+
+fn info_of(payload: Files<'_>, circumstance: Option<&Circumstance>, facts: Facts) -> bag::BagInfo {
+    let Facts { format, digests: (results, study), partial } = facts;
+    let uuid = uuid(&Sha256Digest::of(bag::manifest(payload.iter())));
+    bag::BagInfo::of(payload, format, circumstance, results, study, partial, &uuid)
+}
+
+/// Returns `payload` with the tag files of its bag, which covers the `large` files of the payload too.
+fn bagged(
+    payload: Tree,
+    large: &LargeFiles,
+    circumstance: Option<&Circumstance>,
+    facts: Facts,
 ) -> (Tree, BundleId) {
     let mut tree = payload;
-    let manifest = bag::manifest(&tree);
-    let info = info_of(&tree, circumstance, digests, partial);
+    let files = Files { tree: &tree, large };
+    let manifest = bag::manifest(files.iter());
+    let info = info_of(files, circumstance, facts);
     let mut tags = Tree::new();
     tags.insert(format::BAGIT.to_owned(), bag::DECLARATION.into());
     tags.insert(format::BAG_INFO.to_owned(), info.to_text().into_bytes());
     tags.insert(format::MANIFEST.to_owned(), manifest.into_bytes());
-    let tag_manifest = bag::manifest(&tags).into_bytes();
+    let listed = tags.iter().map(|(path, bytes)| (path, FileRef::Held(bytes)));
+    let tag_manifest = bag::manifest(listed).into_bytes();
     let bundle_id = BundleId(Sha256Digest::of(&tag_manifest));
     tags.insert(format::TAG_MANIFEST.to_owned(), tag_manifest);
     tree.append(&mut tags);
     (tree, bundle_id)
 }
 
-/// Checks that readers that keep to `limits` take `tree`.
-fn check_size(tree: &Tree, limits: &Limits) -> Result<(), SealError> {
-    let bytes = tree.values().map(|bytes| bytes.len() as u64).sum();
-    let fits = bytes <= limits.bytes && tree.len() <= limits.entries;
-    if fits { Ok(()) } else { Err(SealError::Size { files: tree.len(), bytes }) }
+/// Checks that readers that keep to `limits` take `files`.
+fn check_size(files: Files<'_>, limits: Limits) -> Result<(), SealError> {
+    let bytes = files.iter().map(|(_, file)| file.size()).sum();
+    let held = files.tree.values().map(|bytes| bytes.len() as u64).sum();
+    let count = files.len();
+    if held > limits.held {
+        Err(SealError::Held { bytes: held, limits })
+    } else if bytes > limits.bytes || count > limits.entries {
+        Err(SealError::Size { files: count, bytes, limits })
+    } else {
+        Ok(())
+    }
 }
 
 /// Makes a UUID of version 8 of the first bits of `digest` (RFC 9562, section 5.8 and appendix B.2).
@@ -319,13 +387,25 @@ mod tests {
         let mut content = sample::content();
         content.results = vec![("big".into(), vec![b'x'; 48 << 20])];
         let error = seal(&content, &sample::circumstance()).unwrap_err();
-        let SealError::Size { files, bytes } = error else { panic!("{error}") };
-        assert!(files == 19 && bytes > 48 << 20, "{files} files, {bytes} bytes");
+        let SealError::Held { bytes, .. } = error else { panic!("{error}") };
+        assert!(bytes > 48 << 20, "{bytes} bytes");
         assert_eq!(
             error.to_string(),
             format!(
-                "the bundle would hold 19 files of {bytes} bytes: expected at most 20000 files and 50331648 bytes, so that \
-                 anyone can check it; run the study in parts (--only), or make it smaller"
+                "the bundle would hold {bytes} bytes beside its records and the tables of them: expected at most 50331648, so \
+                 that anyone can check it; make its inputs smaller"
+            )
+        );
+        let limits = Limits { bytes: 1000, ..Limits::default() };
+        let additions = Additions { limits, ..Additions::default() };
+        let small = sample::content();
+        let error = seal_with(&small, &sample::circumstance(), additions).unwrap_err();
+        let SealError::Size { files, bytes, .. } = error else { panic!("{error}") };
+        assert_eq!(
+            error.to_string(),
+            format!(
+                "the bundle would hold {files} files of {bytes} bytes: expected at most 20000 files and 1000 bytes, so that anyone can \
+                 check it; run the study in parts (--only), or allow it more with --max-size, as whoever checks it must too"
             )
         );
     }
@@ -357,12 +437,6 @@ mod tests {
         assert_eq!(
             seal(&content, &sample::circumstance()).unwrap_err().to_string(),
             "data/results/A: expected every file under its own name, found another of the same name (`data/results/a`)"
-        );
-        let mut content = sample::content();
-        content.conditions[0].records[1].push('\n');
-        assert_eq!(
-            seal(&content, &sample::circumstance()).unwrap_err().to_string(),
-            "trials/none.jsonl: expected one line for each record, found a line feed in record 1"
         );
     }
 }

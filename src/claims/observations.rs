@@ -5,6 +5,7 @@ use super::cells::Where;
 use super::metric::{FAILED, Metric};
 use crate::table::{Table, Value};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use thiserror::Error;
 
 /// Trials grouped by condition, in the order of the table.
@@ -63,11 +64,24 @@ pub(crate) struct ConditionTrials {
     /// Trial numbers.
     pub(crate) numbers: Vec<i64>,
     /// Of trials that are made up there are none.
-    outcomes: Vec<String>,
+    outcomes: Vec<Arc<str>>,
     /// By name; as long as `numbers`.
     measures: Measures,
     /// Whether each trial counts, by the name of the share, where trials are made up; as long as `numbers`.
     shares: BTreeMap<String, Vec<bool>>,
+}
+
+/// The trials of one condition, column by column.
+#[derive(Debug, Clone, Default)]
+pub struct TrialColumns {
+    /// Factor values, in the order of the factors.
+    pub values: Vec<String>,
+    /// Trial numbers.
+    pub numbers: Vec<i64>,
+    /// Names of the outcomes; as long as `numbers`.
+    pub outcomes: Vec<Arc<str>>,
+    /// By name; each as long as `numbers`.
+    pub measures: BTreeMap<String, Vec<Option<f64>>>,
 }
 
 /// The readings of one metric in one condition, to be made up.
@@ -176,12 +190,70 @@ impl Observations {
                 });
             };
             here.numbers.push(*number);
-            here.outcomes.push(outcome.clone());
+            here.outcomes.push(outcome.as_str().into());
             for (name, value) in measures.iter().zip(&row[trial + 2..]) {
                 here.measures.entry(name.clone()).or_default().push(value.as_f64());
             }
         }
+        Self::of(factors, measures, conditions)
+    }
+
+    /// Returns the trials that `columns` hold, of a design of these factors; a measure that a condition says nothing of was not
+    /// reached there.
+    ///
+    /// # Errors
+    /// Where a trial is there twice.
+    pub fn of_columns(
+        factors: Vec<String>,
+        measures: Vec<String>,
+        columns: impl IntoIterator<Item = TrialColumns>,
+    ) -> Result<Self, TrialsTableError> {
+        let mut conditions: Vec<ConditionTrials> = Vec::new();
+        let mut places: BTreeMap<Vec<String>, usize> = BTreeMap::new();
+        for mut here in columns {
+            let read = measures.iter().map(|name| {
+                let column = here.measures.remove(name);
+                (name.clone(), column.unwrap_or_else(|| vec![None; here.numbers.len()]))
+            });
+            let read: Measures = read.collect();
+            let TrialColumns { values, numbers, outcomes, .. } = here;
+            match places.get(&values) {
+                // In plan order a condition does not begin anew, unless its records were written by somebody else.
+                Some(&known) => {
+                    let known = &mut conditions[known];
+                    known.numbers.extend(numbers);
+                    known.outcomes.extend(outcomes);
+                    for (name, column) in read {
+                        known.measures.entry(name).or_default().extend(column);
+                    }
+                }
+                None => {
+                    places.insert(values.clone(), conditions.len());
+                    let shares = BTreeMap::new();
+                    conditions.push(ConditionTrials {
+                        values,
+                        numbers,
+                        outcomes,
+                        measures: read,
+                        shares,
+                    });
+                }
+            }
+        }
+        Self::of(factors, measures, conditions)
+    }
+
+    /// Returns those of `conditions`, where no trial is there twice.
+    fn of(
+        factors: Vec<String>,
+        measures: Vec<String>,
+        conditions: Vec<ConditionTrials>,
+    ) -> Result<Self, TrialsTableError> {
         for condition in &conditions {
+            // Of a condition in plan order there is nothing to be sorted.
+            if condition.numbers.is_sorted_by(|a, b| a < b) {
+                continue;
+            }
             let mut numbers = condition.numbers.clone();
             numbers.sort_unstable();
             if let Some(twice) = numbers.windows(2).find(|pair| pair[0] == pair[1]) {
@@ -352,7 +424,7 @@ impl ConditionTrials {
     /// Returns the value of `metric` in one trial: `None` where the run did not reach it.
     pub(crate) fn reading(&self, row: usize, metric: &Metric) -> Result<Option<f64>, FailedTrial> {
         let outcome = self.outcomes.get(row);
-        if outcome.is_some_and(|outcome| outcome == FAILED) {
+        if outcome.is_some_and(|outcome| **outcome == *FAILED) {
             return Err(FailedTrial);
         }
         if metric.is_share() {
@@ -370,7 +442,7 @@ impl ConditionTrials {
         if let Metric::Measure(name) = metric {
             // Looked up once for all trials: nearly every metric that is read is one column.
             let column = self.measures.get(name);
-            let failed = |row: usize| self.outcomes.get(row).is_some_and(|o| o == FAILED);
+            let failed = |row: usize| self.outcomes.get(row).is_some_and(|o| **o == *FAILED);
             for row in 0..self.numbers.len() {
                 if failed(row) {
                     readings.failed += 1;
@@ -402,7 +474,7 @@ impl ConditionTrials {
             return;
         }
         for outcome in &self.outcomes {
-            if outcome == FAILED {
+            if **outcome == *FAILED {
                 counted.failed += 1;
             } else {
                 counted.reached += 1;

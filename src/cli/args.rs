@@ -4,7 +4,7 @@ mod bundles;
 mod studies;
 
 pub(super) use bundles::{
-    AttestArgs, DiffArgs, DiffFormat, ExportArgs, ReplayArgs, ReportArgs, VerifyArgs,
+    AttestArgs, DiffArgs, DiffFormat, ExportArgs, LimitsArgs, ReplayArgs, ReportArgs, VerifyArgs,
 };
 pub(super) use studies::{CheckArgs, InferArgs, LockArgs, PlanArgs, RunArgs, VaryArgs};
 

@@ -1,6 +1,7 @@
 //! Bundles for the commands that show, compare or hand on what they hold: each is checked to level 3 first, and what that
 //! found is the first thing said.
 
+use super::args::LimitsArgs;
 use super::exit::{Exit, Failure};
 use super::load;
 use super::terminal::counted;
@@ -36,12 +37,12 @@ impl From<Refused> for Failure {
 }
 
 /// Opens and checks the bundle at `path`. One that is not what it says is refused, unless it is wanted `unchecked`.
-pub(super) fn bundle(path: &Path, unchecked: bool) -> Result<Checked, Refused> {
+pub(super) fn bundle(path: &Path, unchecked: bool, limits: LimitsArgs) -> Result<Checked, Refused> {
     let unread = |failure| Refused { failure, is_read: false };
     // Level 3 executes nothing, so it needs one thread and no seed.
     let pipeline = Reenactment::new(1).map_err(Failure::failed).map_err(unread)?;
     let options = Options { level: Level::Derived, sample: 1, rows: None, seed: 0 };
-    let opened = load::archive(path).map_err(unread)?;
+    let opened = load::archive(path, limits).map_err(unread)?;
     let (report, bundle) = climb_and_keep(&Reviewer::anonymous(), opened, &options, &pipeline);
     let Some(bundle) = bundle else { return Err(unread(refused(path, &report, None))) };
     let reached = report.reached.map_or("no level".to_owned(), |level| format!("level {level}"));

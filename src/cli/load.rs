@@ -1,10 +1,10 @@
 //! Manifests and bundles from disk.
 
-use super::args::SelectArgs;
+use super::args::{LimitsArgs, SelectArgs};
 use super::calibrate::Calibrator;
 use super::exit::Failure;
 use super::terminal::Terminal;
-use crate::bundle::archive::{Archive, Limits};
+use crate::bundle::archive::Archive;
 use crate::bundle::{Resolved, format, names};
 use crate::document::{Diagnostic, Severity, Source};
 use crate::manifest::{self, CalibrationTrials, Experiment, InputError, Inputs, WrittenIn};
@@ -14,7 +14,7 @@ use crate::studies::TrialSpec;
 use crate::verify::LONGEST_ATTESTATION;
 use crate::world::mesh;
 use std::collections::BTreeMap;
-use std::io::ErrorKind;
+use std::io::{BufWriter, ErrorKind};
 use std::path::{Path, PathBuf};
 
 /// Most bytes of a text that a command is given: a manifest, a lock, keys, a signature. No person writes as much.
@@ -136,8 +136,11 @@ pub(super) fn plan(
 }
 
 /// Opens a bundle or says why not: what is wrong with its content stays data.
-pub(super) fn archive(path: &Path) -> Result<Result<Archive, Vec<crate::bundle::Fault>>, Failure> {
-    store::open_bundle(path, &Limits::default()).map_err(|e| unreadable(path, &e))
+pub(super) fn archive(
+    path: &Path,
+    limits: LimitsArgs,
+) -> Result<Result<Archive, Vec<crate::bundle::Fault>>, Failure> {
+    store::open_bundle(path, &limits.limits()).map_err(|e| unreadable(path, &e))
 }
 
 /// Reads a text file.
@@ -177,9 +180,40 @@ pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     let name = path.file_name().and_then(|n| n.to_str()).ok_or_else(|| {
         Failure::not_understood(format!("`{}` is no name for a file", path.display()))
     })?;
-    store::publish(folder, name, bytes)
-        .map(drop)
-        .map_err(|e| Failure::failed(format!("cannot write `{}`: {}", path.display(), reason(&e))))
+    store::publish(folder, name, bytes).map(drop).map_err(|e| unwritten(path, &e))
+}
+
+/// Writes a file that the user named piece by piece.
+pub(super) fn write_with(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<&mut std::fs::File>) -> std::io::Result<()>,
+) -> Result<(), Failure> {
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let name = path.file_name().and_then(|n| n.to_str()).ok_or_else(|| {
+        Failure::not_understood(format!("`{}` is no name for a file", path.display()))
+    })?;
+    store::publish_with(folder, name, write).map(drop).map_err(|e| unwritten(path, &e))
+}
+
+/// Returns a folder as it may be shown: where none is named, it is this one.
+pub(super) fn shown(folder: &Path) -> String {
+    match folder.display().to_string() {
+        empty if empty.is_empty() => ".".to_owned(),
+        name => name,
+    }
+}
+
+/// Creates the failure of a file that cannot be written.
+pub(super) fn unwritten(path: &Path, error: &std::io::Error) -> Failure {
+    Failure::failed(format!("cannot write `{}`: {}", path.display(), reason(error)))
+}
+
+/// Returns a place beside what is to be written in `folder`, for what does not fit into memory.
+pub(super) fn scratch(folder: &Path) -> store::DiskScratch {
+    store::DiskScratch::in_folder(folder)
 }
 
 /// Creates the failure of a file that cannot be read: a missing one is the user's fault; anything else is ours.

@@ -9,6 +9,7 @@ mod commands;
 mod estimate;
 mod exit;
 mod fold;
+mod forecast;
 mod interrupt;
 mod junit;
 mod load;

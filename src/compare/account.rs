@@ -3,11 +3,11 @@
 use super::Settings;
 use crate::bundle::{Bundle, BundlePath, Fault};
 use crate::claims::{ClaimVerdict, Judgement};
-use crate::digest::{FileDigest, ResultsDigest, Sha256Digest, TrialKey};
+use crate::digest::{FileDigest, Hasher, ResultsDigest, Sha256Digest, TrialKey};
 use crate::studies::{Measures, TrialRecord};
 use serde::Deserialize;
 use serde_json::Value;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// One side of a comparison.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,6 +34,8 @@ pub struct Account {
     pub results: BTreeMap<String, ResultFile>,
     /// The verdict on each claim, by its id.
     pub claims: BTreeMap<String, Judgement>,
+    /// Names of the measures that any trial which this side holds says something of.
+    pub measures: BTreeSet<String>,
 }
 
 /// A cell.
@@ -56,6 +58,15 @@ pub struct TrialAccount {
     pub key: TrialKey,
     /// Its number within the condition.
     pub number: u32,
+    /// Digest of its record's line.
+    pub sha256: Sha256Digest,
+    /// What its record says; nothing of a trial that is the same on both sides, where there are many.
+    pub told: Option<Box<Told>>,
+}
+
+/// What the record of a trial says, without its curve.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Told {
     /// Why it ended.
     pub outcome: String,
     /// How, in words, where the outcome alone does not say.
@@ -64,8 +75,6 @@ pub struct TrialAccount {
     pub measures: Measures,
     /// Its state hashes.
     pub chain: Vec<String>,
-    /// Digest of its record's line.
-    pub sha256: Sha256Digest,
 }
 
 /// A file under `results/`.
@@ -80,22 +89,30 @@ pub struct ResultFile {
 /// The measure that stands for a record's simulated time (s).
 pub(super) const SIM_SECONDS: &str = "sim-seconds";
 
-impl TrialAccount {
-    /// Returns the account of a record.
-    fn of(record: TrialRecord, line: &str) -> Self {
+impl Told {
+    fn of(record: TrialRecord) -> Box<Self> {
         let mut measures = record.measures;
         measures.insert(SIM_SECONDS, Some(record.sim_seconds));
-        Self {
-            key: record.key,
-            number: record.trial,
-            outcome: record.outcome.name().to_owned(),
-            cause: record.cause,
-            measures,
-            chain: record.chain,
-            sha256: Sha256Digest::of(line),
-        }
+        let outcome = record.outcome.name().to_owned();
+        Box::new(Self { outcome, cause: record.cause, measures, chain: record.chain })
     }
 }
+
+impl TrialAccount {
+    /// Returns what its record says; an empty one where that is not known here.
+    pub fn told(&self) -> &Told {
+        static NOTHING: Told = Told {
+            outcome: String::new(),
+            cause: String::new(),
+            measures: Measures::new(),
+            chain: Vec::new(),
+        };
+        self.told.as_deref().unwrap_or(&NOTHING)
+    }
+}
+
+/// How many trials two bundles may have together for everything to be told of each.
+const FEW: usize = 20_000;
 
 impl Account {
     /// Returns the account of a bundle.
@@ -103,28 +120,77 @@ impl Account {
     /// # Errors
     /// Every line that is not a record, and `results/claims.json` where it is not a list of verdicts.
     pub fn of_bundle(bundle: &Bundle) -> Result<Self, Vec<Fault>> {
+        Self::telling(bundle, |_| true)
+    }
+
+    /// Returns the accounts of two bundles; where these are large, what records say is told of trials alone that the other does not
+    /// have as they are.
+    ///
+    /// # Errors
+    /// As [`Self::of_bundle`].
+    pub fn of_bundles(a: &Bundle, b: &Bundle) -> [Result<Self, Vec<Fault>>; 2] {
+        let trials = |bundle: &Bundle| -> usize {
+            bundle.conditions().iter().map(|c| bundle.record_count(&c.slug)).sum()
+        };
+        if trials(a) + trials(b) <= FEW {
+            return [a, b].map(Self::of_bundle);
+        }
+        let digests = |bundle: &Bundle| {
+            let mut digests: Vec<Sha256Digest> = Vec::with_capacity(trials(bundle));
+            for condition in bundle.conditions() {
+                bundle.record_lines(&condition.slug, |line| {
+                    digests.push(Sha256Digest::of(line.text));
+                    true
+                });
+            }
+            digests.sort_unstable();
+            digests
+        };
+        let only_in = |bundle: &Bundle, other: Vec<Sha256Digest>| {
+            Self::telling(bundle, |line| other.binary_search(line).is_err())
+        };
+        [(a, b), (b, a)].map(|(one, other)| only_in(one, digests(other)))
+    }
+
+    /// Returns the account of a bundle, with what those records say whose digests `tells` wants.
+    fn telling(bundle: &Bundle, tells: impl Fn(&Sha256Digest) -> bool) -> Result<Self, Vec<Fault>> {
+        let mut measures: BTreeSet<String> = BTreeSet::from([SIM_SECONDS.to_owned()]);
         let mut faults = Vec::new();
         let mut conditions = Vec::new();
         for entry in bundle.conditions() {
-            let (mut known, mut all) = (Vec::new(), String::new());
-            for (i, line) in bundle.record_lines(&entry.slug).enumerate() {
-                all.push_str(line);
-                all.push('\n');
-                match TrialRecord::from_line(line) {
-                    Ok(record) => known.push(TrialAccount::of(record, line)),
-                    Err(problem) => faults.push(Fault::new(
-                        BundlePath::records(&entry.slug).line(i + 1),
-                        "a trial record",
-                        problem.to_string(),
-                    )),
+            let (mut known, mut all) = (Vec::new(), Hasher::new());
+            bundle.record_lines(&entry.slug, |line| {
+                all.update(line.text).update("\n");
+                match TrialRecord::from_line(line.text) {
+                    Ok(record) => {
+                        for name in record.measures.names() {
+                            if !measures.contains(name) {
+                                measures.insert(name.to_owned());
+                            }
+                        }
+                        let (key, number) = (record.key, record.trial);
+                        let sha256 = Sha256Digest::of(line.text);
+                        let told = tells(&sha256).then(|| Told::of(record));
+                        known.push(TrialAccount { key, number, sha256, told });
+                    }
+                    Err(problem) => {
+                        faults.push(Fault::new(
+                            line.place(),
+                            "a trial record",
+                            problem.to_string(),
+                        ));
+                    }
                 }
-            }
-            let (slug, records) = (entry.slug.clone(), Sha256Digest::of(&all));
+                true
+            });
+            let (slug, records) = (entry.slug.clone(), all.digest());
             conditions.push(ConditionAccount { slug, trials: known.len(), records, known });
         }
-        let results = bundle.results().map(|(path, bytes)| {
-            let digest = FileDigest(Sha256Digest::of(bytes));
-            let text = std::str::from_utf8(bytes).ok().map(str::to_owned);
+        let results = bundle.result_files().map(|(path, file)| {
+            let digest = FileDigest(file.digest());
+            // What is not in memory has a line for each trial, and these are compared by themselves.
+            let text = file.held().and_then(|bytes| std::str::from_utf8(bytes).ok());
+            let text = text.map(str::to_owned);
             (path.to_owned(), ResultFile { digest, text })
         });
         let results: BTreeMap<_, _> = results.collect();
@@ -149,6 +215,7 @@ impl Account {
             conditions,
             results,
             claims,
+            measures,
         })
     }
 

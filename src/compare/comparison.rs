@@ -169,9 +169,7 @@ fn party(account: &Account) -> Party {
 fn metrics<'a>(a: &'a Account, b: &'a Account) -> BTreeSet<&'a str> {
     let mut names: BTreeSet<&str> = BTreeSet::new();
     for side in [a, b] {
-        for trial in side.conditions.iter().flat_map(|c| &c.known) {
-            names.extend(trial.measures.names());
-        }
+        names.extend(side.measures.iter().map(String::as_str));
         for (_, file) in side.results.iter().filter(|(path, _)| path.starts_with("tables/")) {
             let header = file.text.as_deref().and_then(|text| text.lines().next());
             if derived::table(file).is_some() {

@@ -3,7 +3,7 @@
 //! Canonical JSON in lines, so that a change reads well in a review: digests of everything, and of trial 0 of every
 //! condition enough to find where a trial that changed left its old course.
 
-use super::account::TrialAccount;
+use super::account::{Told, TrialAccount};
 use super::{Account, ConditionAccount, ResultFile, Settings};
 use crate::claims::Judgement;
 use crate::digest::{FileDigest, ResultsDigest, Sha256Digest, TrialKey};
@@ -13,7 +13,7 @@ use crate::studies::{Measures, Outcome};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use thiserror::Error;
 
 /// Version of the lock's format that this program writes, and the newest it reads.
@@ -146,11 +146,11 @@ impl Lock {
         for condition in &mut locked.conditions {
             let slug = &condition.slug;
             let panicked = Outcome::PANICKED.name();
-            if let Some(trial) = condition.known.iter().find(|t| t.outcome == panicked) {
+            if let Some(trial) = condition.known.iter().find(|t| t.told().outcome == panicked) {
                 return Err(NotLockable::Panicked {
                     condition: slug.clone(),
                     number: trial.number,
-                    cause: trial.cause.clone(),
+                    cause: trial.told().cause.clone(),
                 });
             }
             condition.known.retain(|trial| trial.number == 0);
@@ -158,6 +158,9 @@ impl Lock {
                 return Err(NotLockable::NoFirstTrial(slug.clone()));
             }
         }
+        let first = locked.conditions.iter().flat_map(|condition| &condition.known);
+        locked.measures =
+            first.flat_map(|trial| trial.told().measures.names()).map(str::to_owned).collect();
         for file in locked.results.values_mut() {
             file.text = None;
         }
@@ -232,34 +235,35 @@ impl Lock {
 }
 
 fn written(trial: &TrialAccount) -> LockedTrial {
+    let told = trial.told();
     LockedTrial {
         key: trial.key,
-        outcome: trial.outcome.clone(),
-        cause: trial.cause.clone(),
+        outcome: told.outcome.clone(),
+        cause: told.cause.clone(),
         sha256: trial.sha256,
-        measures: trial.measures.clone(),
-        chain: trial.chain.chunks(HASHES_PER_LINE).map(|minute| minute.join(" ")).collect(),
+        measures: told.measures.clone(),
+        chain: told.chain.chunks(HASHES_PER_LINE).map(|minute| minute.join(" ")).collect(),
     }
 }
 
 fn account_of(document: LockDocument) -> Account {
     let mut settings = Settings { study: document.settings, conditions: BTreeMap::new() };
-    let mut conditions = Vec::new();
+    let (mut conditions, mut measures) = (Vec::new(), BTreeSet::new());
     for condition in document.conditions {
         let mut values = document.every_condition.clone();
         values.extend(condition.settings);
         settings.conditions.insert(condition.slug.clone(), values);
         let first = condition.first_trial;
         let chain = first.chain.iter().flat_map(|line| line.split_ascii_whitespace());
-        let known = vec![TrialAccount {
-            key: first.key,
-            number: 0,
+        let told = Told {
             outcome: first.outcome,
             cause: first.cause,
-            measures: first.measures,
             chain: chain.map(str::to_owned).collect(),
-            sha256: first.sha256,
-        }];
+            measures: first.measures,
+        };
+        measures.extend(told.measures.names().map(str::to_owned));
+        let (key, sha256, told) = (first.key, first.sha256, Some(Box::new(told)));
+        let known = vec![TrialAccount { key, number: 0, sha256, told }];
         conditions.push(ConditionAccount {
             slug: condition.slug,
             trials: condition.trials,
@@ -283,5 +287,6 @@ fn account_of(document: LockDocument) -> Account {
             .map(|(path, digest)| (path, ResultFile { digest, text: None }))
             .collect(),
         claims: document.claims,
+        measures,
     }
 }

@@ -20,7 +20,7 @@ mod settings;
 mod tolerance;
 mod trials;
 
-pub use account::{Account, ConditionAccount, ResultFile, TrialAccount};
+pub use account::{Account, ConditionAccount, ResultFile, Told, TrialAccount};
 pub use advice::{Cause, drift};
 pub use comparison::{Comparison, Extent, Matching, Party, compare};
 pub use discrepancy::{Change, Discrepancy, MeasureChange, TrialDifference};

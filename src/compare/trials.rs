@@ -1,6 +1,6 @@
 //! Trials of both sides, paired and compared.
 
-use super::account::TrialAccount;
+use super::account::{Told, TrialAccount};
 use super::{
     Account, Change, ConditionAccount, Discrepancy, Matching, MeasureChange, Tolerances,
     TrialDifference,
@@ -71,21 +71,25 @@ fn lists(condition: &ConditionAccount, number: u32) -> bool {
 
 impl Trials {
     fn pair(&mut self, slug: &str, a: &TrialAccount, b: &TrialAccount, tolerances: &Tolerances) {
-        let diverges_after = first_divergence(&a.chain, &b.chain);
-        let outcomes = (outcome(a), outcome(b));
+        if a.sha256 == b.sha256 && a.key == b.key && (a.told.is_none() || b.told.is_none()) {
+            return;
+        }
+        let (told_a, told_b) = (a.told(), b.told());
+        let diverges_after = first_divergence(&told_a.chain, &told_b.chain);
+        let outcomes = (outcome(told_a), outcome(told_b));
         let is_same = a.sha256 == b.sha256
             && a.key == b.key
             && outcomes.0 == outcomes.1
-            && a.measures == b.measures
+            && told_a.measures == told_b.measures
             && diverges_after.is_none();
         if is_same {
             return;
         }
-        let names: BTreeSet<&str> = a.measures.names().chain(b.measures.names()).collect();
+        let names: BTreeSet<&str> =
+            told_a.measures.names().chain(told_b.measures.names()).collect();
         let mut measures = Vec::new();
         for name in names {
-            let value = |trial: &TrialAccount| trial.measures.number(name);
-            let (from, to) = (value(a), value(b));
+            let (from, to) = (told_a.measures.number(name), told_b.measures.number(name));
             let admitted = match (from, to) {
                 (Some(from), Some(to)) => tolerances.admits(name, from, to),
                 (from, to) => from == to,
@@ -112,7 +116,7 @@ impl Trials {
     }
 }
 
-fn outcome(trial: &TrialAccount) -> String {
+fn outcome(trial: &Told) -> String {
     match trial.cause.as_str() {
         "" => trial.outcome.clone(),
         cause => format!("{} ({cause})", trial.outcome),
@@ -132,7 +136,7 @@ fn alone(slug: &str, trial: &TrialAccount, gone: bool) -> Discrepancy {
         number: trial.number,
         key: side(trial.key, gone),
         sha256: side(trial.sha256, gone),
-        outcome: Some(side(outcome(trial), gone)),
+        outcome: Some(side(outcome(trial.told()), gone)),
         measures: Vec::new(),
         diverges_after: None,
     })

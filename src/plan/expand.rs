@@ -132,6 +132,7 @@ fn expand(experiment: &Experiment, selection: &Selection) -> Vec<TrialSpec> {
             setup,
             meanings,
         ));
+        let seeds = seeds(experiment, condition);
         for trial in 0..count {
             let mine = number % shards == shard - 1;
             number = number.wrapping_add(1);
@@ -142,7 +143,7 @@ fn expand(experiment: &Experiment, selection: &Selection) -> Vec<TrialSpec> {
                 key: keys.key(trial),
                 condition: condition.clone(),
                 trial,
-                seeds: seeds(experiment, condition, trial),
+                seeds: seeds.of_trial(trial),
                 setup: setup.clone(),
             });
         }
@@ -150,8 +151,9 @@ fn expand(experiment: &Experiment, selection: &Selection) -> Vec<TrialSpec> {
     trials
 }
 
-/// Returns where a trial's random streams come from: the study, the factors that do not share noise, the number.
-fn seeds(experiment: &Experiment, condition: &Condition, trial: u32) -> Seeds {
+/// Returns where the random streams of a condition's trials come from: the study and the factors that do not share noise. The
+/// trial's number comes behind them.
+fn seeds(experiment: &Experiment, condition: &Condition) -> Seeds {
     let mut coordinates = vec![("study".to_owned(), experiment.kind.name().to_owned())];
     // Sorted, so that the order of factors in the manifest moves no number.
     let mut levels: Vec<_> =
@@ -159,6 +161,5 @@ fn seeds(experiment: &Experiment, condition: &Condition, trial: u32) -> Seeds {
     levels.sort();
     coordinates
         .extend(levels.into_iter().map(|(name, value)| (format!("factor {name}"), value.clone())));
-    coordinates.push(("trial".to_owned(), trial.to_string()));
     Seeds::new(experiment.seed, coordinates)
 }

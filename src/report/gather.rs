@@ -7,10 +7,10 @@ use super::content::{
 use super::evaluation::{Evaluated, evaluation};
 use super::origin::provenance;
 use super::{claim, limits, multiverse};
-use crate::bundle::{Bundle, Fault, assemble};
+use crate::bundle::{Bundle, Fault, Forgetful, Gathered, assemble};
 use crate::claims::published;
 use crate::plan::{Plan, Selection};
-use crate::studies::{Exhibit, Findings, TrialRecord};
+use crate::studies::{Exhibit, Findings, Ledger};
 
 /// Why a bundle gives no report.
 #[derive(Debug, thiserror::Error)]
@@ -32,9 +32,10 @@ pub fn content_of(
     plan: &Plan,
     selection: &Selection,
 ) -> Result<ReportContent, UnreadBundle> {
-    let records = bundle.records().map_err(UnreadBundle::Records)?;
+    let scratch = Forgetful::default();
+    let Gathered { ledger, .. } = bundle.gathered(plan, &scratch).map_err(UnreadBundle::Records)?;
     let experiment = &plan.experiment;
-    let findings = assemble::findings(plan, &records);
+    let findings = assemble::findings(plan, &ledger);
     let cite = experiment.cite.as_ref();
     let machine_verdicts =
         bundle.circumstance_files().find(|(path, _)| *path == "claims.json").map(|(_, b)| b);
@@ -64,7 +65,7 @@ pub fn content_of(
         .map(|exhibit| ReportTable::of(exhibit, section, trials_a_cell(plan)))
         .collect();
     let figures = figures(bundle, plan, &findings);
-    let headline = headline(bundle, plan, &records);
+    let headline = headline(bundle, plan, &ledger);
     let circumstance = bundle.circumstance();
     let trial = plan.trials.first().map(|t| format!("{}/{}", t.condition.slug(), t.trial));
     Ok(ReportContent {
@@ -77,7 +78,7 @@ pub fn content_of(
         },
         authors: experiment.authors.iter().map(|a| a.name.clone()).collect(),
         license: experiment.license.clone().unwrap_or_default(),
-        limits: limits::limits(plan, &records, &tables, &claims, &figures),
+        limits: limits::limits(plan, &ledger, &tables, &claims, &figures),
         partial: limits::partial(plan, selection),
         evaluation: evaluation(Evaluated {
             file: &format!("{}-{}.zip", bundle.name(), bundle.results_digest().short()),
@@ -106,10 +107,10 @@ fn trials_a_cell(plan: &Plan) -> usize {
     plan.trials.chunk_by(|a, b| a.condition == b.condition).map(<[_]>::len).max().unwrap_or(0)
 }
 
-fn headline(bundle: &Bundle, plan: &Plan, records: &[TrialRecord]) -> Headline {
+fn headline(bundle: &Bundle, plan: &Plan, ledger: &Ledger) -> Headline {
     let mut outcomes: Vec<OutcomeCount> = Vec::new();
-    for record in records {
-        let name = record.outcome.name();
+    for trial in ledger.entries() {
+        let name = trial.outcome().name();
         match outcomes.iter_mut().find(|o| o.name == name) {
             Some(outcome) => outcome.count += 1,
             None => outcomes.push(OutcomeCount { name: name.to_owned(), count: 1 }),
@@ -118,10 +119,10 @@ fn headline(bundle: &Bundle, plan: &Plan, records: &[TrialRecord]) -> Headline {
     outcomes.sort_by(|a, b| b.count.cmp(&a.count).then(a.name.cmp(&b.name)));
     Headline {
         study: plan.experiment.kind.name().to_owned(),
-        trials: records.len() as u64,
+        trials: ledger.len() as u64,
         conditions: bundle.conditions().len() as u64,
         outcomes,
-        sim_seconds: records.iter().map(|r| r.sim_seconds).sum(),
+        sim_seconds: ledger.sim_seconds(),
         seed: plan.experiment.seed,
         results_digest: bundle.results_digest().hex(),
         bundle_id: bundle.bundle_id().map(|id| id.hex()).unwrap_or_default(),

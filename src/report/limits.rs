@@ -3,13 +3,13 @@
 use super::{ClaimRow, Figure, ReportTable};
 use crate::plan::{Plan, Selection};
 use crate::stats::compatibility::{Agreement, Silence};
-use crate::studies::{Outcome, TableLayout, TrialRecord};
+use crate::studies::{Ledger, Outcome, TableLayout};
 
 /// Returns the limits, one sentence each, the manifest's own first. `tables` are those of the page, in the order of the
 /// plan's requests.
 pub(super) fn limits(
     plan: &Plan,
-    records: &[TrialRecord],
+    ledger: &Ledger,
     tables: &[ReportTable],
     claims: &[ClaimRow],
     figures: &[Figure],
@@ -29,7 +29,9 @@ pub(super) fn limits(
             counted(experiment.overrides.len(), "value was set", "values were set")
         ));
     }
-    let count = |wanted: fn(Outcome) -> bool| records.iter().filter(|r| wanted(r.outcome)).count();
+    let count = |wanted: fn(Outcome) -> bool| {
+        ledger.entries().filter(|trial| wanted(trial.outcome())).count()
+    };
     let panicked = count(|outcome| outcome == Outcome::PANICKED);
     if panicked > 0 {
         limits.push(format!(
@@ -43,7 +45,7 @@ pub(super) fn limits(
         if unfinished > 0 {
             limits.push(format!(
                 "{unfinished} of {} trials ended before everything was explored.",
-                records.len()
+                ledger.len()
             ));
         }
     }
@@ -147,6 +149,7 @@ mod tests {
     use crate::bundle::{Bundle, Limits, assemble};
     use crate::plan::engine_version;
     use crate::studies::GridCell;
+    use crate::studies::TrialRecord;
     use crate::verify::plan_of;
 
     /// Returns the published quickstart: ten trials without and ten with a floor plan, nothing claimed.
@@ -183,7 +186,7 @@ mod tests {
             numbers: "p = 0.02; 6 of 100 runs compared never reached the measure".to_owned(),
             ..ClaimRow::default()
         }];
-        let limits = limits(&plan, &records, &tables, &claims, &[]);
+        let limits = limits(&plan, &Ledger::of(&records), &tables, &claims, &[]);
         let expected = [
             "the house is invented",
             "Simulated in two dimensions by Reenact's own simulator, with robots and worlds as sealed here; the paper's runs \
@@ -205,7 +208,7 @@ mod tests {
         let (_, mut plan, _) = quickstart();
         plan.experiment.cite = None;
         plan.experiment.published.clear();
-        let limits = limits(&plan, &[], &[], &[], &[]);
+        let limits = limits(&plan, &Ledger::default(), &[], &[], &[]);
         assert!(limits.iter().any(|limit| limit.ends_with("worlds as sealed here.")), "{limits:?}");
         assert!(limits.iter().all(|limit| !limit.contains("paper")), "{limits:?}");
     }
@@ -217,7 +220,8 @@ mod tests {
         let records = bundle.records().unwrap();
         let request = &plan.experiment.figures[0];
         let drawn = |records: &[TrialRecord]| {
-            request.draw(&assemble::findings(&plan, records), &plan.experiment.tables)
+            let ledger = Ledger::of(records);
+            request.draw(&assemble::findings(&plan, &ledger), &plan.experiment.tables)
         };
         let none = |record: &TrialRecord| record.condition.value("prior") == Some("none");
         let half: Vec<TrialRecord> = records.iter().filter(|r| none(r)).cloned().collect();

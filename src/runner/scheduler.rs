@@ -4,13 +4,14 @@
 //! 1. Take the records that the store has.
 //! 2. Execute a drawn share of them again, and refuse the store where one differs.
 //! 3. Announce the run.
-//! 4. Execute the other trials, each stored as soon as it is finished, and return the records in plan order.
+//! 4. Execute the other trials, each stored as soon as it is finished, and hand the records over in plan order.
 
 use super::{Executor, Nondeterminism, Observer, RunEvent, StoreError, TrialStore};
 use crate::digest::Sha256Digest;
 use crate::rng::Seeds;
 use crate::studies::{Outcome, TrialRecord, TrialSpec};
 use rayon::prelude::*;
+use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use thiserror::Error;
 
@@ -43,6 +44,11 @@ pub enum RunError {
         /// The number of records drawn.
         doubted: usize,
     },
+    /// Whoever takes the records refused one.
+    #[error(
+        "records cannot be kept until they are sealed: {0}; free some space where the bundle is to be written"
+    )]
+    Untaken(String),
     /// Trials executed twice gave two records.
     #[error(
         "trial {}/{} (key {}): expected the same bytes twice, found sha256:{} and sha256:{} {}; {count} of {executed} \
@@ -67,6 +73,10 @@ pub struct Scheduler {
     /// The seed that draws the records of a store to be checked.
     doubt: Option<u64>,
 }
+
+/// Records that are in memory at a time, at most. The last trials of so many leave threads idle, which is little time where they are
+/// this many.
+const AT_ONCE: usize = 8192;
 
 /// One in this many records of a store is executed again, and this many at least.
 const DOUBTED: (usize, usize) = (200, 3);
@@ -112,62 +122,129 @@ impl Scheduler {
         store: Option<&dyn TrialStore>,
         observer: &dyn Observer,
     ) -> Result<Vec<TrialRecord>, RunError> {
-        self.pool.install(|| {
-            // 1. Stored records.
-            let cached: Vec<Option<TrialRecord>> = plan
-                .par_iter()
-                .map(|spec| store.map_or(Ok(None), |store| recall(store, spec)))
-                .collect::<Result<_, _>>()?;
-            let known = cached.iter().flatten().count();
-            // 2. Some of them again.
-            let doubted = self.doubted(&cached);
-            let wrong: Vec<(usize, TrialRecord)> = doubted
-                .par_iter()
-                .with_max_len(1)
-                .filter_map(|&index| {
-                    let fresh = attempt(executor, &plan[index]);
-                    let stored = cached[index].as_ref()?;
-                    (fresh.to_line() != stored.to_line()).then_some((index, fresh))
-                })
-                .collect();
-            if let Some((index, fresh)) = wrong.first()
-                && let Some(stored) = &cached[*index]
-            {
-                return Err(poisoned(stored, fresh, wrong.len(), doubted.len()));
+        let mut records = Vec::with_capacity(plan.len());
+        self.run_each(plan, executor, store, observer, &mut |record| {
+            records.push(record);
+            Ok(())
+        })?;
+        Ok(records)
+    }
+
+    /// Does the same, and hands each record to `take`, in the order of the plan: at most 8192 of them are in memory at a time.
+    ///
+    /// # Errors
+    /// As [`Self::run`], and where `take` refuses one.
+    pub fn run_each(
+        &self,
+        plan: &[TrialSpec],
+        executor: &dyn Executor,
+        store: Option<&dyn TrialStore>,
+        observer: &dyn Observer,
+        take: &mut dyn FnMut(TrialRecord) -> io::Result<()>,
+    ) -> Result<(), RunError> {
+        // 1. Stored records: of a plan that is larger, only which there are.
+        let mut first: Option<Vec<Option<TrialRecord>>> = None;
+        let known: Vec<bool> = if plan.len() <= AT_ONCE {
+            let cached = self.recall(plan, store)?;
+            let known = cached.iter().map(Option::is_some).collect();
+            first = Some(cached);
+            known
+        } else {
+            let is_known =
+                |spec: &TrialSpec| store.map_or(Ok(false), |s| Ok(recall(s, spec)?.is_some()));
+            self.pool
+                .install(|| plan.par_iter().map(is_known).collect::<Result<_, StoreError>>())?
+        };
+        // 2. Some of them again.
+        let doubted = self.doubted(&known);
+        self.check(plan, executor, store, &doubted)?;
+        // 3. The run begins.
+        observer.notice(&RunEvent::Started {
+            trials: plan.len(),
+            cached: known.iter().filter(|known| **known).count(),
+            doubted: doubted.len(),
+            jobs: self.jobs(),
+        });
+        // 4. The others.
+        for (number, part) in plan.chunks(AT_ONCE).enumerate() {
+            let cached = match first.take() {
+                Some(cached) => cached,
+                None => self.recall(part, store)?,
+            };
+            for record in self.finish(part, number * AT_ONCE, cached, executor, store, observer)? {
+                take(record).map_err(|problem| RunError::Untaken(problem.to_string()))?;
             }
-            // 3. The run begins.
-            observer.notice(&RunEvent::Started {
-                trials: plan.len(),
-                cached: known,
-                doubted: doubted.len(),
-                jobs: self.jobs(),
+        }
+        Ok(())
+    }
+
+    /// Returns what the store has of each trial of `plan`.
+    fn recall(
+        &self,
+        plan: &[TrialSpec],
+        store: Option<&dyn TrialStore>,
+    ) -> Result<Vec<Option<TrialRecord>>, StoreError> {
+        let Some(store) = store else { return Ok(vec![None; plan.len()]) };
+        self.pool.install(|| plan.par_iter().map(|spec| recall(store, spec)).collect())
+    }
+
+    /// Executes the trials at the places `doubted` again, and refuses a store whose records are not what they give.
+    fn check(
+        &self,
+        plan: &[TrialSpec],
+        executor: &dyn Executor,
+        store: Option<&dyn TrialStore>,
+        doubted: &[usize],
+    ) -> Result<(), RunError> {
+        let Some(store) = store else { return Ok(()) };
+        let again = |&index: &usize| -> Result<Option<(TrialRecord, TrialRecord)>, StoreError> {
+            // One that has vanished since is executed as if it had never been there.
+            let Some(stored) = recall(store, &plan[index])? else { return Ok(None) };
+            let fresh = attempt(executor, &plan[index]);
+            Ok((fresh.to_line() != stored.to_line()).then_some((stored, fresh)))
+        };
+        let wrong: Vec<Option<(TrialRecord, TrialRecord)>> = self
+            .pool
+            .install(|| doubted.par_iter().with_max_len(1).map(again).collect::<Result<_, _>>())?;
+        let wrong: Vec<_> = wrong.into_iter().flatten().collect();
+        match wrong.first() {
+            Some((stored, fresh)) => Err(poisoned(stored, fresh, wrong.len(), doubted.len())),
+            None => Ok(()),
+        }
+    }
+
+    /// Executes what is not `cached` of a part of the plan that begins at `first`, and returns its records in its order.
+    fn finish(
+        &self,
+        part: &[TrialSpec],
+        first: usize,
+        cached: Vec<Option<TrialRecord>>,
+        executor: &dyn Executor,
+        store: Option<&dyn TrialStore>,
+        observer: &dyn Observer,
+    ) -> Result<Vec<TrialRecord>, RunError> {
+        self.pool.install(|| {
+            let finished = cached.into_par_iter().enumerate().with_max_len(1).map(|(i, cached)| {
+                let is_cached = cached.is_some();
+                let record = cached.unwrap_or_else(|| attempt(executor, &part[i]));
+                if let (Some(store), false, true) =
+                    (store, is_cached, record.outcome != Outcome::PANICKED)
+                {
+                    store.put(&record)?;
+                }
+                let index = first + i;
+                observer.notice(&RunEvent::Finished { index, record: &record, cached: is_cached });
+                Ok(record)
             });
-            // 4. The others.
-            let finished =
-                cached.into_par_iter().enumerate().with_max_len(1).map(|(index, cached)| {
-                    let is_cached = cached.is_some();
-                    let record = cached.unwrap_or_else(|| attempt(executor, &plan[index]));
-                    if let (Some(store), false, true) =
-                        (store, is_cached, record.outcome != Outcome::PANICKED)
-                    {
-                        store.put(&record)?;
-                    }
-                    observer.notice(&RunEvent::Finished {
-                        index,
-                        record: &record,
-                        cached: is_cached,
-                    });
-                    Ok(record)
-                });
             finished.collect()
         })
     }
 
-    /// Draws the indices of the records of the store that are executed again.
-    fn doubted(&self, cached: &[Option<TrialRecord>]) -> Vec<usize> {
+    /// Draws the indices of the records of the store that are executed again, of those that are `known`.
+    fn doubted(&self, known: &[bool]) -> Vec<usize> {
         let Some(seed) = self.doubt else { return Vec::new() };
         let known: Vec<usize> =
-            cached.iter().enumerate().filter(|(_, c)| c.is_some()).map(|(i, _)| i).collect();
+            known.iter().enumerate().filter(|(_, known)| **known).map(|(i, _)| i).collect();
         let (one_of, least) = DOUBTED;
         let count = (known.len() / one_of).max(least);
         let mut stream = Seeds::new(seed, Vec::new()).stream("doubted-records");

@@ -6,7 +6,7 @@
 use crate::provenance;
 use std::collections::BTreeSet;
 use std::fs::{self, OpenOptions, TryLockError};
-use std::io::{self, Write as _};
+use std::io::{self, BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::{LazyLock, Mutex, PoisonError};
 use std::time::Duration;
@@ -66,9 +66,15 @@ impl Partial {
         }
     }
 
-    /// Writes `bytes` and makes them last.
-    pub(super) fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
-        self.file.write_all(bytes)?;
+    /// Has it written piece by piece and makes that last.
+    pub(super) fn write_with(
+        &mut self,
+        write: impl FnOnce(&mut BufWriter<&mut fs::File>) -> io::Result<()>,
+    ) -> io::Result<()> {
+        let mut out = BufWriter::with_capacity(1 << 16, self.file.as_file_mut());
+        write(&mut out)?;
+        out.flush()?;
+        drop(out);
         self.file.as_file().sync_all()
     }
 

@@ -1,7 +1,7 @@
 //! From records to what a reader sees, as far as all studies share it: the trials table and how cells are chosen.
 
 use super::columns::of_factor;
-use super::{Setup, TrialRecord};
+use super::{Entry, Group, Ledger, Setup};
 use crate::condition::Condition;
 use crate::factor::Factor;
 use crate::stats::compatibility::{Silence, absence};
@@ -15,23 +15,20 @@ pub struct Findings<'a> {
     pub factors: &'a [Factor],
     /// The conditions of the whole design, those that a partial run leaves out too.
     pub design: Vec<(&'a Condition, &'a Setup)>,
-    /// The records, in plan order.
-    pub records: &'a [TrialRecord],
+    /// The trials, in plan order.
+    pub ledger: &'a Ledger,
     /// The paper's own numbers, by name: factor columns, `coverage-percent`, `value`, `sd`, `n`.
     pub published: &'a BTreeMap<String, Table>,
-    /// The records again, by condition: a table asks for each of its cells, and conditions are far fewer than trials.
-    by_condition: Vec<&'a [TrialRecord]>,
 }
 
 impl<'a> Findings<'a> {
-    /// Creates the findings of `records`, which stand in plan order.
+    /// Creates the findings of the trials in `ledger`.
     pub fn new(
         factors: &'a [Factor],
-        records: &'a [TrialRecord],
+        ledger: &'a Ledger,
         published: &'a BTreeMap<String, Table>,
     ) -> Self {
-        let by_condition = records.chunk_by(|a, b| a.condition == b.condition).collect();
-        Self { factors, design: Vec::new(), records, published, by_condition }
+        Self { factors, design: Vec::new(), ledger, published }
     }
 
     /// Returns the same with the conditions of the whole `design`.
@@ -41,27 +38,42 @@ impl<'a> Findings<'a> {
         self
     }
 
-    /// Returns one row a trial: key, factors, number, outcome, then every measure.
-    pub fn trials(&self) -> Table {
+    /// Returns the names of all measures in the order of their columns.
+    pub fn measures(&self) -> Vec<&'a str> {
         let measures: BTreeSet<&str> =
-            self.records.iter().flat_map(|r| r.measures.names()).collect();
+            self.ledger.groups().iter().flat_map(Group::measures).collect();
         let mut measures: Vec<&str> = measures.into_iter().collect();
         // `...-at-95` after `...-at-50`, and the whole trial's measures after those.
         measures.sort_by_key(|name| (!name.contains("-at-"), *name));
+        measures
+    }
+
+    /// Returns the table of one row a trial without its rows ([`Self::trial_rows`]): key, factors, number, outcome, then every
+    /// measure.
+    pub fn trials(&self) -> Table {
+        let measures = self.measures();
         let mut columns = vec!["key".to_owned()];
         columns.extend(self.factors.iter().map(|factor| factor.name.clone()));
         columns.extend(["trial".to_owned(), "outcome".to_owned()]);
         columns.extend(measures.iter().map(|&m| m.to_owned()));
-        let mut table = Table::new(columns);
-        for record in self.records {
-            let mut row: Vec<Value> = vec![record.key.hex().into()];
-            row.extend(self.factor_values(&record.condition));
-            row.push(i64::from(record.trial).into());
-            row.push(record.outcome.name().into());
-            row.extend(measures.iter().map(|&m| record.measures.number(m).into()));
-            table.push(row);
-        }
-        table
+        Table::new(columns)
+    }
+
+    /// Returns the rows of [`Self::trials`], in plan order.
+    pub fn trial_rows(&self) -> impl Iterator<Item = Vec<Value>> {
+        let measures = self.measures();
+        self.ledger.groups().iter().flat_map(move |group| {
+            let factors = self.factor_values(group.condition());
+            let measures = measures.clone();
+            group.entries().map(move |entry| {
+                let mut row: Vec<Value> = vec![entry.key().hex().into()];
+                row.extend_from_slice(&factors);
+                row.push(i64::from(entry.trial()).into());
+                row.push(entry.outcome().name().into());
+                row.extend(measures.iter().map(|&m| Value::from(entry.number(m))));
+                row
+            })
+        })
     }
 
     /// Returns the values of `factor` that were run, in the manifest's order.
@@ -99,18 +111,16 @@ impl<'a> Findings<'a> {
         crossed
     }
 
-    /// Returns the records whose condition has all values of `fixed`.
-    pub(super) fn matching(&self, fixed: &Condition) -> Vec<&'a TrialRecord> {
-        self.by_condition
-            .iter()
-            .filter(|records| records[0].condition.has_all(fixed))
-            .flat_map(|records| records.iter())
-            .collect()
+    /// Returns the trials whose condition has all values of `fixed`.
+    pub(super) fn matching(&self, fixed: &Condition) -> Vec<Entry<'a>> {
+        let groups = self.ledger.groups().iter();
+        let matching = groups.filter(|group| group.condition().has_all(fixed));
+        matching.flat_map(Group::entries).collect()
     }
 
     /// Returns the conditions that were run, each as often as it begins anew in plan order.
     fn conditions(&self) -> impl Iterator<Item = &'a Condition> {
-        self.by_condition.iter().map(|records| &records[0].condition)
+        self.ledger.groups().iter().map(Group::condition)
     }
 
     /// Returns why a cell of these factor values has no number of ours, where `trials` of it were run.

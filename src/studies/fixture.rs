@@ -1,7 +1,7 @@
 //! Made-up findings that every layout of tables has something to say of, and one request or more of each layout.
 
 use super::deadline::{self, Calibration};
-use super::{Findings, Outcome, Setup, TableRequest, TrialRecord};
+use super::{Findings, Ledger, Outcome, Setup, TableRequest, TrialRecord};
 use crate::condition::Condition;
 use crate::factor::Factor;
 use crate::geometry::Pose;
@@ -186,5 +186,6 @@ pub(crate) fn with_findings<T>(ask: impl FnOnce(&Findings<'_>, &[TableRequest]) 
         records.iter().map(|record| record.condition.clone()).collect();
     design.dedup();
     let design = design.iter().map(|condition| (condition, &setup));
-    ask(&Findings::new(&factors, &records, &published).designed(design), &requests())
+    let ledger = Ledger::of(&records);
+    ask(&Findings::new(&factors, &ledger, &published).designed(design), &requests())
 }

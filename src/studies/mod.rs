@@ -15,6 +15,7 @@ mod findings;
 #[cfg(test)]
 pub(crate) mod fixture;
 pub mod inference;
+mod ledger;
 mod measures;
 mod outcome;
 pub mod outcomes;
@@ -38,6 +39,7 @@ pub use drawn::Drawn;
 pub use exhibit::{Exhibit, Grid, GridCell, GridRow, Layout, Lines, Measured, Set, Source};
 pub use factor_value::FactorValue;
 pub use findings::Findings;
+pub use ledger::{Entry, Group, Ledger};
 pub use measures::Measures;
 pub use outcome::{End, Outcome};
 pub use published_scatter::{PublishedScatter, Scale};

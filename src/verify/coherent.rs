@@ -1,8 +1,8 @@
 //! Level 2: the crate's metadata, the bag's facts, the resolved study, the inputs and the records agree.
 
 use crate::bundle::{
-    Bundle, BundlePath, Fault, Tree, bag, class_of, format, in_bag_info as in_bag, in_payload,
-    is_version, results_digest,
+    Bundle, BundlePath, Fault, Files, RecordLine, bag, class_of, format, in_bag_info as in_bag,
+    in_payload, is_version, results_digest_of,
 };
 use crate::digest::{FileDigest, Sha256Digest, TrialKey};
 use crate::json;
@@ -49,9 +49,10 @@ fn is_agent(text: &str) -> bool {
 }
 
 /// Holds digests and sizes in the crate's metadata against the files, in both directions.
-pub(super) fn crate_metadata(tree: &Tree) -> Vec<Fault> {
+pub(super) fn crate_metadata(files: Files<'_>) -> Vec<Fault> {
     let metadata = BundlePath::payload(format::METADATA);
-    let graph = tree
+    let graph = files
+        .tree
         .get(&*metadata)
         .ok_or_else(|| "no file".to_owned())
         .and_then(|bytes| json::read::<Value>(bytes).map_err(|e| e.to_string()))
@@ -69,7 +70,7 @@ pub(super) fn crate_metadata(tree: &Tree) -> Vec<Fault> {
         let text = |key: &str| entity.get(key).and_then(Value::as_str).unwrap_or_default();
         let id = text("@id");
         if id == "#results-digest" {
-            let expected = format!("sha256:{}", results_digest(tree));
+            let expected = format!("sha256:{}", results_digest_of(files));
             if text("value") != expected {
                 faults.push(Fault::new(
                     &metadata,
@@ -86,10 +87,10 @@ pub(super) fn crate_metadata(tree: &Tree) -> Vec<Fault> {
             continue;
         }
         let path = BundlePath::payload(id);
-        match tree.get(&*path) {
+        match files.get(&path) {
             None => faults.push(Fault::new(&path, "a file, as the crate describes it", "none")),
-            Some(bytes) => {
-                let (digest, size) = (Sha256Digest::of(bytes).hex(), bytes.len().to_string());
+            Some(file) => {
+                let (digest, size) = (file.digest().hex(), file.size().to_string());
                 for (key, truth) in [("sha256", digest), ("contentSize", size)] {
                     if text(key) != truth {
                         let said = if text(key).is_empty() { "nothing" } else { text(key) };
@@ -102,7 +103,7 @@ pub(super) fn crate_metadata(tree: &Tree) -> Vec<Fault> {
         described.insert(path);
     }
     let described: BTreeSet<&str> = described.iter().map(|path| &**path).collect();
-    for path in tree.keys() {
+    for path in files.paths() {
         let Some(within) = in_payload(path) else { continue };
         let own = [format::METADATA, format::PREVIEW].contains(&within);
         if !own && !described.contains(&**path) {
@@ -135,7 +136,7 @@ pub(super) fn contents(bundle: &Bundle) -> Vec<Fault> {
         }
         known.insert(String::from(path));
     }
-    let mut keys = BTreeMap::new();
+    let mut keys = Keys::default();
     for condition in bundle.conditions() {
         let path = BundlePath::records(&condition.slug);
         if !known.insert(String::from(&path)) {
@@ -146,19 +147,21 @@ pub(super) fn contents(bundle: &Bundle) -> Vec<Fault> {
             ));
             continue;
         }
-        let count = bundle.record_lines(&condition.slug).count();
+        known.extend(bundle.record_parts(&condition.slug).map(|(path, _)| path));
+        let count = bundle.record_count(&condition.slug);
         if count != condition.trials {
             let expected = format!("{} records, as the resolved study says", condition.trials);
             faults.push(Fault::new(&path, expected, count.to_string()));
         }
-        let whole = bundle.tree().get(&*path).is_none_or(|b| b.is_empty() || b.ends_with(b"\n"));
-        if !whole {
-            let hint = "the file may have been cut short";
-            faults.push(Fault::new(&path, "a line feed at its end", "none").hint(hint));
+        for (path, file) in bundle.record_parts(&condition.slug) {
+            if file.last_byte().is_some_and(|last| last != b'\n') {
+                let hint = "the file may have been cut short";
+                faults.push(Fault::new(&path, "a line feed at its end", "none").hint(hint));
+            }
         }
         faults.extend(records(bundle, &condition.slug, &path, &mut keys));
     }
-    for path in bundle.tree().keys() {
+    for path in bundle.files().paths() {
         let within = in_payload(path);
         let claimed = within.is_some_and(|within| {
             [format::INPUTS, format::TRIALS].iter().any(|folder| within.starts_with(folder))
@@ -183,29 +186,24 @@ pub(super) fn contents(bundle: &Bundle) -> Vec<Fault> {
 const MOST_FAULTS: usize = 100;
 
 /// Checks the records of one condition: each whole, in its place, and under a key of its own.
-fn records(
-    bundle: &Bundle,
-    slug: &str,
-    path: &BundlePath,
-    keys: &mut BTreeMap<TrialKey, String>,
-) -> Vec<Fault> {
+fn records(bundle: &Bundle, slug: &str, path: &BundlePath, keys: &mut Keys) -> Vec<Fault> {
     let mut faults = Vec::new();
     let mut next = 0;
-    for (i, line) in bundle.record_lines(slug).enumerate() {
+    bundle.record_lines(slug, |line| {
         if faults.len() >= MOST_FAULTS {
             faults.push(Fault::new(path, "records", "too many faults to tell them all"));
-            break;
+            return false;
         }
-        let place = path.line(i + 1);
-        let record = match TrialRecord::from_line(line) {
+        let place = line.place();
+        let record = match TrialRecord::from_line(line.text) {
             Ok(record) => record,
             Err(problem) => {
                 faults.push(Fault::new(place, "a trial record", problem.to_string()));
                 next += 1;
-                continue;
+                return true;
             }
         };
-        if record.to_line() != line {
+        if record.to_line() != line.text {
             faults.push(Fault::new(&place, "canonical JSON", "the same record spelt otherwise"));
         }
         if record.condition.slug() != slug {
@@ -227,9 +225,31 @@ fn records(
             ));
         }
         next = record.trial.saturating_add(1);
-        if let Some(other) = keys.insert(record.key, place.clone()) {
+        if let Some(other) = keys.enter(record.key, line) {
             faults.push(Fault::new(&place, "a key of its own", format!("that of {other}")));
         }
-    }
+        true
+    });
     faults
+}
+
+/// The keys of all records, and where each stands: in few bytes, since there may be millions.
+#[derive(Default)]
+struct Keys {
+    paths: Vec<String>,
+    places: BTreeMap<TrialKey, (u32, u32)>,
+}
+
+impl Keys {
+    /// Enters the key of the record in `line`; returns where it stands already, if it does.
+    fn enter(&mut self, key: TrialKey, line: RecordLine<'_>) -> Option<String> {
+        if self.paths.last().is_none_or(|path| path != line.path) {
+            self.paths.push(line.path.to_owned());
+        }
+        // Beyond four thousand million nobody counts.
+        let short = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
+        let place = (short(self.paths.len() - 1), short(line.number));
+        let (path, number) = self.places.insert(key, place)?;
+        Some(format!("{}:{number}", self.paths[path as usize]))
+    }
 }

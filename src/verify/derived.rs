@@ -2,8 +2,8 @@
 
 use super::{PlannedTrial, Replanned, difference};
 use crate::bundle::{
-    Additions, Bundle, BundlePath, Circumstance, Fault, Moment, Tree, bag, capsule, format,
-    in_bag_info, in_payload, in_result_half, seal_with,
+    Additions, Bundle, BundlePath, Circumstance, Fault, FileRef, Files, Limits, Moment, Tree, bag,
+    capsule, format, in_bag_info, in_payload, in_result_half, seal_with,
 };
 use crate::digest::{Sha256Digest, TrialKey};
 use crate::studies::TrialRecord;
@@ -47,15 +47,19 @@ pub(super) fn check(bundle: &Bundle, replanned: &dyn Replanned) -> Derived {
     }
     let circumstance = told.clone().unwrap_or(Circumstance::reproducible(Moment(0)));
     let own = bundle.capsule().map(|_| capsule::own());
-    let derived = match seal_with(&content, &circumstance, Additions { source: own.as_ref() }) {
-        Ok(sealed) => sealed.tree,
+    let derived = match seal_with(
+        &content,
+        &circumstance,
+        Additions { source: own.as_ref(), limits: UNLIMITED },
+    ) {
+        Ok(sealed) => sealed,
         Err(problem) => {
             let expected = "content that can be sealed";
             found.faults.push(Fault::new(BundlePath::payload(""), expected, problem.to_string()));
             return found;
         }
     };
-    let mut differing = files(bundle.tree(), &derived, in_result_half);
+    let mut differing = files(bundle.files(), derived.files(), in_result_half);
     let same_version = circumstance.version == format::VERSION;
     if let (Some(path), false) = (bundle.capsule(), same_version) {
         let (expected, version) =
@@ -66,14 +70,14 @@ pub(super) fn check(bundle: &Bundle, replanned: &dyn Replanned) -> Derived {
         found.obstacles.push(fault.hint(hint));
         found.unchecked.push("the engine's source is not checked".to_owned());
     } else {
-        differing.extend(source(bundle.tree(), &derived));
+        differing.extend(source(bundle.tree(), &derived.tree));
     }
     // Each holds digests or sizes of those before it, and says something new only where those are as they should be. A foreign
     // source changes the metadata that lists it.
     let judged = told.is_some() && (bundle.capsule().is_none() || same_version);
     for part in [&DESCRIPTIONS[..], &[format::METADATA, format::PREVIEW]] {
         if differing.is_empty() && judged {
-            differing = files(bundle.tree(), &derived, |path| part.contains(&path));
+            differing = files(bundle.files(), derived.files(), |path| part.contains(&path));
         }
     }
     if !judged {
@@ -127,7 +131,7 @@ fn trials(bundle: &Bundle, planned: &[PlannedTrial]) -> Vec<Fault> {
     let mut faults = Vec::new();
     let mut slugs: Vec<&str> = Vec::new();
     for trial in planned {
-        if slugs.last() != Some(&trial.slug.as_str()) {
+        if slugs.last() != Some(&&*trial.slug) {
             slugs.push(&trial.slug);
         }
     }
@@ -140,27 +144,30 @@ fn trials(bundle: &Bundle, planned: &[PlannedTrial]) -> Vec<Fault> {
         ));
     }
     for slug in sealed {
-        let planned: Vec<_> = planned.iter().filter(|trial| trial.slug == slug).collect();
+        let planned: Vec<_> = planned.iter().filter(|trial| *trial.slug == *slug).collect();
         let path = BundlePath::records(slug);
-        let count = bundle.record_lines(slug).count();
+        let count = bundle.record_count(slug);
         if planned.len() != count {
             let expected = format!("{} trials, as the manifest plans", planned.len());
             faults.push(Fault::new(&path, expected, count.to_string()));
         }
         // One record at a time: those of a forger may be large.
         let (mut first, mut more) = (None, 0);
-        for (i, (planned, line)) in planned.iter().zip(bundle.record_lines(slug)).enumerate() {
-            let found = TrialRecord::from_line(line).ok().map(|record| (record.key, record.trial));
-            if found == Some((planned.key, planned.trial)) {
-                continue;
+        let mut next = planned.iter();
+        bundle.record_lines(slug, |line| {
+            let Some(planned) = next.next() else { return false };
+            let record = TrialRecord::from_line(line.text).ok();
+            let found = record.map(|record| (record.key, record.trial));
+            if found != Some((planned.key, planned.trial)) {
+                if first.is_none() {
+                    first = Some((line.place(), planned, found));
+                } else {
+                    more += 1;
+                }
             }
-            if first.is_none() {
-                first = Some((i, planned, found));
-            } else {
-                more += 1;
-            }
-        }
-        if let Some((i, planned, found)) = first {
+            true
+        });
+        if let Some((place, planned, found)) = first {
             let named =
                 |(key, trial): (TrialKey, u32)| format!("trial {trial} with key {}", key.short());
             let found = found.map_or("no record".to_owned(), named);
@@ -168,7 +175,6 @@ fn trials(bundle: &Bundle, planned: &[PlannedTrial]) -> Vec<Fault> {
             let expected =
                 format!("{}, as the manifest plans", named((planned.key, planned.trial)));
             let hint = "the manifest, an input, the seed or the record was changed after the run";
-            let place = path.line(i + 1);
             faults.push(Fault::new(place, expected, format!("{found}{more}")).hint(hint));
         }
     }
@@ -189,22 +195,40 @@ fn source(found: &Tree, derived: &Tree) -> Vec<Fault> {
         .collect()
 }
 
+/// Returns whether two files have the same bytes.
+fn is_same(a: FileRef<'_>, b: FileRef<'_>) -> bool {
+    match (a.held(), b.held()) {
+        (Some(a), Some(b)) => a == b,
+        _ => a.size() == b.size() && a.digest() == b.digest(),
+    }
+}
+
+/// Whoever opened the bundle has decided how large it may be.
+const UNLIMITED: Limits =
+    Limits { entries: usize::MAX, bytes: u64::MAX, held: u64::MAX, ratio: u64::MAX };
+
 /// Finds payload files of `found` that differ from those of `derived`, among those whose path within the payload
 /// `counts`.
-fn files(found: &Tree, derived: &Tree, counts: impl Fn(&str) -> bool) -> Vec<Fault> {
+fn files(found: Files<'_>, derived: Files<'_>, counts: impl Fn(&str) -> bool) -> Vec<Fault> {
     let counts = |path: &str| in_payload(path).is_some_and(&counts);
     let mut faults = Vec::new();
     for (path, expected) in derived.iter().filter(|(path, _)| counts(path)) {
         match found.get(path) {
             None => faults.push(Fault::new(path, "a file that follows from the records", "none")),
-            Some(bytes) if bytes != expected => {
-                let (expected, found) = difference::first(path, expected, bytes);
+            Some(file) if is_same(file, expected) => {}
+            Some(file) => {
+                let (expected, found) = match (expected.held(), file.held()) {
+                    (Some(expected), Some(found)) => difference::first(path, expected, found),
+                    _ => (
+                        format!("{} bytes of sha256:{}", expected.size(), expected.digest()),
+                        format!("{} bytes of sha256:{}", file.size(), file.digest()),
+                    ),
+                };
                 faults.push(Fault::new(path, format!("{expected}, as the records give"), found));
             }
-            Some(_) => {}
         }
     }
-    for path in found.keys().filter(|path| counts(path) && !derived.contains_key(*path)) {
+    for path in found.paths().filter(|path| counts(path) && derived.get(path).is_none()) {
         faults.push(Fault::new(
             path,
             "only files that follow from the records",

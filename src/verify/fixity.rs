@@ -1,13 +1,12 @@
 //! Level 1: every listed file is there unchanged, and nothing else is.
 
 use super::signature;
-use crate::bundle::{Archive, Fault, Form, bag, format, in_payload, is_tag_file};
-use crate::digest::Sha256Digest;
+use crate::bundle::{Archive, Fault, FileRef, Form, bag, format, in_payload, is_tag_file};
 use std::collections::BTreeMap;
 
 /// Finds everything that breaks fixity.
 pub(super) fn check(archive: &Archive) -> Vec<Fault> {
-    let tree = &archive.tree;
+    let (tree, files) = (&archive.tree, archive.files());
     // A crate without its bag has no list but its own metadata, which level 2 holds against the files.
     if archive.form == Form::Crate {
         return Vec::new();
@@ -50,17 +49,17 @@ pub(super) fn check(archive: &Archive) -> Vec<Fault> {
         }
     }
     for (path, (digest, file)) in &listed {
-        match tree.get(path) {
+        match files.get(path).map(FileRef::digest) {
             None => faults.push(Fault::new(path, format!("a file, as {file} lists it"), "none")),
-            Some(bytes) if Sha256Digest::of(bytes) != *digest => faults.push(Fault::new(
+            Some(found) if found != *digest => faults.push(Fault::new(
                 path,
                 format!("sha256:{digest}, as {file} says"),
-                format!("sha256:{}", Sha256Digest::of(bytes)),
+                format!("sha256:{found}"),
             )),
             Some(_) => {}
         }
     }
-    for path in tree.keys() {
+    for path in files.paths() {
         let exempt = path == format::TAG_MANIFEST || format::SIGNATURES.contains(&path.as_str());
         let list = if in_payload(path).is_some() { format::MANIFEST } else { format::TAG_MANIFEST };
         if !exempt && !unread.contains(&list) && !listed.contains_key(path) {

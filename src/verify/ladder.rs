@@ -227,7 +227,7 @@ impl Climb<'_> {
         }
         if self.wants(Level::Coherent) {
             self.report.judged.push(Level::Coherent);
-            let metadata = coherent::crate_metadata(&archive.tree);
+            let metadata = coherent::crate_metadata(archive.files());
             self.report.note(Level::Coherent, Severity::Error, metadata);
         }
         let bundle = match Bundle::open(archive) {
@@ -303,7 +303,7 @@ impl Climb<'_> {
             self.report.note(Level::Derived, Severity::Obstacle, [fault]);
             return;
         }
-        if bundle.format() != format::FORMAT {
+        if !(format::WHOLE..=format::FORMAT).contains(&bundle.format()) {
             let fault = support::other_format(bundle);
             self.report.note(Level::Derived, Severity::Obstacle, [fault]);
             return;

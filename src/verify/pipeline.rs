@@ -7,6 +7,7 @@ use crate::digest::TrialKey;
 use crate::document::{Diagnostic, MOST_FAULTS, reports};
 use crate::plan::SelectionError;
 use crate::runner::RunError;
+use std::sync::Arc;
 use thiserror::Error;
 
 /// Why a bundle's manifest makes no plan.
@@ -174,7 +175,7 @@ pub struct PlannedTrial {
     /// Its identity.
     pub key: TrialKey,
     /// The slug of its condition.
-    pub slug: String,
+    pub slug: Arc<str>,
     /// Its number within the condition.
     pub trial: u32,
 }

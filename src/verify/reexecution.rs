@@ -86,39 +86,75 @@ pub(super) fn check(
     seed: Option<u64>,
 ) -> Result<(Sample, Vec<Fault>), Fault> {
     let planned = replanned.trials();
-    let sealed: Vec<(String, &str)> = bundle
-        .conditions()
-        .iter()
-        .flat_map(|condition| {
-            let path = BundlePath::records(&condition.slug);
-            let lines = bundle.record_lines(&condition.slug).enumerate();
-            lines.map(move |(i, line)| (path.line(i + 1), line))
-        })
-        .collect();
-    let trials = BundlePath::payload(format::TRIALS);
-    let failed = |found: String| {
-        let expected = format!("{} trials executed again", indices.len());
-        Fault::new(&trials, expected, found).hint("this is a bug in reenact, or too little memory")
-    };
-    let fresh = replanned.execute(indices).map_err(|problem| failed(problem.to_string()))?;
-    if fresh.len() != indices.len() {
-        return Err(failed(fresh.len().to_string()));
-    }
-    let mut faults = Vec::new();
-    for (&index, fresh) in indices.iter().zip(&fresh) {
-        match (sealed.get(index), planned.get(index)) {
-            (Some((_, line)), _) if line == fresh => {}
-            (Some((place, line)), Some(trial)) => {
-                faults.push(differing(place, trial, fresh, line));
+    let mut again = Again { replanned, planned: &planned, wanted: Vec::new(), faults: Vec::new() };
+    let mut left = indices.iter().copied().peekable();
+    let (mut at, mut failure) = (0, None);
+    for condition in bundle.conditions() {
+        bundle.record_lines(&condition.slug, |line| {
+            if left.next_if_eq(&at).is_some() {
+                again.wanted.push((at, Some((line.place(), line.text.to_owned()))));
             }
-            _ => {
-                let expected = format!("a record of the plan's trial {}", index + 1);
-                faults.push(Fault::new(&trials, expected, "none"));
+            at += 1;
+            if again.wanted.len() >= AT_ONCE {
+                failure = again.execute().err();
             }
+            failure.is_none()
+        });
+        if failure.is_some() {
+            break;
         }
     }
-    let equal = fresh.len().saturating_sub(faults.len());
-    Ok((Sample { seed, executed: fresh.len(), equal, of: planned.len() }, faults))
+    again.wanted.extend(left.map(|index| (index, None)));
+    if let Some(problem) = failure.or_else(|| again.execute().err()) {
+        let trials = BundlePath::payload(format::TRIALS);
+        let expected = format!("{} trials executed again", indices.len());
+        let fault = Fault::new(&trials, expected, problem);
+        return Err(fault.hint("this is a bug in reenact, or too little memory"));
+    }
+    let (executed, of, faults) = (indices.len(), planned.len(), again.faults);
+    let equal = executed.saturating_sub(faults.len());
+    Ok((Sample { seed, executed, equal, of }, faults))
+}
+
+/// Trials whose records are held at once.
+const AT_ONCE: usize = 8192;
+
+/// Trials that are executed again.
+struct Again<'a> {
+    replanned: &'a dyn Replanned,
+    planned: &'a [PlannedTrial],
+    /// Their places in the plan, with the place and the text of the record that the bundle holds.
+    wanted: Vec<(usize, Option<(String, String)>)>,
+    faults: Vec<Fault>,
+}
+
+impl Again<'_> {
+    /// Executes those that are wanted, and holds them against the bundle's records.
+    ///
+    /// # Errors
+    /// Where this program did not execute them.
+    fn execute(&mut self) -> Result<(), String> {
+        let wanted = std::mem::take(&mut self.wanted);
+        let indices: Vec<usize> = wanted.iter().map(|(index, _)| *index).collect();
+        let fresh = self.replanned.execute(&indices).map_err(|problem| problem.to_string())?;
+        if fresh.len() != indices.len() {
+            return Err(fresh.len().to_string());
+        }
+        for ((index, sealed), fresh) in wanted.iter().zip(&fresh) {
+            match (sealed, self.planned.get(*index)) {
+                (Some((_, line)), _) if line == fresh => {}
+                (Some((place, line)), Some(trial)) => {
+                    self.faults.push(differing(place, trial, fresh, line));
+                }
+                _ => {
+                    let trials = BundlePath::payload(format::TRIALS);
+                    let expected = format!("a record of the plan's trial {}", index + 1);
+                    self.faults.push(Fault::new(&trials, expected, "none"));
+                }
+            }
+        }
+        Ok(())
+    }
 }
 
 /// Returns the obstacle at a level that executed nothing: it has shown nothing.

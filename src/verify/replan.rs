@@ -4,7 +4,8 @@ mod varied;
 
 use super::pipeline::{ContentError, MakeAgainError, ReplanError, ReplicateError};
 use super::{Earlier, Made, Pipeline, PlannedTrial, Replanned};
-use crate::bundle::{Bundle, BundleContent, BundlePath, Fault, assemble, format};
+use crate::bundle::assemble::{self, Asked};
+use crate::bundle::{Bundle, BundleContent, BundlePath, Fault, Forgetful, Gathered, format};
 use crate::claims::multiverse::Found;
 use crate::digest::Sha256Digest;
 use crate::document::Source;
@@ -14,6 +15,7 @@ use crate::rng::Seeds;
 use crate::runner::{Observer, RunError, Scheduler, Silent};
 use crate::studies::{self, TrialRecord, TrialSpec, planned_calibration};
 use std::cell::RefCell;
+use std::sync::Arc;
 
 /// This program's own pipeline.
 pub struct Reenactment<'o> {
@@ -90,8 +92,7 @@ fn plan_with(
     let experiment = resolve(&source, &overrides, inputs)?;
     // Counted before they are made: a manifest of a few words can ask for millions.
     let planned = Plan::size(&experiment, &selection);
-    let sealed: usize =
-        bundle.conditions().iter().map(|c| bundle.record_lines(&c.slug).count()).sum();
+    let sealed: usize = bundle.conditions().iter().map(|c| bundle.record_count(&c.slug)).sum();
     if planned > sealed as u64 + MOST_MISSING {
         return Err(ReplanError::TooMany { planned, sealed });
     }
@@ -271,17 +272,27 @@ fn file_name(path: &str) -> &str {
 
 impl Replanned for Study<'_> {
     fn trials(&self) -> Vec<PlannedTrial> {
-        let planned = |spec: &TrialSpec| PlannedTrial {
-            key: spec.key,
-            slug: spec.condition.slug(),
-            trial: spec.trial,
-        };
-        self.plan.trials.iter().map(planned).collect()
+        let conditions = self.plan.trials.chunk_by(|a, b| a.condition == b.condition);
+        let planned = conditions.flat_map(|trials| {
+            let slug: Arc<str> = trials[0].condition.slug().into();
+            trials.iter().map(move |spec| {
+                let slug = Arc::clone(&slug);
+                PlannedTrial { key: spec.key, slug, trial: spec.trial }
+            })
+        });
+        planned.collect()
     }
 
     fn content(&self) -> Result<BundleContent, ContentError> {
-        let records = self.bundle.records().map_err(ContentError::Records)?;
-        Ok(assemble::assemble(&self.plan, self.bundle.study_yaml(), &self.selection, &records)?)
+        // Of what is large, size and digest are all that is compared.
+        let scratch = Forgetful::default();
+        let gathered = self.bundle.gathered(&self.plan, &scratch).map_err(ContentError::Records)?;
+        let Gathered { ledger, conditions } = gathered;
+        let verdicts = assemble::verdicts_of(&self.plan, &ledger)?;
+        let (study_yaml, selection) = (self.bundle.study_yaml(), &self.selection);
+        let asked = Asked { plan: &self.plan, study_yaml, selection };
+        let content = assemble::assemble_judged(asked, &ledger, conditions, &verdicts, &scratch);
+        Ok(content.expect("what forgets takes every byte"))
     }
 
     fn execute(&self, indices: &[usize]) -> Result<Vec<String>, RunError> {

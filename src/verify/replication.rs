@@ -7,7 +7,7 @@
 
 use super::closeness::{self, Closeness};
 use super::{Replanned, Severity};
-use crate::bundle::{Bundle, BundleContent, BundlePath, Fault, format};
+use crate::bundle::{Bundle, BundleContent, BundlePath, Fault, FileRef, format};
 use crate::claims::verdict::EffectSize;
 use crate::claims::{ClaimVerdict, Judgement};
 use serde::Serialize;
@@ -141,7 +141,7 @@ pub(super) fn check(
             return obstacle(Fault::new(path, expected, problem.to_string()));
         }
     };
-    let pair = |path: &str| (text(bundle.result(path)), text(result_of(&fresh, path)));
+    let pair = |path: &str| (text(result_in(bundle, path)), text(result_of(&fresh, path)));
     let (sealed, again) = pair(CLAIMS);
     let (sealed_trials, fresh_trials) = pair("trials.csv");
     let replication = Replication {
@@ -231,12 +231,22 @@ fn numbers(verdict: &ClaimVerdict) -> String {
     reason.to_owned() + &effect.map(of).unwrap_or_default()
 }
 
-fn result_of<'a>(content: &'a BundleContent, path: &str) -> Option<&'a [u8]> {
-    content.results.iter().find(|(name, _)| name == path).map(|(_, bytes)| bytes.as_slice())
+fn result_of<'a>(content: &'a BundleContent, path: &str) -> Option<FileRef<'a>> {
+    let held = content.results.iter().map(|(name, bytes)| (name, FileRef::Held(bytes)));
+    let large = content.large_results.iter().map(|(name, file)| (name, FileRef::Large(file)));
+    held.chain(large).find(|(name, _)| *name == path).map(|(_, file)| file)
 }
 
-fn text(bytes: Option<&[u8]>) -> String {
-    String::from_utf8_lossy(bytes.unwrap_or_default()).into_owned()
+/// Most bytes of a table that is compared number by number.
+const MOST_TABLE: u64 = 256 << 20;
+
+fn result_in<'a>(bundle: &'a Bundle, path: &str) -> Option<FileRef<'a>> {
+    bundle.result_files().find(|(name, _)| *name == path).map(|(_, file)| file)
+}
+
+fn text(file: Option<FileRef<'_>>) -> String {
+    let bytes = file.and_then(|file| file.whole(MOST_TABLE)).unwrap_or_default();
+    String::from_utf8_lossy(&bytes).into_owned()
 }
 
 #[cfg(test)]

@@ -5,8 +5,8 @@ use crate::bundle::{Bundle, BundlePath, Fault, format};
 /// Creates the obstacle at level 3 of a bundle of an older format.
 pub(super) fn other_format(bundle: &Bundle) -> Fault {
     let path = BundlePath::payload(format::RESOLVED);
-    let (ours, found) = (format::FORMAT, bundle.format());
-    Fault::new(path, format!("bundle format {ours}"), format!("bundle format {found}")).hint(
+    let ours = format!("bundle format {} or {}", format::WHOLE, format::FORMAT);
+    Fault::new(path, ours, format!("bundle format {}", bundle.format())).hint(
         "levels 0 to 2 can be judged here; tables and descriptions followed from the records in another way then, so the rest \
          is for the program that sealed the bundle, or run its study.yaml again",
     )

@@ -5,6 +5,7 @@ mod damaged;
 mod executed;
 mod forged;
 mod honest;
+mod parts;
 mod previous;
 mod replicated;
 
@@ -60,7 +61,7 @@ impl Replanned for Study<'_> {
     fn trials(&self) -> Vec<PlannedTrial> {
         let planned = |(slug, record): (&str, TrialRecord)| PlannedTrial {
             key: record.key,
-            slug: slug.to_owned(),
+            slug: slug.into(),
             trial: record.trial,
         };
         self.fresh().into_iter().map(planned).collect()
@@ -91,7 +92,7 @@ impl Replanned for Study<'_> {
 
 fn climb_to(level: Level, tree: Tree) -> Report {
     let options = Options { level, sample: 6, rows: None, seed: 1 };
-    climb(Ok(Archive { form: Form::Bag, tree }), &options, &ENGINE)
+    climb(Ok(Archive::of(Form::Bag, tree)), &options, &ENGINE)
 }
 
 fn edit(tree: &mut Tree, path: &str, change: impl FnOnce(String) -> String) {

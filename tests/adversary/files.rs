@@ -240,11 +240,11 @@ pub(crate) fn formats() -> Vec<Case> {
     };
     vec![
         format("a newer format, says the bag", 1, 2, |tree| {
-            replace(tree, INFO, "Bundle-Format: 2", "Bundle-Format: 3");
+            replace(tree, INFO, "Bundle-Format: 2", "Bundle-Format: 4");
         }),
         format("a newer format, says the resolved study", 1, 2, |tree| {
             set_json(tree, RESOLVED, |resolved| {
-                resolved["bundle-format"] = 3.into();
+                resolved["bundle-format"] = 4.into();
                 resolved["unheard-of"] = true.into();
             });
         }),

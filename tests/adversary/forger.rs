@@ -182,7 +182,7 @@ fn stated_results(tree: &Tree) -> String {
 /// Makes the best forgery there is short of running the trials: the changed manifest and inputs are planned, every
 /// record gets the key of its place in that plan, and the program itself derives all the rest from them and seals it.
 pub(crate) fn rederive(tree: Tree) -> Tree {
-    let bundle = Bundle::open(Archive { form: Form::Bag, tree }).unwrap();
+    let bundle = Bundle::open(Archive::of(Form::Bag, tree)).unwrap();
     let (plan, selection) = plan_of(&bundle).unwrap();
     let mut records = bundle.records().unwrap();
     assert_eq!(records.len(), plan.trials.len());

@@ -220,6 +220,15 @@ pub(super) struct Local<'a> {
 const LOCAL: usize = 30;
 
 impl<'a> Local<'a> {
+    /// Returns how many bytes the header at the beginning of `bytes` takes, as far as they tell.
+    pub(super) fn length(bytes: &[u8]) -> u64 {
+        let told = bytes.get(..LOCAL).map_or(0, |fixed| {
+            let field = Record(fixed);
+            u64::from(field.u16(26)) + u64::from(field.u16(28))
+        });
+        LOCAL as u64 + told
+    }
+
     /// Reads the header at the beginning of `bytes`; `None` where none stands there whole.
     pub(super) fn read(bytes: &'a [u8]) -> Option<Self> {
         let field = Record(bytes.get(..LOCAL).filter(|fixed| fixed.starts_with(b"PK\x03\x04"))?);

@@ -8,15 +8,19 @@
 use super::Limits;
 use super::extra;
 use super::header::{Central, Local, NEWEST, Record, STREAMED};
+use super::raw::Raw;
 use super::told::Faults;
 use crate::bundle::Fault;
 use std::ops::Range;
 
 /// Bytes of the end record without a comment.
-const END: usize = 22;
+const END: u64 = 22;
 /// Bytes of the zip64 end record without an extension, and of the locator behind it.
-const LONG_END: usize = 56;
-const LOCATOR: usize = 20;
+const LONG_END: u64 = 56;
+const LOCATOR: u64 = 20;
+
+/// Most bytes of a directory that is read: twenty thousand entries with names of a thousand bytes have half of it.
+const MOST_DIRECTORY: u64 = 48 << 20;
 
 fn archive(expected: impl Into<String>, found: impl Into<String>) -> Fault {
     Fault::new("(archive)", expected, found)
@@ -29,7 +33,7 @@ fn too_many(limits: &Limits, found: u64) -> Fault {
 /// Where the central directory stands, and how many entries it is said to have.
 #[derive(Debug)]
 pub(super) struct Directory {
-    range: Range<usize>,
+    range: Range<u64>,
     entries: u64,
 }
 
@@ -43,9 +47,13 @@ struct Stated {
 
 impl Directory {
     /// Finds it by the end record, which must be the last bytes.
-    pub(super) fn find(bytes: &[u8]) -> Result<Self, Fault> {
-        let at = end_record(bytes)?;
-        let field = Record(&bytes[at..]);
+    pub(super) fn find(raw: &Raw<'_>) -> Result<Self, Fault> {
+        let at = end_record(raw)?;
+        let record = raw.get(at, END).unwrap_or_default();
+        if record.len() as u64 != END {
+            return Err(archive("a whole zip archive", "an end record that is cut"));
+        }
+        let field = Record(&record);
         if (field.u16(4), field.u16(6), field.u16(8)) != (0, 0, field.u16(10)) {
             return Err(archive("an archive in one piece", "an end record of several"));
         }
@@ -54,7 +62,7 @@ impl Directory {
             bytes: field.u32(12).into(),
             start: field.u32(16).into(),
         };
-        let (end, stated) = match long_end(bytes, at)? {
+        let (end, stated) = match long_end(raw, at)? {
             Some((end, long)) => {
                 // Numbers that do not fit stand as the greatest that does.
                 let fits = |short, long, most| short == long || short == u64::from(most);
@@ -68,18 +76,17 @@ impl Directory {
             }
             None => (at, short),
         };
-        let Some(start) = usize::try_from(stated.bytes).ok().and_then(|b| end.checked_sub(b))
-        else {
+        let Some(start) = end.checked_sub(stated.bytes) else {
             return Err(archive(
                 "a whole zip archive",
                 format!("a directory of {} bytes in {end}", stated.bytes),
             ));
         };
-        let shift = start as u64 - stated.start.min(start as u64);
+        let shift = start - stated.start.min(start);
         if shift > 0 {
             // Either the whole archive was moved, or something was put behind the directory.
-            let stays = usize::try_from(stated.start).ok().and_then(|at| bytes.get(at..));
-            return Err(if stays.and_then(Central::length).is_some() {
+            let stays = raw.up_to(stated.start, MOST_HEADER);
+            return Err(if Central::length(&stays).is_some() {
                 archive(
                     "a directory that ends where the end record begins",
                     format!("{shift} bytes between them"),
@@ -89,22 +96,32 @@ impl Directory {
                 bytes_before(shift)
             });
         }
-        if stated.start > start as u64 {
+        if stated.start > start {
             return Err(archive(
                 format!("a directory at byte {start}, where its size puts it"),
                 format!("byte {} stated", stated.start),
             ));
         }
+        if stated.bytes > MOST_DIRECTORY {
+            return Err(archive(
+                format!("a directory of at most {MOST_DIRECTORY} bytes"),
+                format!("one of {}", stated.bytes),
+            ));
+        }
         Ok(Self { range: start..end, entries: stated.entries })
     }
 
-    /// Reads the directory's headers, in the order in which they stand there.
+    /// Reads the bytes of the directory.
+    pub(super) fn bytes(&self, raw: &Raw<'_>) -> Vec<u8> {
+        raw.up_to(self.range.start, self.range.end - self.range.start)
+    }
+
+    /// Reads the headers in the `directory`, whose bytes these are, in the order in which they stand there.
     pub(super) fn headers<'a>(
         &self,
-        bytes: &'a [u8],
+        directory: &'a [u8],
         limits: &Limits,
     ) -> Result<Vec<Central<'a>>, Fault> {
-        let directory = &bytes[self.range.clone()];
         let lengths = |mut rest: &'a [u8]| {
             std::iter::from_fn(move || {
                 let length = Central::length(rest)?;
@@ -129,23 +146,23 @@ impl Directory {
         Ok(lengths(directory).map(Central::read).collect())
     }
 
-    /// Returns the packed bytes of every entry, in the directory's order; each fault where a byte belongs to none of
+    /// Returns where the packed bytes of every entry begin, in the directory's order; each fault where a byte belongs to none of
     /// them, to two, or where an entry's headers disagree.
-    pub(super) fn account<'a>(
+    pub(super) fn account(
         &self,
-        bytes: &'a [u8],
+        raw: &Raw<'_>,
         entries: &[Central<'_>],
-    ) -> Result<Vec<&'a [u8]>, Faults> {
+    ) -> Result<Vec<u64>, Faults> {
         let mut order: Vec<usize> = (0..entries.len()).collect();
         order.sort_by_key(|i| entries[*i].offset);
-        let (mut data, mut faults) = (vec![&bytes[..0]; entries.len()], Faults::default());
-        let (mut next, mut before) = (0_usize, None::<&Central<'_>>);
+        let (mut data, mut faults) = (vec![0; entries.len()], Faults::default());
+        let (mut next, mut before) = (0_u64, None::<&Central<'_>>);
         for i in order {
             let entry = &entries[i];
-            let start = usize::try_from(entry.offset).unwrap_or(usize::MAX);
+            let start = entry.offset;
             match (start.checked_sub(next), before) {
                 (Some(0), _) => {}
-                (Some(gap), None) => faults.push(bytes_before(gap as u64)),
+                (Some(gap), None) => faults.push(bytes_before(gap)),
                 (Some(gap), Some(_)) => faults.push(gap_before(entry.shown(), "an entry", gap)),
                 (None, _) => {
                     let other = before.map(Central::shown).unwrap_or_default();
@@ -157,11 +174,10 @@ impl Directory {
                     continue;
                 }
             }
-            let place = bytes[..self.range.start].get(start..).unwrap_or_default();
-            match Place::read(entry, place) {
+            match Place::read(entry, &raw.part(start, self.range.start)) {
                 Ok(place) => {
                     faults.extend(place.faults);
-                    data[i] = place.data;
+                    data[i] = start + place.data;
                     next = start + place.length;
                     before = Some(entry);
                 }
@@ -180,32 +196,40 @@ impl Directory {
     }
 }
 
+/// Most bytes of a header: what is fixed, and three parts of two bytes' length each.
+const MOST_HEADER: u64 = 46 + 3 * u16::MAX as u64;
+
+/// Bytes of a data descriptor whose sizes have eight bytes.
+const LONGEST_DESCRIPTOR: u64 = 24;
+
 const UNLISTED: &str = "no entry lists them, so no checksum covers them";
 
 fn bytes_before(count: u64) -> Fault {
     archive("a zip that begins at the first byte", format!("{count} bytes before it"))
 }
 
-fn gap_before(path: String, what: &str, gap: usize) -> Fault {
+fn gap_before(path: String, what: &str, gap: u64) -> Fault {
     let expected = format!("{what} that begins where the entry before it ends");
     Fault::new(path, expected, format!("{gap} bytes between them")).hint(UNLISTED)
 }
 
 /// Returns where the end record begins: the last one, without comment, and nothing behind it.
-fn end_record(bytes: &[u8]) -> Result<usize, Fault> {
+fn end_record(raw: &Raw<'_>) -> Result<u64, Fault> {
     let whole = |found: &str| archive("a whole zip archive", found);
-    let is_end = |at: &usize| bytes[*at..].starts_with(b"PK\x05\x06") && bytes.ends_with(&[0, 0]);
-    if let Some(at) = bytes.len().checked_sub(END).filter(is_end) {
+    let is_end = |at: &u64| {
+        raw.get(*at, END).is_some_and(|r| r.starts_with(b"PK\x05\x06") && r.ends_with(&[0, 0]))
+    };
+    if let Some(at) = raw.len().checked_sub(END).filter(is_end) {
         return Ok(at);
     }
-    let Some(at) = bytes.windows(4).rposition(|w| w == b"PK\x05\x06") else {
+    let Some(at) = raw.last(*b"PK\x05\x06") else {
         return Err(whole("no end record").hint("is it a zip, and did all of it arrive?"));
     };
-    let Some(record) = bytes.get(at..at + END) else {
+    let Some(record) = raw.get(at, END) else {
         return Err(whole("an end record that is cut"));
     };
-    let comment = usize::from(Record(record).u16(20));
-    match bytes.len().checked_sub(at + END + comment) {
+    let comment = u64::from(Record(&record).u16(20));
+    match raw.len().checked_sub(at + END + comment) {
         None => Err(whole("a comment that is cut")),
         Some(0) => Err(archive("no comment", format!("one of {comment} bytes"))),
         Some(behind) => {
@@ -215,18 +239,19 @@ fn end_record(bytes: &[u8]) -> Result<usize, Fault> {
 }
 
 /// Finds the zip64 end record before the end record at `at`, and reads what it states; `None` where there is none.
-fn long_end(bytes: &[u8], at: usize) -> Result<Option<(usize, Stated)>, Fault> {
-    let locator = at.checked_sub(LOCATOR).map(|from| (from, &bytes[from..at]));
+fn long_end(raw: &Raw<'_>, at: u64) -> Result<Option<(u64, Stated)>, Fault> {
+    let locator = at.checked_sub(LOCATOR).and_then(|from| Some((from, raw.get(from, LOCATOR)?)));
     let Some((from, locator)) = locator.filter(|(_, l)| l.starts_with(b"PK\x06\x07")) else {
         return Ok(None);
     };
     let other = |found: &str| archive("a zip64 end record right before its locator", found);
     let start = from.checked_sub(LONG_END).ok_or_else(|| other("none"))?;
-    let (record, pointer) = (Record(&bytes[start..from]), Record(locator));
-    if !record.0.starts_with(b"PK\x06\x06") || pointer.u64(8) != start as u64 {
+    let record = raw.get(start, LONG_END).ok_or_else(|| other("none"))?;
+    let (record, pointer) = (Record(&record), Record(&locator));
+    if !record.0.starts_with(b"PK\x06\x06") || pointer.u64(8) != start {
         return Err(other("none"));
     }
-    let extension = record.u64(4) != LONG_END as u64 - 12;
+    let extension = record.u64(4) != LONG_END - 12;
     let pieces = (pointer.u32(4), pointer.u32(16), record.u32(16), record.u32(20)) != (0, 1, 0, 0);
     if extension || pieces || record.u16(14) > NEWEST || record.u64(24) != record.u64(32) {
         return Err(other("one with an extension, of a later version or of several pieces"));
@@ -236,38 +261,43 @@ fn long_end(bytes: &[u8], at: usize) -> Result<Option<(usize, Stated)>, Fault> {
 }
 
 /// What stands where an entry begins.
-struct Place<'a> {
-    data: &'a [u8],
+struct Place {
+    /// Bytes from its local header to its data.
+    data: u64,
     /// Bytes from its local header to the end of its descriptor.
-    length: usize,
+    length: u64,
     faults: Vec<Fault>,
 }
 
-impl<'a> Place<'a> {
-    /// Reads the entry at the beginning of `bytes`, which end where the directory begins.
-    fn read(entry: &Central<'_>, bytes: &'a [u8]) -> Result<Self, Fault> {
+impl Place {
+    /// Reads the entry at the beginning of `raw`, which ends where the directory begins.
+    fn read(entry: &Central<'_>, raw: &Raw<'_>) -> Result<Self, Fault> {
         let fault = |expected: &str, found: &str| Fault::new(entry.shown(), expected, found);
-        let local = Local::read(bytes)
+        let header = raw.up_to(0, Local::length(&raw.up_to(0, 30)));
+        let local = Local::read(&header)
             .ok_or_else(|| fault("a local header where the directory says", "none"))?;
         let is_streamed = entry.flags & STREAMED != 0;
         let mut faults = disagreements(entry, &local, is_streamed);
-        let end =
-            usize::try_from(entry.packed).ok().and_then(|packed| local.length.checked_add(packed));
-        let data = end.and_then(|end| bytes.get(local.length..end)).ok_or_else(|| {
+        let data = local.length as u64;
+        let end = data.checked_add(entry.packed).filter(|end| *end <= raw.len());
+        let mut length = end.ok_or_else(|| {
             Fault::new(
                 entry.shown(),
                 format!("{} bytes of data before the directory", entry.packed),
-                format!("{}", bytes.len() - local.length),
+                format!("{}", raw.len() - data),
             )
         })?;
-        let mut length = local.length + data.len();
         if is_streamed {
-            let (more, found) = descriptor(entry, &bytes[length..], local.is_long);
-            length += more;
+            let behind = raw.up_to(length, LONGEST_DESCRIPTOR);
+            let (more, found) = descriptor(entry, &behind, local.is_long);
+            length += more as u64;
             if let Some(found) = found {
                 faults.push(fault("a data descriptor that agrees with the directory", &found));
             }
-            if entry.is_stored() && local.packed == 0 && ends_within(data) {
+            if entry.is_stored()
+                && local.packed == 0
+                && ends_within(&raw.part(data, data + entry.packed))
+            {
                 faults.push(fault(
                     "data without a mark of its own end",
                     "one that readers of streams stop at",
@@ -355,8 +385,6 @@ fn descriptor(entry: &Central<'_>, bytes: &[u8], is_long: bool) -> (usize, Optio
 
 /// Returns whether `data`, whose length a reader of a stream does not know yet, holds a descriptor of what stands
 /// before it.
-fn ends_within(data: &[u8]) -> bool {
-    data.windows(16)
-        .enumerate()
-        .any(|(at, w)| w.starts_with(b"PK\x07\x08") && u64::from(Record(w).u32(8)) == at as u64)
+fn ends_within(data: &Raw<'_>) -> bool {
+    data.any_window(16, |at, w| w.starts_with(b"PK\x07\x08") && u64::from(Record(w).u32(8)) == at)
 }

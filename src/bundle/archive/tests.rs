@@ -47,6 +47,67 @@ fn tag_files_come_first_and_nothing_depends_on_the_day() {
 }
 
 #[test]
+fn sizes_of_eight_bytes_are_read_as_they_are_written() {
+    let sealed = sample::sealed();
+    let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
+    for (path, bytes) in &sealed.tree {
+        let options = options().compression_method(CompressionMethod::Deflated).large_file(true);
+        zip.start_file(path.as_str(), options).unwrap();
+        zip.write_all(bytes).unwrap();
+    }
+    let zip = zip.finish().unwrap().into_inner();
+    assert!(
+        zip.windows(8).any(|w| w == [0xff; 8]),
+        "the local headers say that sizes are elsewhere"
+    );
+    assert_eq!(read(&zip, &Limits::default()).unwrap().tree, sealed.tree);
+}
+
+#[test]
+fn large_files_stay_where_they_are() {
+    let mut tree = sample::sealed().tree;
+    let lines = "x".repeat(99) + "\n";
+    tree.insert("data/trials/none.jsonl".to_owned(), lines.repeat(20_000).into_bytes());
+    tree.insert("data/inputs/big.csv".to_owned(), lines.repeat(20_000).into_bytes());
+    for form in [Form::Bag, Form::Flat] {
+        let zip = write(&tree, "b", form);
+        let length = zip.len() as u64;
+        let archive =
+            read_from(Arc::new(zip.clone()), length, &Limits::default()).unwrap().unwrap();
+        let paths: Vec<&String> = archive.large.keys().collect();
+        assert_eq!(paths, ["data/trials/none.jsonl"], "{form:?}");
+        let file = archive.files().get("data/trials/none.jsonl").unwrap();
+        assert_eq!(file.whole(3 << 20).unwrap(), tree["data/trials/none.jsonl"]);
+        assert_eq!((file.whole(1 << 20), file.line_count()), (None, 20_000));
+        assert!(write_files(archive.files(), "b", form) == zip, "written as it was");
+        let few = Limits { held: 1 << 20, ..Limits::default() };
+        let refused = read_from(Arc::new(zip), length, &few).unwrap().unwrap_err();
+        let told: Vec<String> = refused.iter().map(ToString::to_string).collect();
+        assert!(
+            told[0].starts_with(
+                "(archive): expected at most 1048576 bytes beside records and tables of trials, found "
+            ) && told[0].ends_with(" bytes declared (it may be a zip bomb)"),
+            "{told:?}"
+        );
+    }
+}
+
+#[test]
+fn a_bundle_that_is_larger_than_the_reader_admits_says_how_to_admit_it() {
+    let (zip, small) = (sample::zip(), Limits { bytes: 1000, ..Limits::default() });
+    let length = zip.len() as u64;
+    let refused = read_from(Arc::new(zip.to_vec()), length, &small).unwrap().unwrap_err();
+    let told = refused[0].to_string();
+    assert!(
+        told.starts_with(&format!("(archive): expected at most 1000 bytes unpacked from {length}, found "))
+            && told.ends_with(
+                " bytes declared (where you trust that it is so large, `--max-size` admits it: `--max-size 8G`)"
+            ),
+        "{told}"
+    );
+}
+
+#[test]
 fn hostile_names_are_refused() {
     for (name, fault) in [
         (

@@ -1,7 +1,10 @@
 //! Unpacking one entry: never more than it declares, and to the last byte of its stream.
 
 use super::header::Central;
+use super::raw::Raw;
+use flate2::read::DeflateDecoder;
 use flate2::{Crc, Decompress, FlushDecompress, Status};
+use std::io::Read;
 use std::num::TryFromIntError;
 
 /// What was found where an entry's declared size and checksum should be, and no byte behind its stream.
@@ -23,21 +26,91 @@ pub(in crate::bundle) enum UnpackError {
     Endless,
 }
 
-/// Returns the content of `entry`, whose bytes in the archive are `packed`.
+/// Hands over the content of `entry`, whose bytes in the archive are `packed`, block by block. What was taken counts for nothing
+/// where that fails.
 ///
 /// # Errors
 /// As [`UnpackError`] says.
-pub(super) fn unpack(entry: &Central<'_>, packed: &[u8]) -> Result<Vec<u8>, UnpackError> {
-    let content = if entry.is_stored() { packed.to_vec() } else { inflate(packed, entry.size)? };
-    if content.len() as u64 != entry.size {
-        return Err(UnpackError::Length { found: content.len(), declared: entry.size });
+pub(super) fn unpack(
+    entry: &Central<'_>,
+    packed: &Raw<'_>,
+    take: &mut dyn FnMut(&[u8]),
+) -> Result<(), UnpackError> {
+    let (mut crc, mut length) = (Crc::new(), 0);
+    let mut next = |block: &[u8]| {
+        crc.update(block);
+        length += block.len() as u64;
+        take(block);
+    };
+    if entry.is_stored() {
+        let mut at = 0;
+        while at < packed.len() {
+            let block = packed.up_to(at, STEP);
+            if block.is_empty() {
+                break;
+            }
+            next(&block);
+            at += block.len() as u64;
+        }
+    } else {
+        inflate_blocks(packed, entry.size, &mut next)?;
     }
-    let mut crc = Crc::new();
-    crc.update(&content);
+    if length != entry.size {
+        let found = usize::try_from(length)?;
+        return Err(UnpackError::Length { found, declared: entry.size });
+    }
     if crc.sum() != entry.crc {
         return Err(UnpackError::Checksum { found: crc.sum(), declared: entry.crc });
     }
-    Ok(content)
+    Ok(())
+}
+
+/// Hands over what the deflate stream `packed` holds, which is `declared` bytes at most.
+fn inflate_blocks(
+    packed: &Raw<'_>,
+    declared: u64,
+    next: &mut dyn FnMut(&[u8]),
+) -> Result<(), UnpackError> {
+    let (mut stream, mut unpacked) = (Decompress::new(false), Vec::new());
+    let (mut block, mut at) = (packed.up_to(0, STEP), 0);
+    loop {
+        // One byte more than declared is enough to refuse.
+        let room = STEP.min(declared + 1 - stream.total_out());
+        unpacked.clear();
+        unpacked.reserve_exact(usize::try_from(room)?);
+        let read = stream.total_in();
+        let status = stream
+            .decompress_vec(&block[at..], &mut unpacked, FlushDecompress::None)
+            .map_err(|_| UnpackError::Damaged)?;
+        let read = stream.total_in() - read;
+        at += usize::try_from(read)?;
+        if stream.total_out() > declared {
+            return Err(UnpackError::TooLong(declared));
+        }
+        next(&unpacked);
+        match status {
+            Status::StreamEnd => {
+                return match packed.len() - stream.total_in() {
+                    0 => Ok(()),
+                    behind => Err(UnpackError::Behind(usize::try_from(behind)?)),
+                };
+            }
+            Status::Ok | Status::BufError => {}
+        }
+        if at == block.len() {
+            (block, at) = (packed.up_to(stream.total_in(), STEP), 0);
+        } else if read == 0 && unpacked.is_empty() {
+            return Err(UnpackError::Endless);
+        }
+        if block.is_empty() && unpacked.is_empty() {
+            return Err(UnpackError::Endless);
+        }
+    }
+}
+
+/// Returns a reader of what the deflate stream that `packed` reads holds: of a stream that [`unpack`] found good.
+pub(in crate::bundle) fn inflating(packed: impl Read) -> impl Read {
+    DeflateDecoder::new(packed)
 }
 
 /// Bytes that are asked for at least.

@@ -1,6 +1,7 @@
 //! What can be typed about bundles: to verify, compare, report, export and replay them.
 
 use super::Format;
+use crate::bundle::Limits;
 use crate::verify::Rows;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -12,6 +13,8 @@ enum ValueError {
     Rows,
     #[error("expected a number above 0")]
     Rate,
+    #[error("expected a size such as 500M, 8G or a number of bytes")]
+    Size,
 }
 
 /// Reads how many rows `--robustness` asks for.
@@ -26,6 +29,35 @@ fn rows(text: &str) -> Result<Rows, ValueError> {
 fn rate(text: &str) -> Result<f64, ValueError> {
     let rate = text.parse().ok().filter(|rate: &f64| rate.is_finite() && *rate > 0.0);
     rate.ok_or(ValueError::Rate)
+}
+
+/// Reads a size in bytes, or with one of the letters K, M, G and T of that many times 1024.
+fn size(text: &str) -> Result<u64, ValueError> {
+    let (number, shift) = match text.char_indices().next_back() {
+        Some((at, letter)) if letter.is_ascii_alphabetic() => {
+            let place = "KMGT".find(letter.to_ascii_uppercase()).ok_or(ValueError::Size)?;
+            (&text[..at], 10 * (place + 1))
+        }
+        _ => (text, 0),
+    };
+    let number: u64 = number.parse().map_err(|_| ValueError::Size)?;
+    let bytes = number.checked_mul(1 << shift).filter(|bytes| *bytes > 0);
+    bytes.ok_or(ValueError::Size)
+}
+
+/// How much a bundle may ask of its reader.
+#[derive(Debug, Clone, Copy, Args)]
+pub(in crate::cli) struct LimitsArgs {
+    /// The largest bundle that is dealt with, by the bytes of its files unpacked: 500M, 8G
+    #[arg(long, value_name = "SIZE", default_value = "4G", value_parser = size)]
+    pub(in crate::cli) max_size: u64,
+}
+
+impl LimitsArgs {
+    /// Returns the limits to be kept to.
+    pub(in crate::cli) fn limits(self) -> Limits {
+        Limits { bytes: self.max_size, ..Limits::default() }
+    }
 }
 
 #[derive(Debug, Args)]
@@ -59,6 +91,8 @@ pub(in crate::cli) struct VerifyArgs {
     /// An attestation of this bundle, which one of the trusted keys must have signed
     #[arg(long, value_name = "FILE", requires = "trust")]
     pub(in crate::cli) attestation: Option<PathBuf>,
+    #[command(flatten)]
+    pub(in crate::cli) limits: LimitsArgs,
     /// Threads for re-execution [default: all processors]
     #[arg(short, long, value_name = "N")]
     pub(in crate::cli) jobs: Option<usize>,
@@ -91,6 +125,8 @@ pub(in crate::cli) struct DiffArgs {
     /// Write the answer to this file
     #[arg(short, long, value_name = "FILE")]
     pub(in crate::cli) output: Option<PathBuf>,
+    #[command(flatten)]
+    pub(in crate::cli) limits: LimitsArgs,
     /// Show a bundle that fails its check all the same, under a banner
     #[arg(long)]
     pub(in crate::cli) unchecked: bool,
@@ -114,6 +150,8 @@ pub(in crate::cli) struct ReportArgs {
     /// The page to write [default: the bundle's name with .html, in this folder]
     #[arg(short, long, value_name = "FILE")]
     pub(in crate::cli) output: Option<PathBuf>,
+    #[command(flatten)]
+    pub(in crate::cli) limits: LimitsArgs,
     /// Show a bundle that fails its check all the same, under a banner
     #[arg(long)]
     pub(in crate::cli) unchecked: bool,
@@ -142,6 +180,8 @@ pub(in crate::cli) struct ExportArgs {
     /// Where to write it [default: this folder]
     #[arg(short, long, value_name = "DIR", default_value = ".")]
     pub(in crate::cli) out: PathBuf,
+    #[command(flatten)]
+    pub(in crate::cli) limits: LimitsArgs,
     /// Write a bundle that fails its check all the same
     #[arg(long)]
     pub(in crate::cli) unchecked: bool,
@@ -188,7 +228,25 @@ pub(in crate::cli) struct ReplayArgs {
     /// Which candidate of that choice, from 1 [default: the chosen one]
     #[arg(long, value_name = "CANDIDATE", requires = "decision")]
     pub(in crate::cli) gain: Option<usize>,
+    #[command(flatten)]
+    pub(in crate::cli) limits: LimitsArgs,
     /// Show a bundle that fails its check all the same, under a banner
     #[arg(long)]
     pub(in crate::cli) unchecked: bool,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_read_as_people_write_them() {
+        let read = |text: &str| size(text).map_err(|e| e.to_string());
+        assert_eq!(read("123"), Ok(123));
+        assert_eq!((read("1k"), read("500M"), read("8G")), (Ok(1024), Ok(500 << 20), Ok(8 << 30)));
+        for text in ["", "G", "0", "-1", "1.5G", "8 G", "8GB", "99999999999T"] {
+            let expected = "expected a size such as 500M, 8G or a number of bytes";
+            assert_eq!(read(text), Err(expected.to_owned()), "{text}");
+        }
+    }
 }

@@ -1,6 +1,6 @@
 //! What can be typed about studies: to run, check, plan, lock and vary them.
 
-use super::{DataFormat, Format, SelectArgs};
+use super::{DataFormat, Format, LimitsArgs, SelectArgs};
 use crate::cli::load::Given;
 use clap::Args;
 use std::path::PathBuf;
@@ -29,6 +29,8 @@ pub(in crate::cli) struct RunArgs {
     /// Seal the source of this program into the bundle as data, for readers in ten years
     #[arg(long)]
     pub(in crate::cli) capsule: bool,
+    #[command(flatten)]
+    pub(in crate::cli) limits: LimitsArgs,
     /// How the answer is written
     #[arg(long, value_enum, default_value = "human")]
     pub(in crate::cli) format: Format,
@@ -142,6 +144,9 @@ pub(in crate::cli) struct InferArgs {
     #[arg(long)]
     pub(in crate::cli) no_cache: bool,
 
+    #[command(flatten)]
+    pub(in crate::cli) limits: LimitsArgs,
+
     /// How the answer is written
     #[arg(long, value_enum, default_value = "human")]
     pub(in crate::cli) format: Format,
@@ -149,7 +154,7 @@ pub(in crate::cli) struct InferArgs {
 
 impl From<&InferArgs> for RunArgs {
     fn from(args: &InferArgs) -> Self {
-        let InferArgs { manifest, jobs, out, select, no_cache, format } = args;
+        let InferArgs { manifest, jobs, out, select, no_cache, limits, format } = args;
         Self {
             manifests: vec![manifest.clone()],
             jobs: *jobs,
@@ -159,6 +164,7 @@ impl From<&InferArgs> for RunArgs {
             lock: AgainstLockArgs { locked: false, probe: false },
             twice: false,
             capsule: false,
+            limits: *limits,
             format: *format,
         }
     }

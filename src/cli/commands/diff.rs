@@ -12,7 +12,7 @@ use std::path::Path;
 /// Compares two sides.
 pub(in crate::cli) fn run(args: &DiffArgs, terminal: Terminal) -> Result<Exit, Failure> {
     let tolerances = Tolerances::parse(&args.tolerance).map_err(Failure::not_understood)?;
-    let (a, b) = (side(&args.a, args, terminal)?, side(&args.b, args, terminal)?);
+    let (a, b) = sides(args, terminal)?;
     let sides = [&a, &b];
     let words: Vec<&str> = sides.iter().filter_map(|side| side.words.as_deref()).collect();
     let banners: Vec<&str> = sides.iter().filter_map(|side| side.banner.as_deref()).collect();
@@ -52,13 +52,46 @@ struct Side {
     banner: Option<String>,
 }
 
-/// Reads what one side says: a lock by its name, a bundle otherwise.
-fn side(path: &Path, args: &DiffArgs, terminal: Terminal) -> Result<Side, Failure> {
+/// What one side is, before anything is told of it.
+enum Opened {
+    Lock(Box<Account>),
+    Bundle(Box<checked::Checked>),
+}
+
+/// Reads what both sides say: a lock by its name, a bundle otherwise.
+fn sides(args: &DiffArgs, terminal: Terminal) -> Result<(Side, Side), Failure> {
+    let paths = [&args.a, &args.b];
+    let (a, b) = (opened(&args.a, args, terminal)?, opened(&args.b, args, terminal)?);
+    let accounts = match (&a, &b) {
+        (Opened::Bundle(a), Opened::Bundle(b)) => Account::of_bundles(&a.bundle, &b.bundle),
+        _ => [&a, &b].map(|side| match side {
+            Opened::Lock(account) => Ok(Account::clone(account)),
+            Opened::Bundle(checked) => Account::of_bundle(&checked.bundle),
+        }),
+    };
+    let mut sides = Vec::new();
+    for ((account, opened), path) in accounts.into_iter().zip([a, b]).zip(paths) {
+        let named = |text: String| format!("{}: {text}", path.display());
+        let account = account.map_err(|faults| {
+            let first = faults.first().map(ToString::to_string).unwrap_or_default();
+            Failure::not_understood(named(first))
+        })?;
+        let (words, banner) = match opened {
+            Opened::Lock(_) => (None, None),
+            Opened::Bundle(checked) => (Some(named(checked.words)), checked.banner.map(named)),
+        };
+        sides.push(Side { account, words, banner });
+    }
+    let b = sides.pop().expect("there are two");
+    Ok((sides.pop().expect("there are two"), b))
+}
+
+fn opened(path: &Path, args: &DiffArgs, terminal: Terminal) -> Result<Opened, Failure> {
     if path.extension().is_some_and(|extension| extension == "lock") {
         let account = locked::read(&load::text(path)?, terminal)?.account().clone();
-        return Ok(Side { account, words: None, banner: None });
+        return Ok(Opened::Lock(Box::new(account)));
     }
-    let checked = checked::bundle(path, args.unchecked).map_err(|refused| {
+    let checked = checked::bundle(path, args.unchecked, args.limits).map_err(|refused| {
         // One that cannot be read leaves the question open, which is no answer of ours: 2, not 1.
         if refused.failure.exit == Exit::No && !refused.is_read {
             Failure::not_understood(refused.failure.message)
@@ -66,10 +99,5 @@ fn side(path: &Path, args: &DiffArgs, terminal: Terminal) -> Result<Side, Failur
             refused.into()
         }
     })?;
-    let account = Account::of_bundle(&checked.bundle).map_err(|faults| {
-        let first = faults.first().map(ToString::to_string).unwrap_or_default();
-        Failure::not_understood(format!("{}: {first}", path.display()))
-    })?;
-    let named = |text: String| format!("{}: {text}", path.display());
-    Ok(Side { account, words: Some(named(checked.words)), banner: checked.banner.map(named) })
+    Ok(Opened::Bundle(Box::new(checked)))
 }

@@ -3,6 +3,7 @@
 use crate::bundle::wall_time::WallTimes;
 use crate::cli::calibrate::Calibrator;
 use crate::cli::exit::Failure;
+use crate::cli::forecast::Forecast;
 use crate::cli::progress::Progress;
 use crate::cli::terminal::{Terminal, counted};
 use crate::plan::Plan;
@@ -10,6 +11,7 @@ use crate::provenance::{Environment, TrialWatch, most_jobs, processors, unforese
 use crate::runner::{Executor, Observer, RunEvent, Scheduler, TrialStore, Twice};
 use crate::store::DirectoryStore;
 use crate::studies::{self, TrialRecord, TrialSpec};
+use std::io;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
@@ -20,9 +22,8 @@ pub(super) struct Execution {
     store: Option<DirectoryStore>,
 }
 
-/// What a plan's execution brought.
-pub(super) struct Executed {
-    pub(super) records: Vec<TrialRecord>,
+/// What is to be said of a plan's execution beside its records.
+pub(super) struct Account {
     /// How many of them the store held.
     pub(super) cached: usize,
     /// How many of those were executed again, and gave the same bytes.
@@ -91,19 +92,44 @@ impl Execution {
         Calibrator::Run { scheduler: &self.scheduler, store: self.store.as_ref() }
     }
 
+    /// Foretells the run of `plan` by what the store has of it.
+    pub(super) fn forecast(&self, plan: &Plan) -> Result<Forecast, Failure> {
+        let looked = self.store.as_ref().map(DirectoryStore::look).transpose();
+        let looked = looked.map_err(Failure::failed)?;
+        Forecast::of(plan, looked.as_ref()).map_err(Failure::failed)
+    }
+
     /// Returns the record of every trial of `plan`, in its order.
     pub(super) fn execute(
         &self,
         plan: &Plan,
         times: Times,
         terminal: Terminal,
-    ) -> Result<Executed, Failure> {
+    ) -> Result<Vec<TrialRecord>, Failure> {
+        let mut records = Vec::with_capacity(plan.trials.len());
+        self.execute_each(plan, times, terminal, &mut |record| {
+            records.push(record);
+            Ok(())
+        })?;
+        Ok(records)
+    }
+
+    /// Hands the record of every trial of `plan` to `take`, in its order.
+    pub(super) fn execute_each(
+        &self,
+        plan: &Plan,
+        times: Times,
+        terminal: Terminal,
+        take: &mut dyn FnMut(TrialRecord) -> io::Result<()>,
+    ) -> Result<Account, Failure> {
         let store = self.store.as_ref().filter(|_| times == Times::Once);
         let progress = Progress::of(&plan.trials, terminal)
             .labelled(&plan.experiment.name)
             .interruptible(store.is_some());
         let (cached, doubted) = (AtomicUsize::new(0), AtomicUsize::new(0));
         let walls = Mutex::new(WallTimes::new());
+        // A million of them take a hundred megabytes: only for claims about them.
+        let is_timed = plan.experiment.claims.iter().any(|claim| claim.circumstance);
         let observer = |event: &RunEvent<'_>| {
             match event {
                 RunEvent::Started { cached: known, doubted: again, .. } => {
@@ -119,6 +145,9 @@ impl Execution {
             progress.notice(event);
         };
         let timed = |spec: &TrialSpec| {
+            if !is_timed {
+                return studies::execute(spec);
+            }
             let mut watch = TrialWatch::start();
             let record = studies::execute_timed(spec, &mut watch);
             let time = watch.stop();
@@ -131,17 +160,16 @@ impl Execution {
             None => &timed,
         };
         let store = store.map(|store| store as &dyn TrialStore);
-        let records = self.scheduler.run(&plan.trials, executor, store, &observer);
+        let done = self.scheduler.run_each(&plan.trials, executor, store, &observer, take);
         progress.finish();
         for warning in self.store.iter().flat_map(DirectoryStore::warnings) {
             terminal.warning(&warning);
         }
-        let records = records.map_err(Failure::failed)?;
+        done.map_err(Failure::failed)?;
         if let Some(twice) = twice {
-            twice.verdict(records.len()).map_err(Failure::failed)?;
+            twice.verdict(plan.trials.len()).map_err(Failure::failed)?;
         }
-        Ok(Executed {
-            records,
+        Ok(Account {
             cached: cached.into_inner(),
             doubted: doubted.into_inner(),
             times: walls.into_inner().unwrap_or_else(PoisonError::into_inner),

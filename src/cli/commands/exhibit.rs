@@ -37,7 +37,9 @@ mod tests {
     use crate::report::ReportTable;
     use crate::studies::fixture::with_findings;
     use crate::studies::outcomes::{OutcomeTable, Quantity};
-    use crate::studies::{Findings, Measures, Outcome, TableLayout, TableRequest, TrialRecord};
+    use crate::studies::{
+        Findings, Ledger, Measures, Outcome, TableLayout, TableRequest, TrialRecord,
+    };
     use crate::table::{Table, Value};
     use std::collections::BTreeMap;
 
@@ -82,7 +84,8 @@ mod tests {
         let csv = "start,deadline-s,strategy,value,n\nA,680,frontier,26,50\nA,680,normalized-frontier,59,50\n\
                    A,680,corridors-first,12,50\nA,680,complete-corridor,100,50\n";
         let published = BTreeMap::from([("success".to_owned(), Table::from_csv(csv).unwrap())]);
-        let findings = Findings::new(&factors, &records, &published);
+        let ledger = Ledger::of(&records);
+        let findings = Findings::new(&factors, &ledger, &published);
         let request = TableRequest {
             id: "table-1".to_owned(),
             title: "Table 1, success rate (%)".to_owned(),

@@ -1,16 +1,18 @@
 //! `reenact export`: the same content in the forms that importers want.
 
-use crate::bundle::{Form, archive, in_bag};
+use crate::bundle::{Files, Form, archive, in_bag};
 use crate::cli::args::ExportArgs;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::terminal::Terminal;
 use crate::cli::{checked, load};
 use crate::report;
 use crate::verify::{path_in_bag, plan_of};
+use std::io;
 
 /// Writes a bundle again.
 pub(in crate::cli) fn run(args: &ExportArgs, terminal: Terminal) -> Result<Exit, Failure> {
-    let checked::Checked { bundle, words, .. } = checked::bundle(&args.bundle, args.unchecked)?;
+    let checked::Checked { bundle, words, .. } =
+        checked::bundle(&args.bundle, args.unchecked, args.limits)?;
     let stem = format!("{}-{}", bundle.name(), bundle.results_digest().short());
     if args.latex {
         let (plan, selection) = plan_of(&bundle).map_err(Failure::not_understood)?;
@@ -23,7 +25,7 @@ pub(in crate::cli) fn run(args: &ExportArgs, terminal: Terminal) -> Result<Exit,
         terminal.result(&format!("{words}\n{}", folder.display()));
         return Ok(Exit::Yes);
     }
-    let mut tree = in_bag(&bundle);
+    let (mut tree, large) = in_bag(&bundle);
     if let Some(signature) = &args.signature {
         let bytes = load::text_bytes(signature)?;
         let path = path_in_bag(&bytes).ok_or_else(|| {
@@ -35,8 +37,10 @@ pub(in crate::cli) fn run(args: &ExportArgs, terminal: Terminal) -> Result<Exit,
     }
     if args.dir {
         let folder = args.out.join(&stem);
-        for (path, bytes) in &tree {
-            load::write(&folder.join(path), bytes)?;
+        for (path, file) in (Files { tree: &tree, large: &large }).iter() {
+            load::write_with(&folder.join(path), |mut out| {
+                io::copy(&mut file.reader(), &mut out).map(drop)
+            })?;
         }
         terminal.result(&format!("{words}\n{}", folder.display()));
         return Ok(Exit::Yes);
@@ -47,7 +51,8 @@ pub(in crate::cli) fn run(args: &ExportArgs, terminal: Terminal) -> Result<Exit,
         _ => (Form::Bag, format!("{stem}.zip")),
     };
     let path = args.out.join(name);
-    load::write(&path, &archive::write(&tree, &stem, form))?;
+    let files = Files { tree: &tree, large: &large };
+    load::write_with(&path, |out| archive::write_to(files, &stem, form, out))?;
     terminal.result(&format!("{words}\n{}", path.display()));
     Ok(Exit::Yes)
 }

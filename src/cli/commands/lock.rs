@@ -1,6 +1,6 @@
 //! `reenact lock`: what a manifest's run yields, written down beside it.
 
-use super::execution::{Executed, Execution, Times, jobs};
+use super::execution::{Execution, Times, jobs};
 use super::locked::{account_of, path_of, read};
 use crate::bundle::{Circumstance, Moment, assemble, seal};
 use crate::cli::args::LockArgs;
@@ -45,7 +45,7 @@ fn lock_one(
     let given = load::Given { set: &[], allow: &args.allow };
     let loaded = load::manifest(manifest, given, execution.calibrator(), terminal)?;
     let plan = Plan::of(loaded.experiment);
-    let Executed { records, .. } = execution.execute(&plan, Times::Once, terminal)?;
+    let records = execution.execute(&plan, Times::Once, terminal)?;
     let whole = Selection::default();
     let content = assemble::assemble(&plan, loaded.source.text.as_bytes(), &whole, &records)
         .map_err(Failure::failed)?;

@@ -52,7 +52,8 @@ pub(super) fn read(source: &crate::document::Source, terminal: Terminal) -> Resu
 
 /// Returns what a sealed tree says.
 pub(super) fn account_of(sealed: &Sealed) -> Result<Account, Failure> {
-    let archive = Archive { form: Form::Bag, tree: sealed.tree.clone() };
+    let (tree, large) = (sealed.tree.clone(), sealed.large.clone());
+    let archive = Archive { form: Form::Bag, tree, large };
     let bundle = Bundle::open(archive).map_err(Failure::failed)?;
     Account::of_bundle(&bundle).map_err(|faults| {
         Failure::failed(faults.first().map(ToString::to_string).unwrap_or_default())

@@ -5,6 +5,7 @@ mod power;
 use crate::cli::args::PlanArgs;
 use crate::cli::calibrate::Calibrator;
 use crate::cli::exit::{Exit, Failure};
+use crate::cli::forecast::Forecast;
 use crate::cli::load;
 use crate::cli::terminal::{Terminal, counted};
 use crate::provenance::{Environment, processors};
@@ -68,6 +69,8 @@ pub(in crate::cli) fn run(
         counted(plan.trials.len(), "trial"),
         estimate(left, done, known_seconds)
     ));
+    let forecast = Forecast::of(&plan, store.as_ref()).map_err(Failure::failed)?;
+    text.push_str(&forecast.in_words());
     terminal.result(&text);
     if let Some(missing) = missing {
         terminal.note(&format!("note: keys depend on what the calibration measures; {missing}"));

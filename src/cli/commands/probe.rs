@@ -1,6 +1,6 @@
 //! `reenact run --locked --probe`: trial 0 of every condition anew, held against the lock.
 
-use super::execution::{Executed, Execution, Times};
+use super::execution::{Execution, Times};
 use super::locked::Held;
 use crate::bundle::{Circumstance, Moment, assemble, seal};
 use crate::cli::args::{Format, RunArgs, SelectArgs};
@@ -35,7 +35,7 @@ pub(super) fn run(
     };
     let (plan, selection) = load::plan(loaded.experiment, &first)?;
     let how = if args.twice { Times::Twice } else { Times::Anew };
-    let Executed { records, .. } = execution.execute(&plan, how, terminal)?;
+    let records = execution.execute(&plan, how, terminal)?;
     let content = assemble::assemble(&plan, loaded.source.text.as_bytes(), &selection, &records)
         .map_err(Failure::failed)?;
     // Sealed to be read like any other, and thrown away.

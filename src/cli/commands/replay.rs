@@ -1,5 +1,6 @@
 //! `reenact replay`: any archived trial again, with full recording.
 
+use crate::bundle::{Bundle, Fault};
 use crate::cli::args::ReplayArgs;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::progress::Working;
@@ -12,10 +13,32 @@ use crate::report::{
     replay_page, still_svg,
 };
 use crate::studies::recording::Recording;
-use crate::studies::{self, TrialRecord, prior_map};
+use crate::studies::{self, TrialRecord, TrialSpec, prior_map};
 use crate::verify::plan_of;
 use crate::world::map_server;
 use std::path::Path;
+
+/// Returns the line of the record of `spec` in `bundle`, in its canonical form.
+fn archived(bundle: &Bundle, spec: &TrialSpec) -> Result<Option<String>, Failure> {
+    let mut found = Ok(None);
+    for condition in bundle.conditions() {
+        bundle.record_lines(&condition.slug, |line| {
+            match TrialRecord::from_line(line.text) {
+                Ok(record) if record.key == spec.key => found = Ok(Some(record.to_line())),
+                Ok(_) => return true,
+                Err(problem) => {
+                    let fault = Fault::new(line.place(), "a trial record", problem.to_string());
+                    found = Err(Failure { exit: Exit::No, message: fault.to_string() });
+                }
+            }
+            false
+        });
+        if !matches!(found, Ok(None)) {
+            break;
+        }
+    }
+    found
+}
 
 /// Re-enacts one trial or two.
 pub(in crate::cli) fn run(args: &ReplayArgs, terminal: Terminal) -> Result<Exit, Failure> {
@@ -26,13 +49,10 @@ pub(in crate::cli) fn run(args: &ReplayArgs, terminal: Terminal) -> Result<Exit,
              for a bag of ROS 2 messages, `--map FILE.yaml` for the map that the robot made, `--plans DIR` for the plans of a deadline study",
         ));
     }
-    let checked::Checked { bundle, words, banner } = checked::bundle(&args.bundle, args.unchecked)?;
+    let checked::Checked { bundle, words, banner } =
+        checked::bundle(&args.bundle, args.unchecked, args.limits)?;
     let banner = banner.as_deref();
     let (plan, _) = plan_of(&bundle).map_err(Failure::not_understood)?;
-    let archived = bundle.records().map_err(|faults| {
-        let first = faults.first().map(ToString::to_string).unwrap_or_default();
-        Failure { exit: Exit::No, message: first }
-    })?;
     let mut exit = Exit::Yes;
     let mut played: Vec<(String, Recording)> = Vec::new();
     let mut notes = Vec::new();
@@ -45,10 +65,7 @@ pub(in crate::cli) fn run(args: &ReplayArgs, terminal: Terminal) -> Result<Exit,
             _ => studies::reenact(spec),
         };
         drop(working);
-        let same = archived
-            .iter()
-            .find(|r| r.key == spec.key)
-            .is_some_and(|r| TrialRecord::to_line(r) == record.to_line());
+        let same = archived(&bundle, spec)?.is_some_and(|line| line == record.to_line());
         if !same {
             exit = Exit::No;
         }

@@ -10,7 +10,8 @@ use std::path::PathBuf;
 
 /// Writes the page.
 pub(in crate::cli) fn run(args: &ReportArgs, terminal: Terminal) -> Result<Exit, Failure> {
-    let checked::Checked { bundle, words, banner } = checked::bundle(&args.bundle, args.unchecked)?;
+    let checked::Checked { bundle, words, banner } =
+        checked::bundle(&args.bundle, args.unchecked, args.limits)?;
     let (plan, selection) = plan_of(&bundle).map_err(Failure::not_understood)?;
     let mut content = report::content_of(&bundle, &plan, &selection)
         .map_err(|error| Failure { exit: Exit::No, message: error.to_string() })?;

@@ -1,10 +1,11 @@
 //! `reenact run`: plan, simulate, seal.
 
-use super::execution::{Executed, Execution, Times, jobs};
+use super::execution::{Account, Execution, Times, jobs};
 use super::locked::{self, Held};
 use super::{exhibit, probe, verdicts};
+use crate::bundle::assemble::{self, Asked};
 use crate::bundle::wall_time;
-use crate::bundle::{Additions, Form, Sealed, assemble, capsule, format, seal_with};
+use crate::bundle::{Additions, Form, Gathered, Gathering, Sealed, capsule, format, seal_with};
 use crate::claims::{ClaimVerdict, Judgement};
 use crate::cli::args::{Format, RunArgs};
 use crate::cli::exit::{Exit, Failure};
@@ -15,7 +16,7 @@ use crate::cli::{interrupt, load};
 use crate::compare::Lock;
 use crate::plan::Plan;
 use crate::provenance::{Environment, RunClock};
-use crate::studies::{Outcome, TrialRecord};
+use crate::studies::{Entry, Group, Ledger, Outcome};
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
 
@@ -79,27 +80,39 @@ fn run_one(
     let loaded = load::manifest(manifest, args.select.given(), execution.calibrator(), terminal)?;
     let (plan, selection) = load::plan(loaded.experiment, &args.select)?;
     let how = if args.twice { Times::Twice } else { Times::Once };
-    let Executed { records, cached, doubted, times } = execution.execute(&plan, how, terminal)?;
-    let verdicts = assemble::verdicts(&plan, &records).map_err(Failure::failed)?;
+    let forecast = execution.forecast(&plan)?;
+    forecast.admits(&args.limits.limits(), &args.out)?;
+    if forecast.is_large() {
+        terminal.note(&format!("note: {}", forecast.in_words().trim_end()));
+    }
+    let scratch = load::scratch(&args.out);
+    let mut gathering = Gathering::new(&plan, &scratch);
+    let Account { cached, doubted, times } =
+        execution.execute_each(&plan, how, terminal, &mut |record| gathering.take(&record))?;
+    let unwritten = |e: std::io::Error| load::unwritten(&args.out, &e);
+    let Gathered { ledger, conditions } = gathering.finish().map_err(unwritten)?;
+    let verdicts = assemble::verdicts_of(&plan, &ledger).map_err(Failure::failed)?;
     let study_yaml = loaded.source.text.as_bytes();
-    let content = assemble::assemble_judged(&plan, study_yaml, &selection, &records, &verdicts);
+    let asked = Asked { plan: &plan, study_yaml, selection: &selection };
+    let content = assemble::assemble_judged(asked, &ledger, conditions, &verdicts, &scratch)
+        .map_err(unwritten)?;
     let times = match environment.source_date_epoch {
         None => Ok(&times),
         Some(_) => Err("wall times are not measured where SOURCE_DATE_EPOCH is set"),
     };
-    let measured = wall_time::measured(&plan, &records, times).map_err(Failure::failed)?;
+    let measured = wall_time::measured(&plan, &ledger, times).map_err(Failure::failed)?;
     let mut circumstance = clock.circumstance(environment, execution.jobs());
     circumstance.files = measured.files;
     if environment.source_date_epoch.is_none() {
         // Without it nobody knows what the run's duration is the duration of.
-        let simulated = (records.len() - cached).to_string();
+        let simulated = (ledger.len() - cached).to_string();
         circumstance.environment.push((format::SIMULATED_TRIALS.to_owned(), simulated));
     }
     let capsule = args.capsule.then(capsule::own);
-    let additions = Additions { source: capsule.as_ref() };
+    let additions = Additions { source: capsule.as_ref(), limits: args.limits.limits() };
     let sealed = seal_with(&content, &circumstance, additions).map_err(Failure::failed)?;
     let path = args.out.join(sealed.file_name());
-    load::write(&path, &sealed.zip(Form::Bag))?;
+    load::write_with(&path, |out| sealed.write(Form::Bag, out))?;
     let held = lock
         .map(|lock| Held::against(lock, manifest, &sealed, locked::extent(args)))
         .transpose()?;
@@ -107,7 +120,7 @@ fn run_one(
         verdicts,
         machine_verdicts: measured.verdicts,
         plan,
-        records,
+        ledger,
         cached,
         doubted,
         twice: args.twice,
@@ -135,7 +148,7 @@ fn run_one(
 /// A finished run.
 struct Done {
     plan: Plan,
-    records: Vec<TrialRecord>,
+    ledger: Ledger,
     verdicts: Vec<ClaimVerdict>,
     /// On claims about this machine.
     machine_verdicts: Vec<ClaimVerdict>,
@@ -151,11 +164,11 @@ struct Done {
 
 impl Done {
     fn failed(&self) -> usize {
-        self.records.iter().filter(|r| r.outcome == Outcome::PANICKED).count()
+        self.ledger.count(Outcome::PANICKED)
     }
 
     fn sim_seconds(&self) -> f64 {
-        self.records.iter().map(|r| r.sim_seconds).sum()
+        self.ledger.sim_seconds()
     }
 
     fn tell(&self, terminal: Terminal) {
@@ -165,7 +178,7 @@ impl Done {
             text.push_str(&wrapped(partial, 0, terminal.columns()));
         }
         text.push('\n');
-        let findings = assemble::findings(&self.plan, &self.records);
+        let findings = assemble::findings(&self.plan, &self.ledger);
         let tables = &self.plan.experiment.tables;
         for request in tables {
             let exhibit = request.exhibit(&findings, tables);
@@ -181,9 +194,9 @@ impl Done {
         if let Some(held) = &self.held {
             text.push_str(&held.in_words());
         }
-        for record in self.records.iter().filter(|r| r.outcome == Outcome::PANICKED) {
-            let name = format!("{}/{}", record.condition.slug(), record.trial);
-            terminal.error(&format!("trial {name} failed: {}", record.cause));
+        for trial in self.ledger.entries().filter(|t| t.outcome() == Outcome::PANICKED) {
+            let name = format!("{}/{}", trial.condition().slug(), trial.trial());
+            terminal.error(&format!("trial {name} failed: {}", trial.cause()));
         }
         text.push_str(&format!(
             "results sha256:{}\n{}\n",
@@ -196,19 +209,17 @@ impl Done {
     fn summary(&self) -> String {
         let mut outcomes: Vec<(Outcome, usize)> =
             Outcome::all().into_iter().map(|outcome| (outcome, 0)).collect();
-        for record in &self.records {
-            if let Some((_, n)) = outcomes.iter_mut().find(|(o, _)| *o == record.outcome) {
-                *n += 1;
-            }
+        for (outcome, n) in &mut outcomes {
+            *n = self.ledger.count(*outcome);
         }
         outcomes.retain(|(_, n)| *n > 0);
         let outcomes: Vec<_> = outcomes.iter().map(|(o, n)| format!("{n} {}", o.name())).collect();
-        let fresh = self.records.len() - self.cached;
+        let fresh = self.ledger.len() - self.cached;
         let mut text = format!(
             "{}: {}; {} simulated in {:.1} s",
-            counted(self.records.len(), "trial"),
+            counted(self.ledger.len(), "trial"),
             outcomes.join(", "),
-            if fresh == self.records.len() { "all".to_owned() } else { format!("{fresh}") },
+            if fresh == self.ledger.len() { "all".to_owned() } else { format!("{fresh}") },
             self.wall_seconds
         );
         if self.cached > 0 {
@@ -226,12 +237,12 @@ impl Done {
         let design = self.plan.experiment.design();
         let conditions = design.filter_map(|(condition, _)| {
             let slug = condition.slug();
-            let trials: Vec<&TrialRecord> =
-                self.records.iter().filter(|record| record.condition == *condition).collect();
+            let groups = self.ledger.groups().iter().filter(|g| g.condition() == condition);
+            let trials: Vec<Entry<'_>> = groups.flat_map(Group::entries).collect();
             let failed: Vec<String> = trials
                 .iter()
-                .filter(|record| record.outcome == Outcome::PANICKED)
-                .map(|record| format!("trial {slug}/{} failed: {}", record.trial, record.cause))
+                .filter(|trial| trial.outcome() == Outcome::PANICKED)
+                .map(|trial| format!("trial {slug}/{} failed: {}", trial.trial(), trial.cause()))
                 .collect();
             let came =
                 if failed.is_empty() { Came::Passed } else { Came::Broken(failed.join("\n")) };
@@ -274,7 +285,7 @@ impl Done {
             "bundle_id": format!("sha256:{}", self.sealed.bundle_id),
             "results_digest": format!("sha256:{}", self.sealed.results_digest),
             "study_digest": format!("sha256:{}", self.sealed.study_digest),
-            "trials": self.records.len(),
+            "trials": self.ledger.len(),
             "cached": self.cached,
             "failed": self.failed(),
             "sim_seconds": self.sim_seconds(),

@@ -120,7 +120,7 @@ impl Study<'_> {
         experiment: Experiment,
     ) -> Result<(Vec<ClaimVerdict>, Sha256Digest), Failure> {
         let plan = Plan::of(experiment);
-        let records = self.execution.execute(&plan, Times::Once, self.terminal)?.records;
+        let records = self.execution.execute(&plan, Times::Once, self.terminal)?;
         let verdicts = assemble::verdicts(&plan, &records).map_err(Failure::failed)?;
         Ok((verdicts, records_digest(&records)))
     }

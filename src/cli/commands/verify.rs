@@ -55,7 +55,8 @@ pub(in crate::cli) fn run(
     let seed = args.sample_seed.unwrap_or_else(unforeseen_seed);
     let options = Options { level, sample: args.sample, rows: args.robustness, seed };
     let reviewer = Reviewer { vouching, clock: &|| clock.elapsed_seconds() };
-    let mut report = climb_for(&reviewer, load::archive(&args.bundle)?, &options, &pipeline);
+    let mut report =
+        climb_for(&reviewer, load::archive(&args.bundle, args.limits)?, &options, &pipeline);
     progress.finish();
     if let (Some((name, bytes)), Some(trust)) = (&attestation, &trust) {
         report.hold_against((name, bytes), trust, clock.now());

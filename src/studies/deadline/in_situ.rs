@@ -8,7 +8,7 @@ use crate::stats::proportion::{Proportion, wilson};
 use crate::studies::columns::Columns;
 use crate::studies::deadline::build_cmdp::{Motion, Speed, Through};
 use crate::studies::exhibit::{Grid, GridCell, GridRow, Layout, Lines, Measured, Set, Source};
-use crate::studies::{Findings, TableRequest, TrialRecord};
+use crate::studies::{Entry, Findings, TableRequest};
 use crate::table::{Column, Table, Value};
 
 /// One maneuver, expected and observed.
@@ -210,10 +210,10 @@ fn lines(rows: &[ManeuverRow]) -> Table {
     table
 }
 
-fn row(name: String, pair: Option<Pair>, trials: &[&TrialRecord]) -> ManeuverRow {
+fn row(name: String, pair: Option<Pair>, trials: &[Entry<'_>]) -> ManeuverRow {
     let sum = |kind: &str| -> f64 {
         let measure = format!("{name}-{kind}");
-        trials.iter().filter_map(|r| r.measures.number(&measure)).sum()
+        trials.iter().filter_map(|r| r.number(&measure)).sum()
     };
     #[expect(
         clippy::cast_possible_truncation,

@@ -2,7 +2,7 @@
 
 use super::{Below, Drawn, Inference, Proposal};
 use crate::studies::findings::rounded;
-use crate::studies::{Measures, TrialRecord};
+use crate::studies::{Entry, Measures};
 use crate::table::Column;
 
 /// What the beginnings of the names of measures mean.
@@ -89,18 +89,13 @@ impl Proposal {
         measures
     }
 
-    /// Reads it back from a record of `inference`, which supposes `quantities`; `None` where the trial failed.
-    pub(super) fn of(
-        record: &TrialRecord,
-        inference: &Inference,
-        quantities: usize,
-    ) -> Option<Self> {
-        let measures = &record.measures;
-        let ln = |name: String| measures.number(&name).unwrap_or(f64::NEG_INFINITY);
-        measures.get("evidence-00")?;
+    /// Reads it back from a trial of `inference`, which supposes `quantities`; `None` where the trial failed.
+    pub(super) fn of(trial: Entry<'_>, inference: &Inference, quantities: usize) -> Option<Self> {
+        let ln = |name: String| trial.number(&name).unwrap_or(f64::NEG_INFINITY);
+        trial.says("evidence-00").then_some(())?;
         let cells = inference.observed.cells.len();
         let drawn = |beginning: &str, d: usize| {
-            let value = |name: String| measures.number(&name);
+            let value = |name: String| trial.number(&name);
             let values = (0..quantities).map(|q| value(format!("{beginning}-{d:02}-{q:02}")));
             let outcome = |c: usize, o: usize| value(format!("{beginning}-cell-{d:02}-{c:03}-{o}"));
             Some(Drawn {
@@ -111,8 +106,7 @@ impl Proposal {
             })
         };
         let held = |h: usize| {
-            let share =
-                |c: usize| Some((c, measures.get(&format!("held-{h:02}-{c:03}")).copied()??));
+            let share = |c: usize| Some((c, trial.number(&format!("held-{h:02}-{c:03}"))?));
             (0..cells).filter_map(share).collect()
         };
         let continuous = inference.priors.iter().filter(|prior| prior.is_continuous()).count();

@@ -6,7 +6,7 @@ use crate::condition::Condition;
 use crate::rng::{Seeds, Stream};
 use crate::stats::importance::{effective_size, ln_mean_exp, quantile, resample, weights};
 use crate::stats::{length, real};
-use crate::studies::{Findings, Setup, TrialRecord};
+use crate::studies::{Entry, Findings, Setup};
 
 /// Posterior draws that are kept.
 pub(super) const DRAWS: usize = 200;
@@ -51,13 +51,13 @@ impl<'a> Posterior<'a> {
         let (_, first) = setups.first()?;
         let shared: &'a Shared = first.shared();
         let quantities = shared.quantities().len();
-        let tried = |record: &'a TrialRecord| {
+        let tried = |trial: Entry<'a>| {
             let (_, setup) =
-                setups.iter().find(|(condition, _)| **condition == record.condition)?;
-            let proposal = Proposal::of(record, &shared.inference, quantities)?;
-            Some(Tried { condition: &record.condition, setup: setup.own(), proposal })
+                setups.iter().find(|(condition, _)| **condition == *trial.condition())?;
+            let proposal = Proposal::of(trial, &shared.inference, quantities)?;
+            Some(Tried { condition: trial.condition(), setup: setup.own(), proposal })
         };
-        let tried: Vec<Tried<'a>> = findings.records.iter().filter_map(tried).collect();
+        let tried: Vec<Tried<'a>> = findings.ledger.entries().filter_map(tried).collect();
         let logarithms: Vec<f64> = tried.iter().map(|t| t.proposal.ln_evidence[0]).collect();
         (!tried.is_empty()).then(|| Self { shared, weights: weights(&logarithms), tried })
     }

@@ -101,7 +101,9 @@ fn a_proposal_survives_its_record() {
         assert!(measure(name).is_some(), "{name}");
     }
     let read = crate::studies::TrialRecord::from_line(&record.to_line()).unwrap();
-    assert_eq!(Proposal::of(&read, &inference, 3), Some(proposal));
+    let ledger = crate::studies::Ledger::of(&[read]);
+    let trial = ledger.entries().next().unwrap();
+    assert_eq!(Proposal::of(trial, &inference, 3), Some(proposal));
 }
 
 #[test]

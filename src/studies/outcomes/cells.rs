@@ -5,7 +5,7 @@ use crate::condition::Condition;
 use crate::stats::compatibility::{Agreement, Ours, Printed, printed_share};
 use crate::stats::proportion::{Proportion, wilson};
 use crate::stats::summary::Summary;
-use crate::studies::{Findings, Outcome, TrialRecord};
+use crate::studies::{Entry, Findings, Outcome};
 use crate::table::Value;
 
 /// Confidence of the intervals.
@@ -82,7 +82,7 @@ impl Findings<'_> {
     ) -> OutcomeCell {
         let mut trials = self.matching(fixed);
         let ran = trials.len() as u64;
-        trials.retain(|record| record.outcome != Outcome::PANICKED);
+        trials.retain(|trial| trial.outcome() != Outcome::PANICKED);
         let published = request.published.as_ref().and_then(|name| {
             let (table, row) = self.published_row(name, fixed)?;
             let n = match table.value(row, "n") {
@@ -105,10 +105,10 @@ impl Findings<'_> {
 }
 
 /// Computes the quantity of the trials that is compared with the paper's number; `None` where no trial has it.
-fn compared(quantity: &Quantity, trials: &[&TrialRecord]) -> Option<Ours> {
+fn compared(quantity: &Quantity, trials: &[Entry<'_>]) -> Option<Ours> {
     Some(match quantity {
         Quantity::Share(outcomes) => {
-            let hits = trials.iter().filter(|r| outcomes.contains(&r.outcome)).count() as u64;
+            let hits = trials.iter().filter(|r| outcomes.contains(&r.outcome())).count() as u64;
             let all = trials.len() as u64;
             (all > 0).then(|| Ours::Share(Proportion::new(hits, all)))?
         }
@@ -120,11 +120,11 @@ fn compared(quantity: &Quantity, trials: &[&TrialRecord]) -> Option<Ours> {
     })
 }
 
-fn estimate(quantity: &Quantity, trials: &[&TrialRecord]) -> Option<Estimate> {
+fn estimate(quantity: &Quantity, trials: &[Entry<'_>]) -> Option<Estimate> {
     let n = trials.len() as u64;
     match quantity {
         Quantity::Share(outcomes) => {
-            let hits = trials.iter().filter(|r| outcomes.contains(&r.outcome)).count() as u64;
+            let hits = trials.iter().filter(|r| outcomes.contains(&r.outcome())).count() as u64;
             (n > 0).then(|| {
                 let share = Proportion::new(hits, n);
                 let interval = wilson(share, CONFIDENCE);
@@ -151,10 +151,8 @@ fn estimate(quantity: &Quantity, trials: &[&TrialRecord]) -> Option<Estimate> {
             })
         }
         Quantity::Percent(Percent { part, whole }) => {
-            let pairs: Vec<(f64, f64)> = trials
-                .iter()
-                .filter_map(|r| Some((value_of(r, part)?, value_of(r, whole)?)))
-                .collect();
+            let pairs: Vec<(f64, f64)> =
+                trials.iter().filter_map(|r| Some((r.number(part)?, r.number(whole)?))).collect();
             ratio(&pairs)
         }
     }
@@ -170,12 +168,8 @@ pub(in crate::studies) fn published_share(percent: f64, n: u64) -> Option<(f64, 
 }
 
 /// Returns the values of `measure` of those `trials` that have one.
-pub(in crate::studies) fn measured(trials: &[&TrialRecord], measure: &str) -> Vec<f64> {
-    trials.iter().filter_map(|record| value_of(record, measure)).collect()
-}
-
-fn value_of(record: &TrialRecord, measure: &str) -> Option<f64> {
-    record.measures.number(measure)
+pub(in crate::studies) fn measured(trials: &[Entry<'_>], measure: &str) -> Vec<f64> {
+    trials.iter().filter_map(|trial| trial.number(measure)).collect()
 }
 
 /// Computes the ratio estimator and its linearised interval (Cochran 1977, Sampling Techniques, section 2.11), in

@@ -136,7 +136,7 @@ impl Findings<'_> {
                 let only: Condition = request.only.iter().map(|(f, v)| (f, &v.0)).collect();
                 let fixed = only.and(&cell.rows).with(&request.by, &cell.by);
                 let mut trials = self.matching(&fixed);
-                trials.retain(|record| record.outcome != Outcome::PANICKED);
+                trials.retain(|trial| trial.outcome() != Outcome::PANICKED);
                 let values = measured(&trials, measure);
                 (values.len() > 3).then(|| (quantile(&values, 0.25), quantile(&values, 0.75)))
             }
@@ -167,7 +167,7 @@ impl Findings<'_> {
         };
         let names = self.columns_of(&table);
         let cells = self.outcome_cells(&table);
-        let ended = |outcome: Outcome| self.records.iter().any(|r| r.outcome == outcome);
+        let ended = |outcome: Outcome| self.ledger.count(outcome) > 0;
         let printed =
             |outcome| request.published.iter().any(|share| share.of.first() == Some(&outcome));
         let parts: Vec<(Outcome, Look)> = stack()
@@ -206,10 +206,10 @@ impl Findings<'_> {
         fixed: &Condition,
     ) -> Shares {
         let mut trials = self.matching(fixed);
-        trials.retain(|record| record.outcome != Outcome::PANICKED);
+        trials.retain(|trial| trial.outcome() != Outcome::PANICKED);
         let all = crate::stats::length(&trials);
         let share = |(outcome, _): &(Outcome, Look)| {
-            let of: Vec<_> = trials.iter().filter(|r| r.outcome == *outcome).collect();
+            let of: Vec<_> = trials.iter().filter(|r| r.outcome() == *outcome).collect();
             100.0 * crate::stats::length(&of) / all
         };
         // What the paper counts together stands at the first of its outcomes.
@@ -232,7 +232,7 @@ mod tests {
     use super::super::PublishedShare;
     use super::*;
     use crate::factor::Factor;
-    use crate::studies::{PublishedScatter, Scale, TableLayout, TableRequest, TrialRecord};
+    use crate::studies::{Ledger, PublishedScatter, Scale, TableLayout, TableRequest, TrialRecord};
     use crate::table::Table;
     use std::collections::BTreeMap;
 
@@ -285,7 +285,7 @@ mod tests {
             ("late".to_owned(), csv("deadline-s,strategy,value\n90,quick,20\n90,slow,70\n")),
         ]);
         let records = records();
-        ask(&Findings::new(&factors, &records, &published))
+        ask(&Findings::new(&factors, &Ledger::of(&records), &published))
     }
 
     fn table(show: Quantity, published: Option<&str>) -> OutcomeTable {

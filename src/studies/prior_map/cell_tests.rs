@@ -133,8 +133,8 @@ impl Findings<'_> {
     fn first_runs(&self, request: &CoverageTable, cell: &CoverageCell, n: u64) -> Summary {
         let fixed = cell.rows.clone().with(&request.by, &cell.by);
         let measure = request.metric.measure_at(cell.percent);
-        let first = self.matching(&fixed).into_iter().filter(|r| u64::from(r.trial) < n);
-        let reached: Vec<f64> = first.filter_map(|r| r.measures.number(&measure)).collect();
+        let first = self.matching(&fixed).into_iter().filter(|r| u64::from(r.trial()) < n);
+        let reached: Vec<f64> = first.filter_map(|r| r.number(&measure)).collect();
         Summary::of(&reached)
     }
 }

@@ -174,11 +174,11 @@ impl Findings<'_> {
         let measure = wanted.metric.measure_at(percent);
         let fixed = within.clone().with(factor, level);
         let mut groups: BTreeMap<_, Group> = BTreeMap::new();
-        for record in self.matching(&fixed) {
-            let others = record.condition.iter().filter(|pair| !fixed.contains(pair)).cloned();
+        for trial in self.matching(&fixed) {
+            let others = trial.condition().iter().filter(|pair| !fixed.contains(pair)).cloned();
             let group = groups.entry(others.collect()).or_default();
             group.trials += 1;
-            let value = record.measures.number(&measure);
+            let value = trial.number(&measure);
             group.logs.extend(value.filter(|value| *value > 0.0).map(ln));
         }
         groups

@@ -39,8 +39,7 @@ impl Findings<'_> {
         let cell = |rows: &Condition, measure: &String| {
             let here = self.matching(rows);
             let recorded = least_of(measure).unwrap_or(measure);
-            let values: Vec<f64> =
-                here.iter().filter_map(|r| r.measures.number(recorded)).collect();
+            let values: Vec<f64> = here.iter().filter_map(|r| r.number(recorded)).collect();
             let published = request.published.as_ref().and_then(|name| {
                 let fixed = rows.clone().with("measure", measure);
                 let (table, row) = self.published_row(name, &fixed)?;
@@ -187,7 +186,7 @@ mod tests {
     use super::*;
     use crate::digest::{Sha256Digest, TrialKey};
     use crate::factor::Factor;
-    use crate::studies::{Outcome, TrialRecord};
+    use crate::studies::{Ledger, Outcome, TrialRecord};
     use crate::table::Table;
     use std::collections::BTreeMap;
 
@@ -219,7 +218,8 @@ mod tests {
         let csv =
             "prior,noise,measure,value,sd\ngraph,0,least:distance-m,239,\ngraph,0,time-s,1,\n";
         let published = BTreeMap::from([("section".to_owned(), Table::from_csv(csv).unwrap())]);
-        let findings = Findings::new(&factors, &records, &published);
+        let ledger = Ledger::of(&records);
+        let findings = Findings::new(&factors, &ledger, &published);
         let wanted = MeasuresTable {
             measures: vec!["distance-m".to_owned(), "least:distance-m".to_owned()],
             rows: vec!["prior".to_owned(), "noise".to_owned()],

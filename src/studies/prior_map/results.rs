@@ -58,24 +58,28 @@ impl CoverageCurve {
 }
 
 impl Findings<'_> {
-    /// Returns the curves: one row at the first crossing of every whole percent and at every 10 s.
+    /// Returns the table of the curves without its rows ([`Self::series_rows`]): one row at the first crossing of every whole
+    /// percent and at every 10 s.
     pub fn series(&self) -> Table {
         let mut columns = vec!["key".to_owned()];
         columns.extend(self.factors.iter().map(|factor| factor.name.clone()));
         columns.extend(["trial", "time-s", "distance-m", "coverage-percent"].map(str::to_owned));
-        let mut table = Table::new(columns);
-        for record in self.records {
-            for point in &record.series {
-                let mut row: Vec<Value> = vec![record.key.short().into()];
-                row.extend(self.factor_values(&record.condition));
-                row.push(i64::from(record.trial).into());
+        Table::new(columns)
+    }
+
+    /// Returns the rows of [`Self::series`], in plan order.
+    pub fn series_rows(&self) -> impl Iterator<Item = Vec<Value>> {
+        self.ledger.entries().flat_map(move |trial| {
+            trial.series().iter().map(move |point| {
+                let mut row: Vec<Value> = vec![trial.key().short().into()];
+                row.extend(self.factor_values(trial.condition()));
+                row.push(i64::from(trial.trial()).into());
                 row.extend(
                     [point.time_s, point.distance_m, point.coverage_percent].map(Value::from),
                 );
-                table.push(row);
-            }
-        }
-        table
+                row
+            })
+        })
     }
 
     /// Returns the factors in the rows of a table that its published numbers do not distinguish: choices that the paper
@@ -120,7 +124,7 @@ impl Findings<'_> {
     ) -> CoverageCell {
         let measure = request.metric.measure_at(percent);
         let here = self.matching(fixed);
-        let reached: Vec<f64> = here.iter().filter_map(|r| r.measures.number(&measure)).collect();
+        let reached: Vec<f64> = here.iter().filter_map(|r| r.number(&measure)).collect();
         let published = request.published.as_ref().and_then(|name| {
             let fixed = fixed.clone().with("coverage-percent", percent.to_string());
             let (table, row) = self.published_row(name, &fixed)?;
@@ -179,13 +183,13 @@ impl Findings<'_> {
         let runs: Vec<Vec<(f64, f64)>> = self
             .matching(fixed)
             .into_iter()
-            .filter(|r| r.outcome != Outcome::PANICKED)
+            .filter(|r| r.outcome() != Outcome::PANICKED)
             .map(|r| {
                 let x = |p: &SeriesPoint| match wanted.against {
                     Metric::TimeS => p.time_s,
                     Metric::DistanceM => p.distance_m,
                 };
-                r.series.iter().map(|p| (x(p), p.coverage_percent)).collect()
+                r.series().iter().map(|p| (x(p), p.coverage_percent)).collect()
             })
             .collect();
         let end = runs.iter().filter_map(|r| r.last().map(|p| p.0)).fold(0.0, f64::max);

@@ -22,7 +22,7 @@ fn trust(name: &str, text: &str) -> Trust {
 fn bag(files: &[(&str, &str)]) -> Archive {
     let files = files.iter().map(|(path, text)| ((*path).to_owned(), text.as_bytes().to_vec()));
     let tree: Tree = files.chain([(format::TAG_MANIFEST.to_owned(), SIGNED.into())]).collect();
-    Archive { form: Form::Bag, tree }
+    Archive::of(Form::Bag, tree)
 }
 
 fn told(archive: &Archive, trust: Option<&Trust>, signature: Option<&str>) -> String {

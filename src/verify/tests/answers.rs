@@ -9,7 +9,7 @@ const SIGNATURE: &str = include_str!("../../../tests/signatures/ed25519.sig");
 
 fn with_capsule() -> Tree {
     let capsule = capsule::own();
-    let additions = Additions { source: Some(&capsule) };
+    let additions = Additions { source: Some(&capsule), ..Additions::default() };
     seal_with(&sample::content(), &sample::circumstance(), additions).unwrap().tree
 }
 
@@ -25,7 +25,7 @@ fn nothing_is_read_of_a_bundle_for_which_nobody_vouches() {
     let reviewer = Reviewer { vouching, clock: &|| 0.0 };
     let options = Options { level: Level::Derived, sample: 0, rows: None, seed: 0 };
     let mut tree = sample::sealed().tree;
-    let archive = Archive { form: Form::Bag, tree: tree.clone() };
+    let archive = Archive::of(Form::Bag, tree.clone());
     let report = climb_for(&reviewer, Ok(archive), &options, &ENGINE);
     assert_eq!(
         report.to_human(),
@@ -40,7 +40,7 @@ fn nothing_is_read_of_a_bundle_for_which_nobody_vouches() {
     // rest.
     let signed = include_bytes!("../../../tests/signatures/tagmanifest-sha256.txt");
     tree.insert("tagmanifest-sha256.txt".into(), signed.to_vec());
-    let report = climb_for(&reviewer, Ok(Archive { form: Form::Bag, tree }), &options, &ENGINE);
+    let report = climb_for(&reviewer, Ok(Archive::of(Form::Bag, tree)), &options, &ENGINE);
     let by = "by alice@example.org with the key SHA256:d49HsAAG1CRNSwsjihPAvPcqIFjLu92AQSVHePqPJcs";
     assert_eq!(report.signed.as_ref().unwrap().to_string(), by);
     assert!(report.to_human().contains(&format!("\nsigned   {by}\n")));
@@ -121,7 +121,7 @@ fn a_newer_engine_says_what_it_can_judge_and_how_to_go_on() {
     let told = |tree: Tree| {
         let options = Options { level: Level::Full, sample: 1, rows: None, seed: 1 };
         let newer = Engine { version: "test-2", ..ENGINE };
-        let report = climb(Ok(Archive { form: Form::Bag, tree }), &options, &newer);
+        let report = climb(Ok(Archive::of(Form::Bag, tree)), &options, &newer);
         assert_eq!(
             (report.verdict(), report.reached),
             (Verdict::Unanswered, Some(Level::Coherent))
@@ -152,7 +152,7 @@ fn a_newer_engine_says_what_it_can_judge_and_how_to_go_on() {
     sample::recompute(&mut hostile);
     let options = Options { level: Level::Full, sample: 1, rows: None, seed: 1 };
     let newer = Engine { version: "test-2", ..ENGINE };
-    let report = climb(Ok(Archive { form: Form::Bag, tree: hostile }), &options, &newer);
+    let report = climb(Ok(Archive::of(Form::Bag, hostile)), &options, &newer);
     let readme = "install the version of reenact that the bundle's README.md names";
     let human = report.to_human();
     assert!(
@@ -198,7 +198,7 @@ fn a_capsule_is_data_beside_the_results_and_is_compared() {
     let capsule = capsule::own();
     let circumstance =
         crate::bundle::Circumstance { version: "0.0.9".to_owned(), ..sample::circumstance() };
-    let additions = Additions { source: Some(&capsule) };
+    let additions = Additions { source: Some(&capsule), ..Additions::default() };
     let older = seal_with(&sample::content(), &circumstance, additions).unwrap().tree;
     let report = climb_to(Level::Derived, older);
     assert_eq!((report.verdict(), report.reached), (Verdict::Unanswered, Some(Level::Coherent)));
@@ -228,7 +228,7 @@ fn junit_has_the_shape_that_viewers_expect() {
     let options = Options { level: Level::Full, sample: 0, rows: None, seed: 1 };
     let mut tree = forged();
     tree.insert("tagmanifest-sha256.txt.sig".into(), SIGNATURE.into());
-    let report = climb_for(&reviewer, Ok(Archive { form: Form::Bag, tree }), &options, &ENGINE);
+    let report = climb_for(&reviewer, Ok(Archive::of(Form::Bag, tree)), &options, &ENGINE);
     let junit = report.to_junit();
     let document = roxmltree::Document::parse(&junit).unwrap();
     let allowed = |tag: &str| -> (&[&str], &[&str]) {

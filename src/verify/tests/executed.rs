@@ -40,7 +40,7 @@ impl Replanned for Answering<'_> {
 
 fn climbed(level: Level, sample: usize, pipeline: &dyn Pipeline) -> Report {
     let options = Options { level, sample, rows: None, seed: 1 };
-    climb(Ok(Archive { form: Form::Bag, tree: sample::sealed().tree }), &options, pipeline)
+    climb(Ok(Archive::of(Form::Bag, sample::sealed().tree)), &options, pipeline)
 }
 
 #[test]

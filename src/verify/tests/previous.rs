@@ -55,7 +55,7 @@ fn climbed(honest: bool, level: Level) -> Report {
     let sealed = crate::bundle::seal(&content.unwrap(), &sample::circumstance()).unwrap();
     // Level 6 wants another seed than the experiment's.
     let options = Options { level, sample: 1, rows: None, seed: 2 };
-    let archive = Archive { form: Form::Bag, tree: sealed.tree };
+    let archive = Archive::of(Form::Bag, sealed.tree);
     climb(Ok(archive), &options, &Reenactment::new(1).unwrap())
 }
 

@@ -4,7 +4,7 @@ use super::*;
 
 fn replicate(tree: Tree, claims: &'static str, seed: u64) -> Report {
     let options = Options { level: Level::Replicated, sample: 0, rows: None, seed };
-    climb(Ok(Archive { form: Form::Bag, tree }), &options, &Engine { claims, ..ENGINE })
+    climb(Ok(Archive::of(Form::Bag, tree)), &options, &Engine { claims, ..ENGINE })
 }
 
 fn told(report: &Report) -> Vec<String> {
@@ -84,7 +84,7 @@ fn without_a_verdict_there_is_nothing_to_replicate() {
         let mut content = sample::content();
         change(&mut content);
         let tree = crate::bundle::seal(&content, &sample::circumstance()).unwrap().tree;
-        Bundle::open(Archive { form: Form::Bag, tree }).unwrap()
+        Bundle::open(Archive::of(Form::Bag, tree)).unwrap()
     };
     let judged = |bundle: &Bundle| {
         let study = Study { bundle, seed: 7, claims: "[]" };

@@ -3,6 +3,7 @@
 use super::*;
 use crate::condition::Condition;
 use crate::factor::Factor;
+use crate::studies::Ledger;
 use crate::studies::fixture::PRINTED;
 use crate::studies::prior_map::Metric;
 use crate::studies::{Layout, TrialRecord, fixture};
@@ -70,7 +71,8 @@ fn factors() -> Vec<Factor> {
 
 fn found(records: &[TrialRecord], with_sd: impl Fn(&str) -> bool) -> Vec<TableAgreement> {
     let (factors, published) = (factors(), published(with_sd));
-    let findings = Findings::new(&factors, records, &published);
+    let ledger = Ledger::of(records);
+    let findings = Findings::new(&factors, &ledger, &published);
     let wanted = AgreementTable { tables: vec!["distance".to_owned()] };
     let table = request(false);
     findings.agreement(&wanted, &[("distance", &table), ("other", &table)])
@@ -122,7 +124,8 @@ fn what_is_missing_or_censored_or_has_no_spread_is_counted() {
 #[test]
 fn cells_are_tested_at_all_runs_and_at_the_papers_number() {
     let (factors, published, records) = (factors(), published(|_| true), records(|x| x, 0..5));
-    let findings = Findings::new(&factors, &records, &published);
+    let ledger = Ledger::of(&records);
+    let findings = Findings::new(&factors, &ledger, &published);
     let cells = findings.coverage_cells(&request(true));
     let cell = |by: &str, percent| {
         let wanted = ("environment".to_owned(), "office".to_owned());
@@ -166,7 +169,8 @@ fn every_reading_that_was_run_has_its_own_score() {
         }
     }
     let published = published(|_| true);
-    let findings = Findings::new(&factors, &all, &published);
+    let ledger = Ledger::of(&all);
+    let findings = Findings::new(&factors, &ledger, &published);
     let mut table = request(false);
     table.rows.extend(["gain".to_owned(), "stop".to_owned()]);
     let wanted = AgreementTable { tables: vec!["distance".to_owned()] };

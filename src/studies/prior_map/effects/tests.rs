@@ -4,6 +4,7 @@ use super::*;
 use crate::condition::Condition;
 use crate::factor::Factor;
 use crate::stats::assert_close;
+use crate::studies::Ledger;
 use crate::studies::prior_map::Metric;
 use crate::studies::{TrialRecord, fixture};
 use crate::table::Table;
@@ -73,7 +74,8 @@ pub(super) fn request(factors: &[&str], within: &[&str], at: &[u32]) -> EffectsT
 /// Calls `check` with the findings of [`records`].
 pub(super) fn with_findings(check: impl Fn(&Findings<'_>)) {
     let (factors, records, published) = (factors(), records(), published());
-    let findings = Findings::new(&factors, &records, &published);
+    let ledger = Ledger::of(&records);
+    let findings = Findings::new(&factors, &ledger, &published);
     check(&findings);
 }
 

@@ -3,6 +3,7 @@
 use super::*;
 use crate::condition::Condition;
 use crate::factor::Factor;
+use crate::studies::Ledger;
 use crate::studies::fixture::PRINTED;
 use crate::studies::prior_map::Metric;
 use crate::studies::{Layout, TrialRecord, fixture};
@@ -79,7 +80,8 @@ fn found() -> (BTreeMap<String, ReadingScore>, String) {
         Factor::new("prior", values(&["none", "floor-plan", "bounding-box"])),
         Factor::new("reading", values(&["near", "far"])),
     ];
-    let findings = Findings::new(&factors, &records, &published);
+    let ledger = Ledger::of(&records);
+    let findings = Findings::new(&factors, &ledger, &published);
     let wanted = ReadingsTable {
         tables: vec!["distance".to_owned(), "time".to_owned()],
         by: "reading".to_owned(),

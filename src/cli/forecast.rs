@@ -1,0 +1,268 @@
+//! What a run asks of the machine, foretold before any trial is executed: the size of its bundle, memory, time and disk.
+//!
+//! It rests on the records that the store has of some of the plan's trials. Where it has none, what can be said is what no bundle of
+//! so many trials goes below.
+
+use super::exit::Failure;
+use super::load;
+use super::terminal::counted;
+use crate::bundle::{Limits, format};
+use crate::plan::Plan;
+use crate::runner::StoreError;
+use crate::store::{self, Looked};
+use crate::studies::TrialRecord;
+use std::path::Path;
+
+/// Trials of one condition whose records are looked at.
+const LOOKED_AT: usize = 3;
+/// Conditions that are looked at.
+const CONDITIONS: usize = 200;
+
+/// Bytes of a record's line that every record has: key, outcome, number, one state hash and the names of them.
+const LEAST_LINE: u64 = 220;
+/// Bytes of a trial's row in `results/trials.csv` that every trial has: key, number and outcome.
+const LEAST_ROW: u64 = 70;
+/// Bytes of a number in a row.
+const CELL: u64 = 12;
+/// Bytes of a point of a curve in `results/series.csv`.
+const POINT: u64 = 60;
+/// Bytes of what a bundle holds beside records and tables of trials, roughly.
+const REST: u64 = 200_000;
+
+/// Simulated seconds for a second of one processor, as a rule.
+const PACE: f64 = 300.0;
+
+/// Memory (bytes) of the program itself, and of what it holds for each trial and for each of a trial's measures. Measured with
+/// `wander` at ten thousand to a million trials (docs/performance.md).
+const PROGRAM: u64 = 40 << 20;
+const TRIAL: u64 = 240;
+const MEASURE: u64 = 24;
+/// Records that are in memory at a time, and how many bytes each takes for a byte of its line.
+const AT_ONCE: u64 = 8192;
+const UNFOLDED: u64 = 6;
+
+/// What is known of a trial's record, on average.
+#[derive(Debug, Clone, Copy, Default)]
+struct Mean {
+    line: f64,
+    points: f64,
+    measures: f64,
+    sim_s: f64,
+    records: usize,
+}
+
+impl Mean {
+    fn add(&mut self, record: &TrialRecord) {
+        self.records += 1;
+        let weight = 1.0 / real(self.records as u64);
+        let mix = |mean: &mut f64, value: usize| *mean += (real(value as u64) - *mean) * weight;
+        mix(&mut self.line, record.to_line().len() + 1);
+        mix(&mut self.points, record.series.len());
+        mix(&mut self.measures, record.measures.len());
+        self.sim_s += (record.sim_seconds - self.sim_s) * weight;
+    }
+}
+
+/// What a run is expected to come to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Forecast {
+    trials: u64,
+    /// Records that it rests on; without any it is what nothing goes below.
+    records: usize,
+    /// Bytes of all files of the bundle.
+    bundle: u64,
+    /// Files of the bundle.
+    files: u64,
+    /// Bytes of memory at most.
+    memory: u64,
+    /// Simulated time of all trials (s).
+    sim_s: f64,
+}
+
+impl Forecast {
+    /// Foretells the run of `plan` by what `store` has of it.
+    pub(super) fn of(plan: &Plan, store: Option<&Looked<'_>>) -> Result<Self, StoreError> {
+        let mut all = Mean::default();
+        let mut conditions: Vec<(u64, Mean)> = Vec::new();
+        for (i, trials) in plan.trials.chunk_by(|a, b| a.condition == b.condition).enumerate() {
+            let mut mean = Mean::default();
+            for spec in trials.iter().take(LOOKED_AT).filter(|_| i < CONDITIONS) {
+                if let Some(record) = store.map_or(Ok(None), |store| store.get(&spec.key))? {
+                    mean.add(&record);
+                    all.add(&record);
+                }
+            }
+            conditions.push((trials.len() as u64, mean));
+        }
+        let factors: usize = plan.experiment.factors.iter().map(|f| f.name.len() + 12).sum();
+        let has_series = plan.experiment.kind.has_series();
+        let (mut forecast, mut measures) = (Self::nothing(), 0.0);
+        for (trials, mean) in conditions {
+            let mean = if mean.records > 0 { mean } else { all };
+            let line = if mean.records > 0 { mean.line } else { real(LEAST_LINE + factors as u64) };
+            let row = real(LEAST_ROW + factors as u64 / 2) + mean.measures * real(CELL);
+            let curve = if has_series { mean.points * real(POINT) } else { 0.0 };
+            let lines = whole(real(trials) * line);
+            forecast.trials += trials;
+            forecast.bundle += lines + whole(real(trials) * (row + curve));
+            forecast.files += 1 + lines / format::PART;
+            forecast.sim_s += real(trials) * mean.sim_s;
+            measures += real(trials) * mean.measures;
+            let at_once = real(trials.min(AT_ONCE) * UNFOLDED) * line;
+            forecast.memory = forecast.memory.max(PROGRAM + whole(at_once));
+            if has_series {
+                // Figures and tables are drawn from the curves: these stay in memory.
+                forecast.memory += whole(real(trials) * mean.points * 24.0);
+            }
+        }
+        forecast.memory += forecast.trials * TRIAL + whole(measures * real(MEASURE));
+        forecast.records = all.records;
+        Ok(forecast)
+    }
+
+    fn nothing() -> Self {
+        Self { trials: 0, records: 0, bundle: REST, files: 30, memory: PROGRAM, sim_s: 0.0 }
+    }
+
+    /// Says it in a line.
+    pub(super) fn in_words(&self) -> String {
+        let (bundle, memory) = (in_bytes(self.bundle), in_bytes(self.memory));
+        if self.records == 0 {
+            return format!(
+                "bundle: at least {bundle} unpacked; memory: at least {memory} (no record of this plan is in the store: `reenact run \
+                 --trials 1` puts one of each condition there)\n"
+            );
+        }
+        let hours = self.sim_s / PACE / 3600.0;
+        format!(
+            "bundle: about {bundle} unpacked; memory: about {memory}; {hours:.2} core hours in all (by {} in the store)\n",
+            counted(self.records, "record")
+        )
+    }
+
+    /// Refuses a run whose bundle could not be sealed: by `limits`, or because `out` has no room for it.
+    pub(super) fn admits(&self, limits: &Limits, out: &Path) -> Result<(), Failure> {
+        let by = match self.records {
+            0 => "at least".to_owned(),
+            records => format!("about (by {} in the store)", counted(records, "record")),
+        };
+        let refused = |holds: String, expected: String, remedy: &str| {
+            Err(Failure::not_understood(format!(
+                "error: nothing was run: the bundle of {} would hold {by} {holds}: expected {expected}; {remedy}\n",
+                counted(usize::try_from(self.trials).unwrap_or(usize::MAX), "trial")
+            )))
+        };
+        if self.files > limits.entries as u64 {
+            let expected = format!("at most {}, so that anyone can check it", limits.entries);
+            return refused(format!("{} files", self.files), expected, PARTS);
+        }
+        if self.bundle > limits.bytes {
+            let expected =
+                format!("at most {}, so that anyone can check it", in_bytes(limits.bytes));
+            let remedy = "run fewer trials (--trials), run the study in parts (--only), or allow it more with --max-size, as \
+                          whoever checks it must too";
+            return refused(format!("{} unpacked", in_bytes(self.bundle)), expected, remedy);
+        }
+        // The lines as they are, and the archive: a quarter of them, as a rule.
+        let needed = self.bundle + self.bundle / 4;
+        match store::room(out) {
+            Some(room) if room < needed => {
+                let expected = format!(
+                    "{} free in `{}`, found {}",
+                    in_bytes(needed),
+                    load::shown(out),
+                    in_bytes(room)
+                );
+                let remedy = "free some space, or choose another folder with --out";
+                refused(format!("{} unpacked", in_bytes(self.bundle)), expected, remedy)
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Returns whether it is worth telling whoever only wanted to run.
+    pub(super) fn is_large(&self) -> bool {
+        self.trials > AT_ONCE
+    }
+}
+
+/// What to do where a bundle would have too many files.
+const PARTS: &str = "run the study in parts (--only)";
+
+/// Writes a number of bytes as exactly as it deserves: `0.4 MB`, `31 MB`, `5.1 GB`.
+fn in_bytes(bytes: u64) -> String {
+    let (mega, giga) = (real(bytes) / 1e6, real(bytes) / 1e9);
+    match bytes {
+        0..10_000_000 => format!("{mega:.1} MB"),
+        10_000_000..1_000_000_000 => format!("{mega:.0} MB"),
+        _ => format!("{giga:.1} GB"),
+    }
+}
+
+#[expect(clippy::cast_precision_loss, reason = "an estimate")]
+fn real(n: u64) -> f64 {
+    n as f64
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "not negative, saturating"
+)]
+fn whole(x: f64) -> u64 {
+    x.round() as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn large(trials: u64) -> Forecast {
+        let nothing = Forecast::nothing();
+        Forecast { trials, bundle: REST + 410 * trials, sim_s: 1.5 * real(trials), ..nothing }
+    }
+
+    #[test]
+    fn sizes_are_as_exact_as_they_deserve() {
+        let words = [0, 449_999, 12_345_678, 999_000_000, 5_100_000_000].map(in_bytes);
+        assert_eq!(words, ["0.0 MB", "0.4 MB", "12 MB", "999 MB", "5.1 GB"]);
+    }
+
+    #[test]
+    fn what_could_not_be_sealed_is_refused_with_what_to_do() {
+        let limits = Limits::default();
+        let out = std::env::temp_dir();
+        assert!(large(1000).admits(&limits, &out).is_ok());
+        let refusal = |forecast: Forecast| forecast.admits(&limits, &out).unwrap_err();
+        let too_large = refusal(large(20_000_000));
+        assert_eq!(too_large.exit.code(), 2);
+        assert_eq!(
+            too_large.message,
+            "error: nothing was run: the bundle of 20000000 trials would hold at least 8.2 GB unpacked: expected at most 4.3 GB, \
+             so that anyone can check it; run fewer trials (--trials), run the study in parts (--only), or allow it more with \
+             --max-size, as whoever checks it must too\n"
+        );
+        let many_files = refusal(Forecast { files: 20_001, records: 1, ..large(1) });
+        assert_eq!(
+            many_files.message,
+            "error: nothing was run: the bundle of 1 trial would hold about (by 1 record in the store) 20001 files: expected at \
+             most 20000, so that anyone can check it; run the study in parts (--only)\n"
+        );
+        let all = Limits { bytes: u64::MAX, ..limits };
+        let no_room = Forecast { bundle: 1 << 60, ..large(1) }.admits(&all, &out);
+        assert_eq!(no_room.is_err(), store::room(&out).is_some(), "an exabyte");
+    }
+
+    #[test]
+    fn words_say_what_they_rest_on() {
+        assert_eq!(
+            large(1_000_000).in_words(),
+            "bundle: at least 410 MB unpacked; memory: at least 42 MB (no record of this plan is in the store: `reenact run \
+             --trials 1` puts one of each condition there)\n"
+        );
+        assert_eq!(
+            Forecast { records: 6, ..large(1_000_000) }.in_words(),
+            "bundle: about 410 MB unpacked; memory: about 42 MB; 1.39 core hours in all (by 6 records in the store)\n"
+        );
+    }
+}
