@@ -186,9 +186,16 @@ fn a_plan_is_shown_before_its_calibration_has_run() {
     );
     let says = format!("note: keys depend on what the calibration measures; {not_run}\n");
     assert_eq!((answer.stderr, answer.code), (says, 0));
-    assert_eq!(
-        answer.stdout,
-        "--------  A_68_frontier/0  to do\n--------  A_68_frontier/1  to do\n2 trials: 0 done, 2 to do\n"
+    let listed = "--------  A_68_frontier/0  to do\n--------  A_68_frontier/1  to do\n2 trials: 0 done, 2 to do\n";
+    let foretold = answer.stdout.strip_prefix(listed).unwrap_or_default();
+    assert!(
+        foretold.starts_with("bundle: at least 0.")
+            && foretold.ends_with(
+                " MB unpacked; memory: at least 31 MB (no record of this plan is in the store: `reenact run --trials 1` puts one \
+                 of each condition there)\n"
+            ),
+        "{}",
+        answer.stdout
     );
     let answer = desk.run(&["plan", &manifest, "--explain", "A_68_frontier/0"]);
     assert_eq!((answer.stdout.as_str(), answer.code), ("", 2));
@@ -311,4 +318,40 @@ fn a_bundle_is_exported_for_latex() {
     assert!(numbers.contains("csname reenact@table-1/"), "{numbers}");
     let table = fs::read_to_string(folder.join("table-1.tex")).unwrap();
     assert!(table.contains("\\toprule") && table.contains(" & ours & paper"), "{table}");
+}
+
+#[test]
+fn what_could_not_be_sealed_is_refused_before_it_is_run() {
+    let desk = desk();
+    let answer = desk.run(&["run", "demo/demo.yaml", "--max-size", "10K"]);
+    assert_eq!((answer.stdout.as_str(), answer.code), ("", 2));
+    assert!(
+        answer.stderr.starts_with("error: nothing was run: the bundle of ")
+            && answer.stderr.ends_with(
+                "expected at most 0.0 MB, so that anyone can check it; run fewer trials (--trials), run the study in parts \
+                 (--only), or allow it more with --max-size, as whoever checks it must too\n"
+            ),
+        "{}",
+        answer.stderr
+    );
+    assert!(!desk.path("artifacts").exists(), "nothing was begun");
+    // What a trial comes to is known once one is in the store.
+    let bundle = bundle_on(&desk);
+    let plan = desk.done(&["plan", "demo/demo.yaml"]);
+    let foretold = plan.lines().last().unwrap();
+    assert!(
+        foretold.starts_with("bundle: about 0.")
+            && foretold.contains(" MB unpacked; memory: about ")
+            && foretold.ends_with(" core hours in all (by 1 record in the store)"),
+        "{foretold}"
+    );
+    let answer = desk.run(&["verify", "--max-size", "10K", &bundle]);
+    assert_eq!(answer.code, 1);
+    assert!(
+        answer.stdout.contains(
+            "(where you trust that it is so large, `--max-size` admits it: `--max-size 8G`)"
+        ),
+        "{}",
+        answer.stdout
+    );
 }

@@ -332,8 +332,8 @@ impl<'a> FileRef<'a> {
     }
 }
 
-/// Bytes that are read as one line: more than a record may have, so that a longer one is refused and not held.
-const LONGEST_LINE: u64 = 5 << 20;
+/// Bytes that are read as one line: ten times what a record may have, so that a longer one is refused and not held.
+const LONGEST_LINE: u64 = 48 << 20;
 
 /// The files of a bundle that are not in memory, by their path relative to the bag's root.
 pub type LargeFiles = BTreeMap<String, LargeFile>;

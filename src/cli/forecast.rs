@@ -26,16 +26,16 @@ const LEAST_ROW: u64 = 70;
 const CELL: u64 = 12;
 /// Bytes of a point of a curve in `results/series.csv`.
 const POINT: u64 = 60;
-/// Bytes of what a bundle holds beside records and tables of trials, roughly.
-const REST: u64 = 200_000;
+/// Bytes of what a bundle holds beside inputs, records and tables of trials: its description alone has as many.
+const REST: u64 = 40_000;
 
 /// Simulated seconds for a second of one processor, as a rule.
 const PACE: f64 = 300.0;
 
 /// Memory (bytes) of the program itself, and of what it holds for each trial and for each of a trial's measures. Measured with
 /// `wander` at ten thousand to a million trials (docs/performance.md).
-const PROGRAM: u64 = 40 << 20;
-const TRIAL: u64 = 240;
+const PROGRAM: u64 = 30 << 20;
+const TRIAL: u64 = 190;
 const MEASURE: u64 = 24;
 /// Records that are in memory at a time, and how many bytes each takes for a byte of its line.
 const AT_ONCE: u64 = 8192;
@@ -115,6 +115,8 @@ impl Forecast {
                 forecast.memory += whole(real(trials) * mean.points * 24.0);
             }
         }
+        forecast.bundle +=
+            plan.experiment.inputs.iter().map(|input| input.bytes.len() as u64).sum::<u64>();
         forecast.memory += forecast.trials * TRIAL + whole(measures * real(MEASURE));
         forecast.records = all.records;
         Ok(forecast)
@@ -257,12 +259,12 @@ mod tests {
     fn words_say_what_they_rest_on() {
         assert_eq!(
             large(1_000_000).in_words(),
-            "bundle: at least 410 MB unpacked; memory: at least 42 MB (no record of this plan is in the store: `reenact run \
+            "bundle: at least 410 MB unpacked; memory: at least 31 MB (no record of this plan is in the store: `reenact run \
              --trials 1` puts one of each condition there)\n"
         );
         assert_eq!(
             Forecast { records: 6, ..large(1_000_000) }.in_words(),
-            "bundle: about 410 MB unpacked; memory: about 42 MB; 1.39 core hours in all (by 6 records in the store)\n"
+            "bundle: about 410 MB unpacked; memory: about 31 MB; 1.39 core hours in all (by 6 records in the store)\n"
         );
     }
 }

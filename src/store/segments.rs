@@ -152,7 +152,8 @@ impl State {
             };
             if length > segment.to {
                 for (key, place) in segment.read_on()? {
-                    self.places.entry(key).or_default().push(place);
+                    // One is all there is of nearly every trial, and there may be a million.
+                    self.places.entry(key).or_insert_with(|| Vec::with_capacity(1)).push(place);
                 }
             }
         }

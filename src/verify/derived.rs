@@ -207,6 +207,9 @@ fn is_same(a: FileRef<'_>, b: FileRef<'_>) -> bool {
 const UNLIMITED: Limits =
     Limits { entries: usize::MAX, bytes: u64::MAX, held: u64::MAX, ratio: u64::MAX };
 
+/// Most bytes of a file whose first difference is looked for: of a larger one its digest says enough.
+const MOST_READ: u64 = 48 << 20;
+
 /// Finds payload files of `found` that differ from those of `derived`, among those whose path within the payload
 /// `counts`.
 fn files(found: Files<'_>, derived: Files<'_>, counts: impl Fn(&str) -> bool) -> Vec<Fault> {
@@ -217,8 +220,8 @@ fn files(found: Files<'_>, derived: Files<'_>, counts: impl Fn(&str) -> bool) ->
             None => faults.push(Fault::new(path, "a file that follows from the records", "none")),
             Some(file) if is_same(file, expected) => {}
             Some(file) => {
-                let (expected, found) = match (expected.held(), file.held()) {
-                    (Some(expected), Some(found)) => difference::first(path, expected, found),
+                let (expected, found) = match (expected.whole(MOST_READ), file.whole(MOST_READ)) {
+                    (Some(expected), Some(found)) => difference::first(path, &expected, &found),
                     _ => (
                         format!("{} bytes of sha256:{}", expected.size(), expected.digest()),
                         format!("{} bytes of sha256:{}", file.size(), file.digest()),

@@ -58,6 +58,30 @@ fn records_of_many_trials_go_on_in_further_files() {
 }
 
 #[test]
+fn records_that_say_each_something_of_their_own_do_not_fill_the_memory() {
+    let mut records = sample::records();
+    records[0].1 = (0..6000)
+        .map(|trial| {
+            let mut record = sample::record(7, "none", trial);
+            record.measures.insert(format!("m-{trial}"), Some(1.0));
+            record
+        })
+        .collect();
+    let content = sample::content_of(sample::STUDY.as_bytes(), 7, &records);
+    let sealed = crate::bundle::seal(&content, &sample::circumstance()).unwrap();
+    let bundle = Bundle::open(Archive::of(Form::Bag, sealed.tree)).unwrap();
+    let published = include_bytes!("../../../artifacts/quickstart-published.zip");
+    let published = Bundle::read(published, &Limits::default()).unwrap();
+    let (plan, _) = plan_of(&published).unwrap();
+    let gathered = bundle.gathered(&plan, &crate::bundle::Forgetful::default());
+    let told: Vec<String> = gathered.unwrap_err().iter().map(ToString::to_string).collect();
+    let expected = "data/trials/: expected records that take at most 80 MiB of memory, found more";
+    assert_eq!(told, [expected]);
+    let honest = published.gathered(&plan, &crate::bundle::Forgetful::default()).unwrap();
+    assert_eq!(honest, crate::bundle::Gathered::of(&plan, &published.records().unwrap()));
+}
+
+#[test]
 fn a_part_that_is_missing_or_of_nobody_is_named() {
     let told = |damage: &dyn Fn(&mut Tree)| {
         let mut tree = sealed().tree;
