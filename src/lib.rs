@@ -53,7 +53,8 @@ pub mod runner;
 pub mod compare;
 pub mod verify;
 
-// Layer 8: what people look at.
+// Layer 8: what people look at, and shards of a study put together.
+pub mod merge;
 pub mod report;
 
 // The shell: files, clock, environment and the command line.

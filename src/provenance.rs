@@ -1,5 +1,9 @@
 //! Clock, host and environment: the only user of all three.
 
+mod array_task;
+
+pub use array_task::{ArrayTask, ArrayTaskError};
+
 use crate::bundle::wall_time::WallTime;
 use crate::bundle::{Circumstance, Moment, format};
 use crate::studies::Stopwatch;
@@ -37,6 +41,8 @@ pub struct Environment {
     pub utf8: bool,
     /// Where the original worlds of the studies are, for the tests that compare with them.
     pub original_worlds: Option<PathBuf>,
+    /// Which task of an array job this is, if it is one; what cannot be matters only to whoever asks for it.
+    pub array_task: Result<Option<ArrayTask>, ArrayTaskError>,
 }
 
 impl Environment {
@@ -89,6 +95,7 @@ impl Environment {
                 },
             ),
             original_worlds: path("REENACT_ORIGINAL_WORLDS").and_then(Result::ok),
+            array_task: ArrayTask::from_lookup(lookup),
         })
     }
 
@@ -196,6 +203,14 @@ pub fn age(moment: SystemTime) -> Duration {
 pub fn kernel() -> Option<String> {
     let id = std::fs::read_to_string("/proc/sys/kernel/random/boot_id").ok()?;
     id.get(..8).filter(|id| id.bytes().all(|b| b.is_ascii_hexdigit())).map(str::to_owned)
+}
+
+/// Returns where this program is.
+///
+/// # Errors
+/// Where the system does not say.
+pub fn program() -> std::io::Result<PathBuf> {
+    std::env::current_exe()
 }
 
 /// Lists facts about the host that matter and do not reveal who owns it: no names of users, hosts or folders.

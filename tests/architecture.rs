@@ -20,7 +20,7 @@ const LAYERS: [(&str, &[&str]); 9] = [
     ("layer 5", &["plan"]),
     ("layer 6", &["runner", "bundle"]),
     ("layer 7", &["verify", "compare"]),
-    ("layer 8", &["report"]),
+    ("layer 8", &["merge", "report"]),
     ("the crate's root", &["main", "lib"]),
 ];
 

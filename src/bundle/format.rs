@@ -39,6 +39,8 @@ pub const SIGNATURES: [&str; 2] = ["tagmanifest-sha256.txt.sig", "tagmanifest-sh
 
 /// Name of the fact of a run's environment that says how many trials it executed itself; the others came from a store.
 pub const SIMULATED_TRIALS: &str = "trials-simulated";
+/// Fact of a bundle that was merged: of how many shards.
+pub const MERGED_SHARDS: &str = "shards-merged";
 
 /// The crate's metadata. This and what follows is relative to the payload, where [`super::BundlePath`] leads.
 pub const METADATA: &str = "ro-crate-metadata.json";

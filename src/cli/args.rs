@@ -1,12 +1,14 @@
 //! What can be typed.
 
 mod bundles;
+mod engines;
 mod studies;
 
 pub(super) use bundles::{
     AttestArgs, DiffArgs, DiffFormat, ExportArgs, LimitsArgs, ReplayArgs, ReportArgs, VerifyArgs,
 };
-pub(super) use studies::{CheckArgs, InferArgs, LockArgs, PlanArgs, RunArgs, VaryArgs};
+pub(super) use engines::{Engine, SubmitArgs};
+pub(super) use studies::{CheckArgs, InferArgs, LockArgs, MergeArgs, PlanArgs, RunArgs, VaryArgs};
 
 use super::load::Given;
 use clap::{Args, CommandFactory as _, Parser, Subcommand, ValueEnum};
@@ -29,6 +31,10 @@ pub fn command() -> clap::Command {
 pub(super) enum Command {
     /// Simulate every trial of a manifest and seal a bundle
     Run(RunArgs),
+    /// Seal the bundles of a study's shards as the one bundle of the whole
+    Merge(MergeArgs),
+    /// Hand the shards of a study to Slurm or Kubernetes, and the sealing after them
+    Submit(SubmitArgs),
     /// Parse and resolve everything, simulate nothing, report every fault
     Check(CheckArgs),
     /// List the trials that would run, or explain one
@@ -69,6 +75,18 @@ pub(super) enum Command {
     Cache(CacheArgs),
 }
 
+impl Command {
+    /// Returns which part of a study it is about, where it is about one.
+    pub(super) fn select(&mut self) -> Option<&mut SelectArgs> {
+        match self {
+            Self::Run(args) => Some(&mut args.select),
+            Self::Plan(args) => Some(&mut args.select),
+            Self::Infer(args) => Some(&mut args.select),
+            _ => None,
+        }
+    }
+}
+
 /// How answers are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum Format {
@@ -98,8 +116,9 @@ pub(super) struct SelectArgs {
     /// Trials per condition instead of the manifest's; the bundle says it is partial
     #[arg(long, value_name = "N")]
     pub(super) trials: Option<u32>,
-    /// Only every N-th trial, beginning with the I-th
-    #[arg(long, value_name = "I/N")]
+    /// Only the I-th of N parts of about the same cost, for as many machines; `auto` where Slurm, Kubernetes or AWS Batch says
+    /// which (`auto/N` where it does not say of how many)
+    #[arg(long, value_name = "I/N|auto[/N]")]
     pub(super) shard: Option<String>,
     /// Replace a value of the manifest (repeatable), as in `--set world.file=PATH`
     #[arg(long, value_name = "PATH=VALUE")]

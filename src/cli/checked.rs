@@ -38,10 +38,20 @@ impl From<Refused> for Failure {
 
 /// Opens and checks the bundle at `path`. One that is not what it says is refused, unless it is wanted `unchecked`.
 pub(super) fn bundle(path: &Path, unchecked: bool, limits: LimitsArgs) -> Result<Checked, Refused> {
+    to_level(Level::Derived, path, unchecked, limits)
+}
+
+/// Opens and checks the bundle at `path` to `level`, which must be one that executes nothing.
+pub(super) fn to_level(
+    level: Level,
+    path: &Path,
+    unchecked: bool,
+    limits: LimitsArgs,
+) -> Result<Checked, Refused> {
     let unread = |failure| Refused { failure, is_read: false };
-    // Level 3 executes nothing, so it needs one thread and no seed.
+    // Nothing is executed, so one thread does and no seed is needed.
     let pipeline = Reenactment::new(1).map_err(Failure::failed).map_err(unread)?;
-    let options = Options { level: Level::Derived, sample: 1, rows: None, seed: 0 };
+    let options = Options { level, sample: 1, rows: None, seed: 0 };
     let opened = load::archive(path, limits).map_err(unread)?;
     let (report, bundle) = climb_and_keep(&Reviewer::anonymous(), opened, &options, &pipeline);
     let Some(bundle) = bundle else { return Err(unread(refused(path, &report, None))) };

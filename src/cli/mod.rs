@@ -14,6 +14,7 @@ mod interrupt;
 mod junit;
 mod load;
 mod progress;
+mod shard;
 mod terminal;
 
 pub use args::command;
@@ -73,12 +74,17 @@ fn silence_panicking_trials() {
 }
 
 fn dispatch(
-    command: Command,
+    mut command: Command,
     environment: &Environment,
     terminal: Terminal,
 ) -> Result<Exit, Failure> {
+    if let Some(select) = command.select() {
+        shard::place(select, environment)?;
+    }
     match command {
         Command::Run(args) => commands::run::run(&args, environment, terminal),
+        Command::Merge(args) => commands::merge::run(&args, environment, terminal),
+        Command::Submit(args) => commands::submit::run(&args, environment, terminal),
         Command::Check(args) => commands::check::run(&args, terminal),
         Command::Plan(args) => commands::plan::run(&args, environment, terminal),
         Command::Verify(args) => commands::verify::run(&args, environment, terminal),

@@ -2,12 +2,12 @@
 
 use super::key::{Keys, engine_version, explain, key_content, study_digest};
 use super::resolved::ResolvedStudy;
-use super::selection::{Selection, SelectionError};
+use super::selection::{Dealt, Selection, SelectionError};
 use crate::condition::Condition;
 use crate::digest::StudyDigest;
 use crate::manifest::{Experiment, ResolvedCondition};
 use crate::rng::Seeds;
-use crate::studies::TrialSpec;
+use crate::studies::{Setup, TrialSpec};
 
 /// An experiment and its trials: condition by condition, trial by trial.
 #[derive(Debug, Clone)]
@@ -68,6 +68,17 @@ impl Plan {
         }
     }
 
+    /// Returns to which of `shards`, from 1, each trial of a plan that is not one of a shard itself is dealt, in plan order.
+    pub fn dealt(&self, shards: u32, dealt: Dealt) -> Vec<u32> {
+        let conditions = || self.trials.chunk_by(|a, b| a.condition == b.condition);
+        let ranks = ranks(conditions().map(|trials| &trials[0].setup), dealt);
+        let dealt = conditions().zip(ranks).flat_map(|(trials, rank)| {
+            let first = rank * trials.len() as u64;
+            (first..).take(trials.len()).map(move |place| place % u64::from(shards.max(1)))
+        });
+        dealt.map(|shard| u32::try_from(shard).map_or(u32::MAX, |shard| shard + 1)).collect()
+    }
+
     /// Finds the trial that `wanted` names: by at least 8 hex digits of its key, or as `CONDITION/NUMBER` with the
     /// condition's slug.
     ///
@@ -117,12 +128,13 @@ impl Plan {
 fn expand(experiment: &Experiment, selection: &Selection) -> Vec<TrialSpec> {
     let count = selection.trials.unwrap_or(experiment.trials);
     let (shard, shards) = selection.shard.unwrap_or((1, 1));
-    let mut number = 0_u32;
+    let wanted: Vec<&ResolvedCondition> =
+        experiment.conditions.iter().filter(|c| selection.wants(&c.condition)).collect();
+    let ranks = ranks(wanted.iter().map(|resolved| &resolved.setup), selection.dealt);
     let mut trials = Vec::new();
-    for ResolvedCondition { condition, setup, meanings, .. } in &experiment.conditions {
-        if !selection.wants(condition) {
-            continue;
-        }
+    for (resolved, rank) in wanted.into_iter().zip(ranks) {
+        let ResolvedCondition { condition, setup, meanings, .. } = resolved;
+        let first = rank * u64::from(count);
         let keys = Keys::of(key_content(
             experiment.kind,
             experiment.seed,
@@ -134,9 +146,7 @@ fn expand(experiment: &Experiment, selection: &Selection) -> Vec<TrialSpec> {
         ));
         let seeds = seeds(experiment, condition);
         for trial in 0..count {
-            let mine = number % shards == shard - 1;
-            number = number.wrapping_add(1);
-            if !mine {
+            if (first + u64::from(trial)) % u64::from(shards) != u64::from(shard - 1) {
                 continue;
             }
             trials.push(TrialSpec {
@@ -149,6 +159,21 @@ fn expand(experiment: &Experiment, selection: &Selection) -> Vec<TrialSpec> {
         }
     }
     trials
+}
+
+/// Returns at which place each condition, of which these are the setups, is dealt to shards, from 0.
+fn ranks<'a>(setups: impl Iterator<Item = &'a Setup>, dealt: Dealt) -> Vec<u64> {
+    let costs: Vec<f64> = setups.map(|setup| setup.estimated_seconds()).collect();
+    let mut order: Vec<usize> = (0..costs.len()).collect();
+    if dealt == Dealt::ByCost {
+        // Stable: conditions of one cost stay in plan order.
+        order.sort_by(|&a, &b| costs[b].total_cmp(&costs[a]));
+    }
+    let mut ranks = vec![0; order.len()];
+    for (rank, index) in (0..).zip(order) {
+        ranks[index] = rank;
+    }
+    ranks
 }
 
 /// Returns where the random streams of a condition's trials come from: the study and the factors that do not share noise. The

@@ -8,4 +8,4 @@ mod selection;
 pub use expand::{FindError, Plan};
 pub use key::{ENGINE_VERSION, engine_version, explain, key_content, study_digest};
 pub use resolved::{ResolvedStudy, Start, StudyCondition, StudyInput};
-pub use selection::{Selection, SelectionError};
+pub use selection::{Dealt, Selection, SelectionError};

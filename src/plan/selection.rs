@@ -25,8 +25,31 @@ pub struct Selection {
     pub only: BTreeMap<String, Vec<String>>,
     /// Trials per condition, where fewer (or more) than the manifest's are wanted.
     pub trials: Option<u32>,
-    /// Shard I of N, both from 1: every N-th trial of the plan, beginning with the I-th.
+    /// Shard I of N, both from 1.
     pub shard: Option<(u32, u32)>,
+    /// How the trials are dealt to the shards; the default where there are none.
+    #[serde(skip_serializing_if = "Dealt::is_in_order")]
+    pub dealt: Dealt,
+}
+
+/// How the trials of a plan are dealt to N shards: one after another, beginning with the first shard, as cards are. Either way
+/// every trial is in one shard, and shards differ by one trial at most.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Dealt {
+    /// In plan order, as by releases that sealed no such key.
+    #[default]
+    InOrder,
+    /// The conditions whose trials are estimated to take longest first, so that the estimated costs of two shards differ by
+    /// one trial's at most: of a sequence that falls, the sums of every N-th differ by no more than its first and last.
+    ByCost,
+}
+
+impl Dealt {
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde asks")]
+    fn is_in_order(&self) -> bool {
+        *self == Self::InOrder
+    }
 }
 
 /// Why a selection cannot be made.
@@ -71,6 +94,8 @@ struct Written {
     only: BTreeMap<String, Vec<String>>,
     trials: Option<u32>,
     shard: Option<(u32, u32)>,
+    #[serde(default)]
+    dealt: Dealt,
 }
 
 /// A shard that is none of its plan.
@@ -82,10 +107,10 @@ impl TryFrom<Written> for Selection {
     type Error = NoShard;
 
     fn try_from(written: Written) -> Result<Self, NoShard> {
-        let Written { only, trials, shard } = written;
+        let Written { only, trials, shard, dealt } = written;
         match shard {
             Some((i, n)) if i == 0 || i > n => Err(NoShard(i, n)),
-            _ => Ok(Self { only, trials, shard }),
+            _ => Ok(Self { only, trials, shard, dealt }),
         }
     }
 }
@@ -119,6 +144,7 @@ impl Selection {
                 return Err(bad());
             }
             selection.shard = Some((i, n));
+            selection.dealt = Dealt::ByCost;
         }
         if trials == Some(0) {
             return Err(SelectionError::NoTrials);
@@ -139,6 +165,12 @@ impl Selection {
     /// Returns whether anything of a plan is left out (or, with `--trials`, changed).
     pub fn is_partial(&self) -> bool {
         *self != Self::default()
+    }
+
+    /// Returns the same selection of all shards together.
+    #[must_use]
+    pub fn unsharded(&self) -> Self {
+        Self { shard: None, dealt: Dealt::default(), ..self.clone() }
     }
 
     /// Holds the names of `--only` against the experiment.

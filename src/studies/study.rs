@@ -212,6 +212,12 @@ pub trait StudySetup: Any + fmt::Debug + Send + Sync {
         false
     }
 
+    /// Estimates how long (s of simulated time) a trial takes, to deal trials to machines evenly: from what the manifest says
+    /// alone, so that every machine estimates the same. Only its ratio to other conditions' matters.
+    fn estimated_seconds(&self) -> f64 {
+        1.0
+    }
+
     /// Runs a trial under the eyes of `watch`, writing everything down in `recording` where there is one: a pure function of
     /// `spec` and this setup. The record is the same either way.
     fn run(

@@ -6,6 +6,7 @@ use clap::Args;
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub(in crate::cli) struct RunArgs {
     /// Manifests to run, one after another
     #[arg(required = true)]
@@ -26,6 +27,9 @@ pub(in crate::cli) struct RunArgs {
     /// Execute every trial twice, without the store; a difference ends with 3
     #[arg(long)]
     pub(in crate::cli) twice: bool,
+    /// Only finish trials and keep them in the store; seal nothing. For workers that share a store: a `run` without this seals
+    #[arg(long, conflicts_with_all = ["no_cache", "twice", "capsule", "locked", "probe", "out"])]
+    pub(in crate::cli) no_seal: bool,
     /// Seal the source of this program into the bundle as data, for readers in ten years
     #[arg(long)]
     pub(in crate::cli) capsule: bool,
@@ -34,6 +38,21 @@ pub(in crate::cli) struct RunArgs {
     /// How the answer is written
     #[arg(long, value_enum, default_value = "human")]
     pub(in crate::cli) format: Format,
+}
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct MergeArgs {
+    /// The bundles of `run --shard I/N`, in any order; one may be given twice
+    #[arg(required = true)]
+    pub(in crate::cli) shards: Vec<PathBuf>,
+    /// Where the bundle lands: a folder, or a file ending in .zip
+    #[arg(short, long, value_name = "DIR|FILE.zip", default_value = "artifacts")]
+    pub(in crate::cli) out: PathBuf,
+    #[command(flatten)]
+    pub(in crate::cli) limits: LimitsArgs,
+    /// How the answer is written
+    #[arg(long, value_enum, default_value = "human")]
+    pub(in crate::cli) format: DataFormat,
 }
 
 /// Whether and how the lock is held against a run.
@@ -163,6 +182,7 @@ impl From<&InferArgs> for RunArgs {
             no_cache: *no_cache,
             lock: AgainstLockArgs { locked: false, probe: false },
             twice: false,
+            no_seal: false,
             capsule: false,
             limits: *limits,
             format: *format,

@@ -1,6 +1,7 @@
 //! `reenact run`: plan, simulate, seal.
 
 use super::execution::{Account, Execution, Times, jobs};
+use super::kept::Kept;
 use super::locked::{self, Held};
 use super::{exhibit, probe, verdicts};
 use crate::bundle::assemble::{self, Asked};
@@ -80,6 +81,17 @@ fn run_one(
     let loaded = load::manifest(manifest, args.select.given(), execution.calibrator(), terminal)?;
     let (plan, selection) = load::plan(loaded.experiment, &args.select)?;
     let how = if args.twice { Times::Twice } else { Times::Once };
+    if args.no_seal {
+        let mut ledger = Ledger::default();
+        let account = execution.execute_each(&plan, how, terminal, &mut |record| {
+            ledger.enter(&record);
+            Ok(())
+        })?;
+        let Account { cached, doubted, .. } = account;
+        let kept = Kept { plan, ledger, cached, doubted, seconds: clock.elapsed_seconds() };
+        let root = environment.store().map_err(Failure::not_understood)?;
+        return Ok(kept.told(manifest, &selection, root, args.format, terminal));
+    }
     let forecast = execution.forecast(&plan)?;
     forecast.admits(&args.limits.limits(), &args.out)?;
     if forecast.is_large() {
@@ -128,6 +140,7 @@ fn run_one(
         held,
         path,
         wall_seconds: clock.elapsed_seconds(),
+        merged: None,
     };
     match args.format {
         Format::Human => done.tell(terminal),
@@ -146,24 +159,26 @@ fn run_one(
 }
 
 /// A finished run.
-struct Done {
-    plan: Plan,
-    ledger: Ledger,
-    verdicts: Vec<ClaimVerdict>,
+pub(super) struct Done {
+    pub(super) plan: Plan,
+    pub(super) ledger: Ledger,
+    pub(super) verdicts: Vec<ClaimVerdict>,
     /// On claims about this machine.
-    machine_verdicts: Vec<ClaimVerdict>,
-    cached: usize,
+    pub(super) machine_verdicts: Vec<ClaimVerdict>,
+    pub(super) cached: usize,
     /// Of those from the store, executed again.
-    doubted: usize,
-    twice: bool,
-    sealed: Sealed,
-    held: Option<Held>,
-    path: PathBuf,
-    wall_seconds: f64,
+    pub(super) doubted: usize,
+    pub(super) twice: bool,
+    pub(super) sealed: Sealed,
+    pub(super) held: Option<Held>,
+    pub(super) path: PathBuf,
+    pub(super) wall_seconds: f64,
+    /// How many shards the records come from, where none of them was simulated here.
+    pub(super) merged: Option<u32>,
 }
 
 impl Done {
-    fn failed(&self) -> usize {
+    pub(super) fn failed(&self) -> usize {
         self.ledger.count(Outcome::PANICKED)
     }
 
@@ -171,7 +186,7 @@ impl Done {
         self.ledger.sim_seconds()
     }
 
-    fn tell(&self, terminal: Terminal) {
+    pub(super) fn tell(&self, terminal: Terminal) {
         let mut text = wrapped(&self.plan.experiment.title, 0, terminal.columns());
         if self.plan.partial {
             let partial = "PARTIAL: part of the study only; no claim is judged";
@@ -214,6 +229,15 @@ impl Done {
         }
         outcomes.retain(|(_, n)| *n > 0);
         let outcomes: Vec<_> = outcomes.iter().map(|(o, n)| format!("{n} {}", o.name())).collect();
+        if let Some(shards) = self.merged {
+            return format!(
+                "{}: {}; of {}, none simulated here, {:.0} s of simulated time\n",
+                counted(self.ledger.len(), "trial"),
+                outcomes.join(", "),
+                counted(shards as usize, "shard"),
+                self.sim_seconds()
+            );
+        }
         let fresh = self.ledger.len() - self.cached;
         let mut text = format!(
             "{}: {}; {} simulated in {:.1} s",
@@ -274,7 +298,7 @@ impl Done {
         }
     }
 
-    fn to_json(&self) -> String {
+    pub(super) fn to_json(&self) -> String {
         let by_id = |verdicts: &[ClaimVerdict]| -> Map<String, Value> {
             let entry = |v: &ClaimVerdict| (v.id.clone(), v.judgement.to_string().into());
             verdicts.iter().map(entry).collect()

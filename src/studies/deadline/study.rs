@@ -172,6 +172,14 @@ impl StudySetup for Setup {
         if self.is_model() { vec![MARK.to_owned()] } else { Vec::new() }
     }
 
+    fn estimated_seconds(&self) -> f64 {
+        // Where it does not end before.
+        match self.parameters.mission.task {
+            Task::Exploration => self.parameters.mission.deadline_s,
+            Task::Passage => self.parameters.passage.time_limit_s,
+        }
+    }
+
     fn run(
         &self,
         spec: &TrialSpec,

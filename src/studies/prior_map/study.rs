@@ -227,6 +227,13 @@ impl StudySetup for Setup {
         }
     }
 
+    fn estimated_seconds(&self) -> f64 {
+        // Shipped worlds take 0.5 to 2 s for a square metre of the box around them.
+        let around = self.world.bounds();
+        let area_m2 = if around.is_empty() { 0.0 } else { around.width() * around.height() };
+        area_m2.min(self.parameters.mission.time_limit_s)
+    }
+
     fn run(
         &self,
         spec: &TrialSpec,

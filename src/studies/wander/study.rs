@@ -80,6 +80,10 @@ impl StudySetup for Setup {
         json!(self.parameters)
     }
 
+    fn estimated_seconds(&self) -> f64 {
+        self.parameters.mission.time_limit_s
+    }
+
     fn run(
         &self,
         spec: &TrialSpec,
