@@ -1,12 +1,18 @@
 //! Files: the only user of the file system besides the command line. Everything is written whole or not at all.
 
 mod directory;
+mod gc;
+mod lines;
+mod pack;
 mod partial;
 mod prune;
 mod scratch;
 mod segments;
 
 pub use directory::{DirectoryStore, Looked};
+pub use gc::Collected;
+pub use lines::{Audit, Damage};
+pub use pack::{Imported, PackError, check_pack};
 pub use partial::abandon;
 pub use prune::Pruned;
 pub use scratch::{DiskScratch, room};

@@ -151,6 +151,42 @@ fn a_kubernetes_job_is_printed_whole() {
     );
 }
 
+/// The recipe of docs/scale.md, on one host: GNU parallel where it is there, xargs else, which runs the same lines.
+#[test]
+fn the_recipe_without_an_engine_gives_what_one_machine_gives() {
+    let place = place();
+    let alone =
+        place.done(&["run", "tiny.yaml", "--no-cache", "--out", "alone", "--format", "json"]);
+    let page = fs::read_to_string(crate::sandbox::repository().join("docs/scale.md")).unwrap();
+    let recipe = page.split("## GNU parallel and ssh\n").nth(1).unwrap();
+    let recipe = recipe.split("```\n").nth(1).unwrap();
+    let has_parallel = Command::new("parallel").arg("--version").output().is_ok();
+    let line = recipe.lines().find(|line| line.contains("parallel ")).unwrap();
+    assert!(line.starts_with("seq 8 | parallel --jobs 4 "), "{line}");
+    let script = if has_parallel {
+        recipe.to_owned()
+    } else {
+        crate::sandbox::skipped("no GNU parallel here: the recipe runs by xargs");
+        recipe.replace("parallel --jobs 4", "xargs -P 4 -I{}")
+    };
+    fs::create_dir(place.path("bin")).unwrap();
+    std::os::unix::fs::symlink(PROGRAM, place.path("bin/reenact")).unwrap();
+    let mut command = Command::new("sh");
+    let path = format!("{}:/usr/bin:/bin", place.path("bin").display());
+    let script = script
+        .replace("study.yaml", "tiny.yaml")
+        .replace("--shard {}/8", "--shard {}/8 --no-cache");
+    let answer = Answer::of(place.dress(command.args(["-e", "-c", &script])).env("PATH", path));
+    assert_eq!(answer.code, 0, "{answer:?}");
+    let digest: Value = serde_json::from_str(&alone).unwrap();
+    let says = format!("results {}\n", digest["results_digest"].as_str().unwrap());
+    assert!(
+        answer.stdout.contains("; of 8 shards, none simulated here, ")
+            && answer.stdout.contains(&says),
+        "{answer:?}"
+    );
+}
+
 #[test]
 fn what_no_engine_can_run_is_told_before_anything_waits() {
     let place = place();

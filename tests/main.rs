@@ -26,6 +26,7 @@ mod own_worlds;
 mod robots;
 mod sandbox;
 mod shards;
+mod shared_store;
 mod standards;
 mod tutorial;
 mod verification;

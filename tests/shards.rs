@@ -4,6 +4,8 @@
 use crate::sandbox::{Sandbox, TINY};
 use reenact::bundle::{Archive, Bundle, Form, Limits, Tree};
 use reenact::merge::{Shard, merge};
+use reenact::plan::{Plan, Selection};
+use reenact::verify::plan_of;
 use serde_json::Value;
 use std::fs;
 
@@ -61,6 +63,24 @@ fn shards_are_of_about_the_same_cost_and_together_the_whole() {
     };
     let costs = shards.each_ref().map(|trials| cost(trials));
     assert!(costs.iter().max().unwrap() - costs.iter().min().unwrap() <= 20, "{costs:?}");
+}
+
+/// They say no `dealt`: every third trial in plan order.
+#[test]
+fn shards_of_earlier_releases_are_what_they_were() {
+    let place = place();
+    let zip = fs::read(place.path(&shard(&place, 1, 3))).unwrap();
+    let bundle = Bundle::read(&zip, &Limits::default()).unwrap();
+    let experiment = plan_of(&bundle).unwrap().0.experiment;
+    let written = r#"{"only":{},"trials":null,"shard":[2,3]}"#;
+    let once: Selection = serde_json::from_str(written).unwrap();
+    assert_eq!(serde_json::to_string(&once).unwrap(), written);
+    let keys = |plan: Plan| plan.trials.into_iter().map(|spec| spec.key).collect::<Vec<_>>();
+    let every_third = keys(Plan::of(experiment.clone())).into_iter().skip(1).step_by(3);
+    let every_third: Vec<_> = every_third.collect();
+    assert_eq!(keys(Plan::select(experiment.clone(), &once).unwrap()), every_third);
+    let now = Selection::parse(&[], None, Some("2/3")).unwrap();
+    assert_ne!(keys(Plan::select(experiment, &now).unwrap()), every_third);
 }
 
 #[test]

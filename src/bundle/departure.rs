@@ -1,7 +1,7 @@
 //! How a run departs from its manifest as it stands: values set on the command line, and a part of the plan only.
 
 use super::{format, visible};
-use crate::plan::{Dealt, ResolvedStudy, Selection};
+use crate::plan::{ResolvedStudy, Selection};
 use serde_json::Value;
 
 /// What `run` was told besides the manifest.
@@ -48,15 +48,11 @@ impl Departure {
     }
 
     /// Returns the line that gives this very run again in the folder of the sealed manifest; `None` where it cannot
-    /// stand on a line, and for shards as they were dealt once ([`Dealt::InOrder`]).
+    /// stand on a line.
     pub fn command(&self) -> Option<String> {
-        let part = self.selection.as_ref()?;
-        if part.shard.is_some_and(|(_, of)| of > 1) && part.dealt == Dealt::InOrder {
-            return None;
-        }
         let set = self.overrides.iter().flat_map(|set| ["--set".to_owned(), set.clone()]);
-        let words: Option<Vec<String>> =
-            set.chain(part.options()).map(|word| shell_word(&word)).collect();
+        let part = self.selection.as_ref()?.options();
+        let words: Option<Vec<String>> = set.chain(part).map(|word| shell_word(&word)).collect();
         let mut line = format!("reenact run {}", format::STUDY);
         for word in words? {
             line.push(' ');
@@ -93,7 +89,7 @@ mod tests {
         assert_eq!(whole.command().unwrap(), "reenact run study.yaml");
         let part = json!({
             "overrides": ["parameters.x=0", "title=it's $HOME"],
-            "selection": {"only": {"prior": ["none", "floor plan"]}, "trials": 1, "shard": [1, 2], "dealt": "by-cost"},
+            "selection": {"only": {"prior": ["none", "floor plan"]}, "trials": 1, "shard": [1, 2]},
         });
         let part = of(part, true);
         assert_eq!(
@@ -105,13 +101,6 @@ mod tests {
             "reenact run study.yaml --set parameters.x=0 --set 'title=it'\\''s $HOME' --only 'prior=none,floor plan' --trials 1 \
              --shard 1/2"
         );
-    }
-
-    #[test]
-    fn a_shard_as_it_was_dealt_once_has_no_command() {
-        let once = of(json!({"selection": {"only": {}, "trials": null, "shard": [1, 2]}}), true);
-        assert_eq!(once.in_words().unwrap(), "partial: --shard 1/2");
-        assert_eq!(once.command(), None);
     }
 
     #[test]

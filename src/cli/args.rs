@@ -318,7 +318,7 @@ pub(super) struct CacheArgs {
     pub(super) action: CacheAction,
 }
 
-#[derive(Debug, Clone, Copy, Subcommand)]
+#[derive(Debug, Clone, Subcommand)]
 pub(super) enum CacheAction {
     /// Print where it is
     Dir,
@@ -326,6 +326,40 @@ pub(super) enum CacheAction {
     Size,
     /// Remove what no run wrote to for some days: trials that are wanted again are simulated again
     Prune(PruneArgs),
+    /// Hold every record against its digest, and records of one trial against one another
+    Verify(CacheVerifyArgs),
+    /// Put small files together, without records that are there twice and damaged ones; safe beside running processes
+    Gc,
+    /// Write records to one file, to move them to another store
+    Export(CacheExportArgs),
+    /// Take in a file of `export`: all of it, or nothing where anything is wrong with it
+    Import(CacheImportArgs),
+}
+
+#[derive(Debug, Clone, Args)]
+pub(super) struct CacheVerifyArgs {
+    /// How the answer is written
+    #[arg(long, value_enum, default_value = "human")]
+    pub(super) format: DataFormat,
+}
+
+#[derive(Debug, Clone, Args)]
+pub(super) struct CacheExportArgs {
+    /// Manifests whose trials are wanted, as far as they are there [default: all there is]
+    pub(super) manifests: Vec<PathBuf>,
+    /// The file to write
+    #[arg(short, long, value_name = "PACK")]
+    pub(super) output: PathBuf,
+    /// Replace a value of the manifests (repeatable)
+    #[arg(long, value_name = "PATH=VALUE", requires = "manifests")]
+    pub(super) set: Vec<String>,
+}
+
+#[derive(Debug, Clone, Args)]
+pub(super) struct CacheImportArgs {
+    /// The files to take in
+    #[arg(required = true)]
+    pub(super) packs: Vec<PathBuf>,
 }
 
 #[derive(Debug, Clone, Copy, Args)]

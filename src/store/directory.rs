@@ -1,8 +1,9 @@
 //! Finished trials in a directory that many processes share.
 
+use super::lines::files_of_one;
 use super::segments::{Segments, decode, encode};
 use super::{kind_of, partial, read, reason};
-use crate::digest::TrialKey;
+use crate::digest::{Sha256Digest, TrialKey};
 use crate::runner::{StoreError, TrialStore};
 use crate::studies::{Outcome, TrialRecord};
 use fs_err as fs;
@@ -82,6 +83,20 @@ impl DirectoryStore {
             }
         }
         Ok((records, bytes))
+    }
+
+    /// Returns the keys of all trials that are there, damaged records among them.
+    ///
+    /// # Errors
+    /// Where the store cannot be read; an absent one is empty.
+    pub(super) fn keys(&self) -> Result<Vec<TrialKey>, StoreError> {
+        let unread = |e: io::Error| self.refusal("read", &e);
+        let mut keys = self.segments.keys().map_err(unread)?;
+        for path in files_of_one(&self.root).map_err(unread)? {
+            let name = path.file_stem().and_then(|name| name.to_str());
+            keys.extend(name.and_then(Sha256Digest::from_hex).map(TrialKey));
+        }
+        Ok(keys)
     }
 
     /// Returns what is there now, for many questions at once: a question to the store itself looks for what other processes
@@ -196,7 +211,6 @@ impl TrialStore for DirectoryStore {
 mod tests {
     use super::*;
     use crate::bundle::sample;
-    use crate::digest::Sha256Digest;
 
     /// Returns the only segment of the store.
     fn segment(store: &DirectoryStore) -> PathBuf {

@@ -78,6 +78,11 @@ impl Partial {
         self.file.as_file().sync_all()
     }
 
+    /// Writes `bytes`, which last once [`Self::write`] has written what comes last.
+    pub(super) fn begin(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.file.write_all(bytes)
+    }
+
     /// Renames it to `path`, whatever is there.
     pub(super) fn persist(self, path: &Path) -> io::Result<()> {
         self.file.persist(path).map(drop).map_err(|e| e.error)

@@ -45,6 +45,7 @@ struct State {
 #[derive(Debug)]
 struct Segment {
     file: Arc<Mutex<File>>,
+    identity: Identity,
     /// Up to the end of its last whole line.
     to: u64,
 }
@@ -86,7 +87,13 @@ impl Segments {
             // Another process may have finished it since.
             self.look()?;
         }
-        self.seen(key)
+        let records = self.seen(key)?;
+        if known && records.is_empty() {
+            // What was there is gone, as when another machine put files together: it may be in another one now.
+            self.look()?;
+            return self.seen(key);
+        }
+        Ok(records)
     }
 
     /// Returns every whole record that stood under `key` at the last look.
@@ -94,7 +101,11 @@ impl Segments {
         let places = self.lock().places.get(key).cloned().unwrap_or_default();
         let mut records = Vec::new();
         for place in places {
-            records.extend(decode(&place.read()?));
+            match place.read() {
+                Ok(line) => records.extend(decode(&line)),
+                Err(e) if is_gone(&e) => {}
+                Err(e) => return Err(e),
+            }
         }
         Ok(records)
     }
@@ -124,6 +135,13 @@ impl Segments {
         Ok((state.places.len(), state.read.values().map(|segment| segment.to).sum()))
     }
 
+    /// Returns the keys of all trials that have a line.
+    pub(super) fn keys(&self) -> io::Result<Vec<TrialKey>> {
+        let mut state = self.lock();
+        state.read_on(&self.folder)?;
+        Ok(state.places.keys().copied().collect())
+    }
+
     /// Returns what was met that is no file, and what it is; each once.
     pub(super) fn odd(&self) -> BTreeSet<(PathBuf, &'static str)> {
         std::mem::take(&mut self.lock().odd)
@@ -142,19 +160,40 @@ impl State {
                 self.odd.insert((path, found));
                 continue;
             }
-            let length = fs::metadata(&path)?.len();
-            let segment = match self.read.entry(path) {
-                Entry::Occupied(known) => known.into_mut(),
-                Entry::Vacant(new) => {
-                    let (file, _) = open(new.key())?.into_parts();
-                    new.insert(Segment { file: Arc::new(Mutex::new(file)), to: 0 })
+            match self.read_file(path) {
+                // Between the listing and the opening another process removed it.
+                Err(e) if is_gone(&e) => {}
+                read => read?,
+            }
+        }
+        Ok(())
+    }
+
+    fn read_file(&mut self, path: PathBuf) -> io::Result<()> {
+        let metadata = fs::metadata(&path)?;
+        let opened = |path: &Path| -> io::Result<Segment> {
+            let (file, _) = open(path)?.into_parts();
+            let identity = identity(&file.metadata()?);
+            Ok(Segment { file: Arc::new(Mutex::new(file)), identity, to: 0 })
+        };
+        let segment = match self.read.entry(path) {
+            Entry::Occupied(mut known) => {
+                // A tool that copies stores puts a new file in the place of the old one.
+                if known.get().identity != identity(&metadata) {
+                    let anew = opened(known.key())?;
+                    known.insert(anew);
                 }
-            };
-            if length > segment.to {
-                for (key, place) in segment.read_on()? {
-                    // One is all there is of nearly every trial, and there may be a million.
-                    self.places.entry(key).or_insert_with(|| Vec::with_capacity(1)).push(place);
-                }
+                known.into_mut()
+            }
+            Entry::Vacant(new) => {
+                let segment = opened(new.key())?;
+                new.insert(segment)
+            }
+        };
+        if metadata.len() > segment.to {
+            for (key, place) in segment.read_on()? {
+                // One is all there is of nearly every trial, and there may be a million.
+                self.places.entry(key).or_insert_with(|| Vec::with_capacity(1)).push(place);
             }
         }
         Ok(())
@@ -170,14 +209,8 @@ impl Segment {
         let mut reader = BufReader::with_capacity(1 << 16, &mut *file);
         let (mut places, mut line) = (Vec::new(), Vec::new());
         loop {
-            line.clear();
-            let mut length = reader.by_ref().take(MOST_RECORD).read_until(b'\n', &mut line)? as u64;
-            if length == MOST_RECORD && line.last() != Some(&b'\n') {
-                // Too long to be one.
-                line.clear();
-                length += reader.skip_until(b'\n')? as u64;
-            } else if line.last() != Some(&b'\n') {
-                // The end, or a line that is being written or never will be whole.
+            let (ended, length) = next_line(&mut reader, &mut line)?;
+            if ended == Ended::Nowhere {
                 return Ok(places);
             }
             if let Some(key) = key_of(&line) {
@@ -231,6 +264,9 @@ impl Own {
                 Err(TryLockError::Error(_)) if !is_new => continue,
                 Ok(()) | Err(TryLockError::Error(_)) => {}
             }
+            if !is_at(&file, &path) {
+                continue;
+            }
             let mut own = Self(file);
             own.end_line()?;
             return Ok(own);
@@ -247,6 +283,76 @@ impl Own {
         }
         if last == [b'\n'] { Ok(()) } else { self.0.write_all(b"\n") }
     }
+}
+
+/// How a line of a file of records ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Ended {
+    /// With a line feed.
+    Whole,
+    /// With a line feed, and longer than a record can be: nothing of it was kept.
+    TooLong,
+    /// With the file: there is none, or it is being written, or it never will be whole.
+    Nowhere,
+}
+
+/// Reads the next line, with its end, into `line`; returns how it ends, and its length in the file (bytes).
+pub(super) fn next_line(
+    reader: &mut impl io::BufRead,
+    line: &mut Vec<u8>,
+) -> io::Result<(Ended, u64)> {
+    line.clear();
+    let length = reader.by_ref().take(MOST_RECORD).read_until(b'\n', line)? as u64;
+    if line.last() == Some(&b'\n') {
+        return Ok((Ended::Whole, length));
+    }
+    if length < MOST_RECORD {
+        return Ok((Ended::Nowhere, length));
+    }
+    line.clear();
+    let rest = reader.skip_until(b'\n')? as u64;
+    Ok((Ended::TooLong, length + rest))
+}
+
+/// Says whether an error means that a file is there no more: removed here, or on another machine of a network file system.
+pub(super) fn is_gone(error: &io::Error) -> bool {
+    matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::StaleNetworkFileHandle)
+}
+
+/// What tells a file from another one of the same name; nothing where the system does not say.
+type Identity = Option<(u64, u64)>;
+
+#[cfg(unix)]
+#[expect(clippy::unnecessary_wraps, reason = "other systems do not say")]
+fn identity(metadata: &fs::Metadata) -> Identity {
+    use std::os::unix::fs::MetadataExt as _;
+    Some((metadata.dev(), metadata.ino()))
+}
+
+#[cfg(not(unix))]
+fn identity(_: &fs::Metadata) -> Identity {
+    None
+}
+
+/// Opens the file of records at `path` and takes its lock; `None` where another process has it, or where it is there no more.
+pub(super) fn locked(path: &Path) -> io::Result<Option<File>> {
+    // Network file systems lock only what is open for writing.
+    let file = match fs::OpenOptions::new().read(true).append(true).open(path) {
+        Ok(file) => file,
+        Err(e) if is_gone(&e) => return Ok(None),
+        Err(e) => return Err(e),
+    };
+    if matches!(file.try_lock(), Err(TryLockError::WouldBlock)) || !is_at(&file, path) {
+        return Ok(None);
+    }
+    Ok(Some(file))
+}
+
+/// Returns whether an opened file is still the one at `path`: whoever tidies up may have come between opening and locking, and
+/// what is written to a file without a name is lost.
+fn is_at(file: &File, path: &Path) -> bool {
+    let of = |metadata: io::Result<fs::Metadata>| metadata.ok().map(|found| identity(&found));
+    of(file.metadata()) == of(fs::metadata(path))
 }
 
 /// Returns everything in `folder` that is called as a segment is, in the order of the names; nothing where it is absent.
@@ -275,7 +381,7 @@ pub(super) fn encode(record: &TrialRecord) -> Vec<u8> {
 }
 
 /// Returns the key that a line begins with.
-fn key_of(line: &[u8]) -> Option<TrialKey> {
+pub(super) fn key_of(line: &[u8]) -> Option<TrialKey> {
     let hex = line.strip_prefix(HEAD.as_bytes())?.get(..64)?;
     Some(TrialKey(Sha256Digest::from_hex(std::str::from_utf8(hex).ok()?)?))
 }
