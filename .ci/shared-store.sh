@@ -13,6 +13,8 @@ reenact=$1 kills=${2:-100} seed=${3:-$(od -An -N2 -tu2 /dev/urandom | tr -d ' ')
 RANDOM=$seed
 study=(run manifests/quickstart.yaml --trials 20 --set parameters.mission.time-limit-s=8 --jobs 1 --format json)
 
+# Without the shell's own notes about processes that were killed.
+exec 2> >(grep -v " Killed " >&2 || true)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 killed=0
