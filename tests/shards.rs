@@ -219,7 +219,7 @@ fn shards_that_contradict_one_another_or_their_part_are_refused() {
             .iter()
             .zip(["a.zip", "b.zip", "c.zip"])
             .map(|(tree, name)| {
-                let archive = Archive { form: Form::Bag, tree: (*tree).clone() };
+                let archive = Archive::of(Form::Bag, (*tree).clone());
                 Shard { name: name.to_owned(), bundle: Bundle::open(archive).unwrap() }
             })
             .collect();

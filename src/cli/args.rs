@@ -353,6 +353,9 @@ pub(super) struct CacheExportArgs {
     /// Replace a value of the manifests (repeatable)
     #[arg(long, value_name = "PATH=VALUE", requires = "manifests")]
     pub(super) set: Vec<String>,
+    /// A folder from which files of robots and worlds may be read that they name by a path out of theirs (repeatable)
+    #[arg(long, value_name = "FOLDER", requires = "manifests")]
+    pub(super) allow: Vec<PathBuf>,
 }
 
 #[derive(Debug, Clone, Args)]

@@ -12,7 +12,7 @@ use crate::provenance;
 use crate::studies::TrialRecord;
 use fs_err as fs;
 use std::fs::File;
-use std::io;
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -81,7 +81,7 @@ impl Packing {
 
     /// Makes it last, named after what is in it; returns its path and length (bytes).
     pub(super) fn publish(mut self) -> io::Result<(PathBuf, u64)> {
-        self.file.write(&self.gathered)?;
+        self.file.write_with(|out| out.write_all(&self.gathered))?;
         let digest: Sha256Digest = self.hasher.digest();
         let path = self.folder.join(format!("{PACKED}{}.jsonl", &digest.hex()[..16]));
         self.file.persist(&path)?;

@@ -18,7 +18,7 @@ use crate::digest::{Hasher, Sha256Digest, TrialKey};
 use crate::runner::{StoreError, TrialStore as _};
 use crate::studies::{Outcome, TrialRecord};
 use fs_err as fs;
-use std::io::{self, BufRead, BufReader};
+use std::io::{self, BufRead, BufReader, Write as _};
 use std::path::Path;
 use thiserror::Error;
 
@@ -252,7 +252,7 @@ impl DirectoryStore {
             return Ok(None);
         }
         let digest = hasher.digest();
-        file.write(format!("{{\"records\":{records},\"sha256\":\"{digest}\"}}\n").as_bytes())?;
+        file.write_with(|out| writeln!(out, "{{\"records\":{records},\"sha256\":\"{digest}\"}}"))?;
         file.persist(path)?;
         sync_folder(folder)?;
         Ok(Some(records))

@@ -78,7 +78,7 @@ impl Partial {
         self.file.as_file().sync_all()
     }
 
-    /// Writes `bytes`, which last once [`Self::write`] has written what comes last.
+    /// Writes `bytes`, which last once [`Self::write_with`] has written what comes last.
     pub(super) fn begin(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.file.write_all(bytes)
     }

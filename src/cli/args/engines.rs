@@ -39,6 +39,9 @@ pub(in crate::cli) struct SubmitArgs {
     /// Into how many shards the study is divided
     #[arg(long, value_name = "N")]
     pub(in crate::cli) shards: NonZero<u32>,
+    /// A folder from which files of robots and worlds may be read that they name by a path out of theirs (repeatable)
+    #[arg(long, value_name = "FOLDER")]
+    pub(in crate::cli) allow: Vec<PathBuf>,
     /// Print what would be submitted, and submit and write nothing
     #[arg(long)]
     pub(in crate::cli) dry_run: bool,
@@ -107,7 +110,8 @@ pub(in crate::cli) struct KubernetesArgs {
 
 impl From<&SubmitArgs> for SelectArgs {
     fn from(args: &SubmitArgs) -> Self {
-        let SubmitArgs { only, trials, set, .. } = args;
-        Self { only: only.clone(), trials: *trials, shard: None, set: set.clone() }
+        let SubmitArgs { only, trials, set, allow, .. } = args;
+        let (only, set, allow) = (only.clone(), set.clone(), allow.clone());
+        Self { only, trials: *trials, shard: None, set, allow }
     }
 }

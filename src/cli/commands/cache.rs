@@ -140,7 +140,8 @@ fn export(
     let mut wanted: Vec<TrialKey> = Vec::new();
     for manifest in &args.manifests {
         // What a calibration measured is part of the trials' keys.
-        let loaded = load::manifest(manifest, &args.set, Calibrator::Stored(store), terminal)?;
+        let given = load::Given { set: &args.set, allow: &args.allow };
+        let loaded = load::manifest(manifest, given, Calibrator::Stored(store), terminal)?;
         let calibration =
             loaded.experiment.calibration.as_deref().map(|run| run.experiment.clone());
         let plans = [Some(loaded.experiment), calibration].into_iter().flatten().map(Plan::of);

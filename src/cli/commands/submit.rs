@@ -22,7 +22,7 @@ struct Work {
     /// How many trials are divided.
     trials: u64,
     shards: u32,
-    /// `--set`, `--only` and `--trials` as the command line writes them.
+    /// `--set`, `--allow`, `--only` and `--trials` as the command line writes them.
     options: Vec<String>,
 }
 
@@ -33,7 +33,8 @@ pub(in crate::cli) fn run(
     terminal: Terminal,
 ) -> Result<Exit, Failure> {
     // What would fail in every shard is told before anything waits in a queue.
-    let loaded = load::manifest(&args.manifest, &args.set, Calibrator::StandIn, terminal)?;
+    let given = load::Given { set: &args.set, allow: &args.allow };
+    let loaded = load::manifest(&args.manifest, given, Calibrator::StandIn, terminal)?;
     let select = SelectArgs::from(args);
     let selection = Selection::parse(&select.only, select.trials, None);
     let selection = selection.map_err(Failure::not_understood)?;
@@ -48,7 +49,9 @@ pub(in crate::cli) fn run(
         )));
     }
     let set = args.set.iter().flat_map(|set| ["--set".to_owned(), set.clone()]);
-    let options = set.chain(selection.options()).collect();
+    let allowed = args.allow.iter().map(|folder| folder.display().to_string());
+    let allow = allowed.flat_map(|folder| ["--allow".to_owned(), folder]);
+    let options = set.chain(allow).chain(selection.options()).collect();
     let work = Work { name, trials, shards, options };
     match args.engine {
         Engine::Slurm => slurm::submit(&work, args, environment, terminal),
