@@ -17,7 +17,7 @@ pub use partial::abandon;
 pub use prune::Pruned;
 pub use scratch::{DiskScratch, room};
 
-use crate::bundle::{Archive, Content, Fault, archive};
+use crate::bundle::{Archive, Content, Fault, Source, archive};
 use fs_err as fs;
 use partial::Partial;
 use scratch::InFile;
@@ -192,8 +192,8 @@ pub fn open_bundle(
         if metadata.len() > limits.bytes {
             return Ok(too_big(Some(metadata.len())));
         }
-        let source = Arc::new(InFile(file.into_parts().0));
-        return archive::read_from(source, metadata.len(), limits);
+        let source: Arc<dyn Source> = Arc::new(InFile(file.into_parts().0));
+        return archive::read_from(&source, metadata.len(), limits);
     }
     let (mut files, mut faults, mut total, mut held, mut entries) =
         (Vec::new(), Vec::new(), 0, 0, 0);

@@ -193,12 +193,12 @@ pub fn read(bytes: &[u8], limits: &Limits) -> Result<Archive, Vec<Fault>> {
 /// # Errors
 /// Where it cannot be read; what is wrong with it is data, as for [`read`].
 pub fn read_from(
-    source: Arc<dyn Source>,
+    source: &Arc<dyn Source>,
     length: u64,
     limits: &Limits,
 ) -> io::Result<Result<Archive, Vec<Fault>>> {
     let failed = RefCell::new(None);
-    let files = contents(&Raw::new(&*source, length, &failed), Some(&source), limits);
+    let files = contents(&Raw::new(&**source, length, &failed), Some(source), limits);
     match failed.into_inner() {
         Some(error) => Err(error),
         None => Ok(files.map_err(Vec::from).and_then(|f| locate(f).map_err(|fault| vec![fault]))),
@@ -210,7 +210,7 @@ fn is_streamed(path: &str) -> bool {
     let name = path.rsplit('/').next().unwrap_or_default();
     let folder = path.strip_suffix(name).unwrap_or_default();
     let is_in = |within: &str| folder == within || folder.ends_with(&format!("/{within}"));
-    is_in(format::TRIALS) && name.ends_with(".jsonl")
+    is_in(format::TRIALS) && name.rsplit_once('.').is_some_and(|(_, kind)| kind == "jsonl")
         || is_in(format::RESULTS) && ["trials.csv", "series.csv"].contains(&name)
 }
 

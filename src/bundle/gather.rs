@@ -120,14 +120,12 @@ impl<'a> Gathering<'a> {
 pub fn in_parts<'l>(lines: impl IntoIterator<Item = &'l str>) -> Vec<Content> {
     let mut parts: Vec<Vec<u8>> = Vec::new();
     for line in lines {
-        let fits = |part: &&mut Vec<u8>| (part.len() + line.len()) as u64 + 1 <= format::PART;
-        let part = match parts.last_mut().filter(fits) {
-            Some(part) => part,
-            None => {
-                parts.push(Vec::new());
-                parts.last_mut().expect("one was pushed")
-            }
-        };
+        // With its line feed.
+        let is_full = |part: &Vec<u8>| (part.len() + line.len()) as u64 >= format::PART;
+        if parts.last().is_none_or(is_full) {
+            parts.push(Vec::new());
+        }
+        let part = parts.last_mut().expect("there is one");
         part.extend_from_slice(line.as_bytes());
         part.push(b'\n');
     }

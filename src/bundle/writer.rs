@@ -273,6 +273,7 @@ fn payload_of(tree: &Tree) -> Tree {
 }
 
 /// What a bag says of its payload.
+#[derive(Clone, Copy)]
 struct Facts {
     format: u64,
     digests: (ResultsDigest, StudyDigest),

@@ -217,27 +217,19 @@ impl Observations {
             });
             let read: Measures = read.collect();
             let TrialColumns { values, numbers, outcomes, .. } = here;
-            match places.get(&values) {
-                // In plan order a condition does not begin anew, unless its records were written by somebody else.
-                Some(&known) => {
-                    let known = &mut conditions[known];
-                    known.numbers.extend(numbers);
-                    known.outcomes.extend(outcomes);
-                    for (name, column) in read {
-                        known.measures.entry(name).or_default().extend(column);
-                    }
+            // In plan order a condition does not begin anew, unless its records were written by somebody else.
+            if let Some(&known) = places.get(&values) {
+                let known = &mut conditions[known];
+                known.numbers.extend(numbers);
+                known.outcomes.extend(outcomes);
+                for (name, column) in read {
+                    known.measures.entry(name).or_default().extend(column);
                 }
-                None => {
-                    places.insert(values.clone(), conditions.len());
-                    let shares = BTreeMap::new();
-                    conditions.push(ConditionTrials {
-                        values,
-                        numbers,
-                        outcomes,
-                        measures: read,
-                        shares,
-                    });
-                }
+            } else {
+                places.insert(values.clone(), conditions.len());
+                let shares = BTreeMap::new();
+                let trials = ConditionTrials { values, numbers, outcomes, measures: read, shares };
+                conditions.push(trials);
             }
         }
         Self::of(factors, measures, conditions)

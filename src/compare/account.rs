@@ -90,11 +90,11 @@ pub struct ResultFile {
 pub(super) const SIM_SECONDS: &str = "sim-seconds";
 
 impl Told {
-    fn of(record: TrialRecord) -> Box<Self> {
+    fn of(record: TrialRecord) -> Self {
         let mut measures = record.measures;
         measures.insert(SIM_SECONDS, Some(record.sim_seconds));
         let outcome = record.outcome.name().to_owned();
-        Box::new(Self { outcome, cause: record.cause, measures, chain: record.chain })
+        Self { outcome, cause: record.cause, measures, chain: record.chain }
     }
 }
 
@@ -170,7 +170,7 @@ impl Account {
                         }
                         let (key, number) = (record.key, record.trial);
                         let sha256 = Sha256Digest::of(line.text);
-                        let told = tells(&sha256).then(|| Told::of(record));
+                        let told = tells(&sha256).then(|| Box::new(Told::of(record)));
                         known.push(TrialAccount { key, number, sha256, told });
                     }
                     Err(problem) => {

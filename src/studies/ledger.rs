@@ -155,16 +155,13 @@ impl Group {
         }
         for (name, value) in &record.measures {
             let value = value.unwrap_or(f64::NAN);
-            match self.measures.get_mut(name) {
-                Some(column) => {
-                    column.resize(row, f64::NAN);
-                    column.push(value);
-                }
-                None => {
-                    let mut column = vec![f64::NAN; row];
-                    column.push(value);
-                    self.measures.insert(name.to_owned(), column);
-                }
+            if let Some(column) = self.measures.get_mut(name) {
+                column.resize(row, f64::NAN);
+                column.push(value);
+            } else {
+                let mut column = vec![f64::NAN; row];
+                column.push(value);
+                self.measures.insert(name.to_owned(), column);
             }
         }
         if !record.series.is_empty() {

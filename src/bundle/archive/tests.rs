@@ -63,6 +63,10 @@ fn sizes_of_eight_bytes_are_read_as_they_are_written() {
     assert_eq!(read(&zip, &Limits::default()).unwrap().tree, sealed.tree);
 }
 
+fn elsewhere(bytes: Vec<u8>) -> Arc<dyn Source> {
+    Arc::new(bytes)
+}
+
 #[test]
 fn large_files_stay_where_they_are() {
     let mut tree = sample::sealed().tree;
@@ -73,7 +77,7 @@ fn large_files_stay_where_they_are() {
         let zip = write(&tree, "b", form);
         let length = zip.len() as u64;
         let archive =
-            read_from(Arc::new(zip.clone()), length, &Limits::default()).unwrap().unwrap();
+            read_from(&elsewhere(zip.clone()), length, &Limits::default()).unwrap().unwrap();
         let paths: Vec<&String> = archive.large.keys().collect();
         assert_eq!(paths, ["data/trials/none.jsonl"], "{form:?}");
         let file = archive.files().get("data/trials/none.jsonl").unwrap();
@@ -81,7 +85,7 @@ fn large_files_stay_where_they_are() {
         assert_eq!((file.whole(1 << 20), file.line_count()), (None, 20_000));
         assert!(write_files(archive.files(), "b", form) == zip, "written as it was");
         let few = Limits { held: 1 << 20, ..Limits::default() };
-        let refused = read_from(Arc::new(zip), length, &few).unwrap().unwrap_err();
+        let refused = read_from(&elsewhere(zip), length, &few).unwrap().unwrap_err();
         let told: Vec<String> = refused.iter().map(ToString::to_string).collect();
         assert!(
             told[0].starts_with(
@@ -96,7 +100,7 @@ fn large_files_stay_where_they_are() {
 fn a_bundle_that_is_larger_than_the_reader_admits_says_how_to_admit_it() {
     let (zip, small) = (sample::zip(), Limits { bytes: 1000, ..Limits::default() });
     let length = zip.len() as u64;
-    let refused = read_from(Arc::new(zip.to_vec()), length, &small).unwrap().unwrap_err();
+    let refused = read_from(&elsewhere(zip.to_vec()), length, &small).unwrap().unwrap_err();
     let told = refused[0].to_string();
     assert!(
         told.starts_with(&format!("(archive): expected at most 1000 bytes unpacked from {length}, found "))
