@@ -318,6 +318,39 @@ mod tests {
         assert!(crate::provenance::kernel().is_none() || segments() == before);
     }
 
+    /// As a network file system or a tool that copies stores shows it.
+    #[cfg(unix)]
+    #[test]
+    fn a_file_of_another_machine_that_comes_by_halves_or_anew_is_read_as_far_as_it_is_whole() {
+        let directory = tempfile::tempdir().unwrap();
+        let store = DirectoryStore::new(directory.path());
+        let folder = directory.path().join("segments");
+        fs::create_dir_all(&folder).unwrap();
+        let record = |trial| sample::record(7, "none", trial);
+        let lines = [0, 1, 2].map(|trial| encode(&record(trial)));
+        let path = folder.join("0badcafe-0.jsonl");
+        let (half, rest) = lines[0].split_at(200);
+        fs::write(&path, half).unwrap();
+        assert_eq!(store.get(&record(0).key).unwrap(), None);
+        let append = |bytes: &[u8]| {
+            use std::io::Write as _;
+            let mut file = fs::OpenOptions::new().append(true).open(&path).unwrap();
+            file.write_all(bytes).unwrap();
+        };
+        append(rest);
+        append(&lines[1][..50]);
+        assert_eq!(store.get(&record(0).key).unwrap(), Some(record(0)));
+        assert_eq!(store.get(&record(1).key).unwrap(), None);
+        // Copied anew, whole, and longer than before.
+        fs::write(folder.join("copy"), lines.concat()).unwrap();
+        fs::rename(folder.join("copy"), &path).unwrap();
+        for trial in [1, 2, 0] {
+            assert_eq!(store.get(&record(trial).key).unwrap(), Some(record(trial)));
+        }
+        fs::remove_file(&path).unwrap();
+        assert_eq!(store.get(&record(9).key).unwrap(), None, "nor does its end disturb anybody");
+    }
+
     #[test]
     fn a_store_of_a_file_for_each_record_is_read() {
         let directory = tempfile::tempdir().unwrap();
