@@ -189,9 +189,9 @@ fn a_plan_is_shown_before_its_calibration_has_run() {
     let listed = "--------  A_68_frontier/0  to do\n--------  A_68_frontier/1  to do\n2 trials: 0 done, 2 to do\n";
     let foretold = answer.stdout.strip_prefix(listed).unwrap_or_default();
     assert!(
-        foretold.starts_with("bundle: at least 0.")
+        foretold.starts_with("bundle: at least ")
             && foretold.ends_with(
-                " MB unpacked; memory: at least 31 MB (no record of this plan is in the store: `reenact run --trials 1` puts one \
+                " kB unpacked; memory: at least 31 MB (no record of this plan is in the store: `reenact run --trials 1` puts one \
                  of each condition there)\n"
             ),
         "{}",
@@ -328,7 +328,7 @@ fn what_could_not_be_sealed_is_refused_before_it_is_run() {
     assert!(
         answer.stderr.starts_with("error: nothing was run: the bundle of ")
             && answer.stderr.ends_with(
-                "expected at most 0.0 MB, so that anyone can check it; run fewer trials (--trials), run the study in parts \
+                "expected at most 10 kB, so that anyone can check it; run fewer trials (--trials), run the study in parts \
                  (--only), or allow it more with --max-size, as whoever checks it must too\n"
             ),
         "{}",
@@ -340,8 +340,8 @@ fn what_could_not_be_sealed_is_refused_before_it_is_run() {
     let plan = desk.done(&["plan", "demo/demo.yaml"]);
     let foretold = plan.lines().last().unwrap();
     assert!(
-        foretold.starts_with("bundle: about 0.")
-            && foretold.contains(" MB unpacked; memory: about ")
+        foretold.starts_with("bundle: about ")
+            && foretold.contains(" kB unpacked; memory: about ")
             && foretold.ends_with(" core hours in all (by 1 record in the store)"),
         "{foretold}"
     );

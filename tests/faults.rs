@@ -123,15 +123,23 @@ fn a_full_disk_ends_the_run_and_loses_no_finished_trial() {
 }
 
 #[test]
-fn a_full_disk_leaves_no_half_bundle_and_the_trials_stay() {
+fn a_disk_without_room_is_told_before_anything_is_run() {
     let place = place();
     let Some(out) = Mounted::tmpfs(place.path("out"), "size=8k") else { return };
-    let results = UNDISTURBED.strip_prefix("sha256:").unwrap();
-    let says = format!("cannot write `out/tiny-{}.zip`: the disk is full", &results[..8]);
-    failed(&run(&place, "store", "out"), &says);
+    let refused = run(&place, "store", "out");
+    assert_eq!((refused.stdout.as_str(), refused.code), ("", 2));
+    assert!(
+        refused
+            .stderr
+            .starts_with("error: nothing was run: the bundle of 6 trials would hold at least ")
+            && refused.stderr.contains(" kB free in `out`, found 8 kB; ")
+            && refused.stderr.ends_with("free some space, or choose another folder with --out\n"),
+        "{}",
+        refused.stderr
+    );
     assert_eq!(place.files("out"), [] as [PathBuf; 0]);
     out.remount("size=1m");
-    assert_eq!(finished(&run(&place, "store", "out")), (UNDISTURBED.clone(), 6));
+    assert_eq!(finished(&run(&place, "store", "out")), (UNDISTURBED.clone(), 0));
 }
 
 #[test]

@@ -90,7 +90,8 @@ impl Archive {
 
 /// Writes `tree` as a zip, `bagit.txt` first, then the other tag files, then the payload, each sorted.
 ///
-/// Fixed dates, permissions and compression, and each file compressed in one piece: equal trees give equal bytes.
+/// Fixed dates, permissions and compression, and each file compressed in pieces that its size alone decides: equal trees give equal
+/// bytes.
 pub fn write(tree: &Tree, root: &str, form: Form) -> Vec<u8> {
     write_files(Files { tree, large: &LargeFiles::new() }, root, form)
 }
@@ -150,17 +151,35 @@ fn pack<'a, W: Write + Seek>(
     let mut zip = ZipWriter::new(out);
     for (name, file) in files {
         zip.start_file(name, options.large_file(file.size() > NEEDS_EIGHT_BYTES))?;
-        match file {
-            FileRef::Held(bytes) => zip.write_all(bytes)?,
-            FileRef::Large(large) => {
-                let copied = io::copy(&mut large.reader(), &mut zip)?;
-                if copied != large.size() {
-                    return Err(io::ErrorKind::UnexpectedEof.into());
-                }
+        let copied = match file {
+            FileRef::Held(bytes) if file.size() <= HELD => {
+                zip.write_all(bytes)?;
+                file.size()
             }
+            _ => in_blocks(file, &mut zip)?,
+        };
+        if copied != file.size() {
+            return Err(io::ErrorKind::UnexpectedEof.into());
         }
     }
     Ok(zip.finish()?)
+}
+
+/// Writes `file` to `out`, and returns how many bytes it has. The compressor notices how its input is cut: by size alone, so that
+/// equal files give equal bytes, wherever they are.
+fn in_blocks(file: FileRef<'_>, out: &mut impl Write) -> io::Result<u64> {
+    const BLOCK: u64 = 64 << 10;
+    let step = if file.size() <= HELD { HELD } else { BLOCK };
+    let (mut reader, mut block, mut copied) = (file.reader(), Vec::new(), 0);
+    loop {
+        block.clear();
+        let count = reader.by_ref().take(step).read_to_end(&mut block)?;
+        if count == 0 {
+            return Ok(copied);
+        }
+        out.write_all(&block)?;
+        copied += count as u64;
+    }
 }
 
 /// Reads a zip that is in memory; all its files are held there.

@@ -191,11 +191,12 @@ impl Forecast {
 /// What to do where a bundle would have too many files.
 const PARTS: &str = "run the study in parts (--only)";
 
-/// Writes a number of bytes as exactly as it deserves: `0.4 MB`, `31 MB`, `5.1 GB`.
+/// Writes a number of bytes as exactly as it deserves: `62 kB`, `4.1 MB`, `31 MB`, `5.1 GB`.
 fn in_bytes(bytes: u64) -> String {
-    let (mega, giga) = (real(bytes) / 1e6, real(bytes) / 1e9);
+    let (kilo, mega, giga) = (real(bytes) / 1e3, real(bytes) / 1e6, real(bytes) / 1e9);
     match bytes {
-        0..10_000_000 => format!("{mega:.1} MB"),
+        0..1_000_000 => format!("{kilo:.0} kB"),
+        1_000_000..10_000_000 => format!("{mega:.1} MB"),
         10_000_000..1_000_000_000 => format!("{mega:.0} MB"),
         _ => format!("{giga:.1} GB"),
     }
@@ -226,8 +227,9 @@ mod tests {
 
     #[test]
     fn sizes_are_as_exact_as_they_deserve() {
-        let words = [0, 449_999, 12_345_678, 999_000_000, 5_100_000_000].map(in_bytes);
-        assert_eq!(words, ["0.0 MB", "0.4 MB", "12 MB", "999 MB", "5.1 GB"]);
+        let bytes = [0, 449_999, 4_100_000, 12_345_678, 999_000_000, 5_100_000_000];
+        let words = ["0 kB", "450 kB", "4.1 MB", "12 MB", "999 MB", "5.1 GB"];
+        assert_eq!(bytes.map(in_bytes), words);
     }
 
     #[test]
