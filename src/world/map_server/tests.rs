@@ -218,7 +218,8 @@ proptest! {
     fn damaged_descriptors_never_panic(edits in edits()) {
         let text = String::from_utf8_lossy(&mutate(YAML.as_bytes(), &edits)).into_owned();
         if let Ok(map) = read(&Source::new("m.yaml", text), "a.pgm", b"P2 1 1 1\n0", Options::default()) {
-            prop_assert_eq!(map.values().len(), 1);
+            // A cell that is turned lies in up to four.
+            prop_assert!((1..=4).contains(&map.values().len()), "{}", map.values().len());
         }
     }
 }
