@@ -351,6 +351,15 @@ mod tests {
     }
 
     #[test]
+    fn no_link_leads_to_a_claim_that_was_not_judged() {
+        let mut content = content();
+        content.claims.clear();
+        let page = page(&content);
+        assert!(!page.contains("href=\"#claim-"), "a part of a study judges nothing");
+        assert!(page.contains("<th scope=\"col\" class=\"turned\"><span>P1</span></th>"));
+    }
+
+    #[test]
     fn hostile_content_stays_text() {
         let mut content = content();
         content.title = "</title><script>alert(1)</script>".into();
