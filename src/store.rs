@@ -21,7 +21,7 @@ use crate::bundle::{Archive, Content, Fault, Source, archive};
 use fs_err as fs;
 use partial::Partial;
 use scratch::InFile;
-use std::io::{self, Read as _, Write as _};
+use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -45,20 +45,12 @@ pub fn discard(folder: &Path) {
     let _ = fs::remove_dir_all(folder);
 }
 
-/// Publishes `bytes` as `directory/name`: written beside it, made durable, renamed. A reader sees the old file or the
+/// Publishes what `write` writes as `directory/name`: written beside it, made durable, renamed. A reader sees the old file or the
 /// new one, never a part.
 ///
 /// # Errors
-/// Where the file system refuses.
-pub fn publish(directory: &Path, name: &str, bytes: &[u8]) -> io::Result<PathBuf> {
-    publish_with(directory, name, |out| out.write_all(bytes))
-}
-
-/// Does the same with what `write` writes piece by piece.
-///
-/// # Errors
 /// Where the file system refuses, or `write` fails.
-pub fn publish_with(
+pub fn publish(
     directory: &Path,
     name: &str,
     write: impl FnOnce(&mut io::BufWriter<&mut std::fs::File>) -> io::Result<()>,
@@ -249,14 +241,17 @@ pub fn open_bundle(
 mod tests {
     use super::*;
     use crate::bundle::{Form, Limits, sample};
+    use std::io::Write as _;
 
     #[test]
     fn bundles_are_published_whole_and_opened_as_zip_or_folder() {
         let directory = tempfile::tempdir().unwrap();
         let sealed = sample::sealed();
         let zip = sealed.zip(Form::Bag);
-        let path = publish(&directory.path().join("out"), &sealed.file_name(), &zip).unwrap();
-        publish(&directory.path().join("out"), &sealed.file_name(), &zip).unwrap();
+        let out = directory.path().join("out");
+        let seal = || publish(&out, &sealed.file_name(), |file| file.write_all(&zip));
+        let path = seal().unwrap();
+        seal().unwrap();
         assert_eq!(fs::read_dir(directory.path().join("out")).unwrap().count(), 1);
         let opened = open_bundle(&path, &Limits::default()).unwrap().unwrap();
         assert_eq!(opened.tree, sealed.tree);

@@ -14,7 +14,7 @@ use crate::studies::TrialSpec;
 use crate::verify::LONGEST_ATTESTATION;
 use crate::world::mesh;
 use std::collections::BTreeMap;
-use std::io::{BufWriter, ErrorKind};
+use std::io::{BufWriter, ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 
 /// Most bytes of a text that a command is given: a manifest, a lock, keys, a signature. No person writes as much.
@@ -173,14 +173,7 @@ pub(super) fn bytes(path: &Path) -> Result<Vec<u8>, Failure> {
 
 /// Writes a file that the user named.
 pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    let name = path.file_name().and_then(|n| n.to_str()).ok_or_else(|| {
-        Failure::not_understood(format!("`{}` is no name for a file", path.display()))
-    })?;
-    store::publish(folder, name, bytes).map(drop).map_err(|e| unwritten(path, &e))
+    write_with(path, |out| out.write_all(bytes))
 }
 
 /// Writes a file that the user named piece by piece.
@@ -195,7 +188,7 @@ pub(super) fn write_with(
     let name = path.file_name().and_then(|n| n.to_str()).ok_or_else(|| {
         Failure::not_understood(format!("`{}` is no name for a file", path.display()))
     })?;
-    store::publish_with(folder, name, write).map(drop).map_err(|e| unwritten(path, &e))
+    store::publish(folder, name, write).map(drop).map_err(|e| unwritten(path, &e))
 }
 
 /// Returns a folder as it may be shown: where none is named, it is this one.

@@ -1,5 +1,6 @@
 //! Making room: the records that no run appended to for long.
 
+use super::lines::files_of_one;
 use super::segments::segments_in;
 use super::{DirectoryStore, kind_of};
 use crate::provenance;
@@ -31,26 +32,8 @@ impl DirectoryStore {
         for path in segments_in(&self.root().join("segments"))? {
             prune_file(&path, unwritten, &mut pruned)?;
         }
-        let folders = match fs::read_dir(self.root()) {
-            Ok(folders) => folders,
-            Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(pruned),
-            Err(e) => return Err(e),
-        };
-        for folder in folders {
-            let folder = folder?;
-            // As earlier versions kept them: a file each, in folders of two digits of their keys.
-            let name = folder.file_name();
-            let is_ours =
-                name.len() == 2 && name.to_str().is_some_and(|n| u8::from_str_radix(n, 16).is_ok());
-            if !is_ours || !folder.file_type()?.is_dir() {
-                continue;
-            }
-            for file in fs::read_dir(folder.path())? {
-                let path = file?.path();
-                if path.extension().is_some_and(|extension| extension == "json") {
-                    prune_file(&path, unwritten, &mut pruned)?;
-                }
-            }
+        for path in files_of_one(self.root())? {
+            prune_file(&path, unwritten, &mut pruned)?;
         }
         Ok(pruned)
     }

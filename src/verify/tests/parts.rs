@@ -33,8 +33,7 @@ fn records_of_many_trials_go_on_in_further_files() {
 
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("bundle.zip");
-    let written =
-        store::publish_with(folder.path(), "bundle.zip", |out| sealed.write(Form::Bag, out));
+    let written = store::publish(folder.path(), "bundle.zip", |out| sealed.write(Form::Bag, out));
     assert_eq!(written.unwrap(), path);
     assert!(std::fs::read(&path).unwrap() == sealed.zip(Form::Bag), "piece by piece or at once");
     let opened = store::open_bundle(&path, &Limits::default()).unwrap().unwrap();
