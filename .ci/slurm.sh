@@ -20,6 +20,7 @@ for program in slurmctld slurmd sbatch scontrol squeue munged; do
   }
 done
 
+# Short, and for others to enter: the path of a socket has at most 107 bytes, and munge looks at who may write above it.
 work=$(mktemp -d /tmp/slurm.XXXXXX)
 chmod 755 "$work"
 began=()

@@ -12,7 +12,7 @@ const BLUE: &str = "#0072b2";
 const ORANGE: &str = "#d55e00";
 const GREEN: &str = "#009e73";
 /// Room for the legend and the clock under the drawing (px).
-const FOOT: f64 = 64.0;
+const FOOT: f64 = 82.0;
 
 /// The transform from metres to the sheet.
 pub(super) struct Paper {
@@ -187,7 +187,11 @@ fn foot(
         Some(deadline) => format!("{time:.1} s of {deadline:.0} s"),
         None => format!("{time:.1} s"),
     };
-    if let Some(graph) = graph {
+    let ended = ended(recording, frames);
+    if !ended.is_empty() {
+        // What it was about to do no longer matters.
+        told.push_str(&ended);
+    } else if let Some(graph) = graph {
         let target = graph.target.and_then(|v| graph.vertices.get(v));
         if let Some(target) = target {
             told.push_str(&format!(", on the way to {}", target.label));
@@ -202,5 +206,6 @@ fn foot(
         let element = Element::new("text").at("x", 12.0).at("y", paper.height + y);
         element.at("font-size", size).set("fill", INK).text(text)
     };
-    vec![line(24.0, 15.0, &told), line(48.0, 12.0, signs)]
+    let ends = if recording.goal.is_some() { "ring: start, flag: goal" } else { "ring: start" };
+    vec![line(24.0, 15.0, &told), line(48.0, 12.0, signs), line(66.0, 12.0, ends)]
 }

@@ -256,6 +256,13 @@ mod tests {
         ] {
             assert!(svg.contains(text), "{text} in {svg}");
         }
+        recording.outcome = "reached".to_owned();
+        recording.goal = Some(at + Point::new(3.0, 0.0));
+        let (early, whole) = (Some(2.0), None);
+        let [early, whole] = [early, whole].map(|at| still_svg(&recording, at, Shown::Everything));
+        assert!(!early.contains("ended") && early.contains("class=\"goal\""), "{early}");
+        assert!(whole.contains(" s of 60 s; the trial ended: reached</text>"), "{whole}");
+        assert!(whole.contains(">ring: start, flag: goal</text>"), "{whole}");
         assert!(!svg.contains("NaN") && !svg.contains("inf"));
     }
 
