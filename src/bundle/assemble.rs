@@ -6,7 +6,7 @@ use super::{Content, Gathered, InMemory, LargeFile, Scratch, Spool, format, wall
 use crate::claims::multiverse::Explanation;
 use crate::claims::observations::TrialColumns;
 use crate::claims::observations::TrialsTableError;
-use crate::claims::{self, ClaimVerdict, Observations};
+use crate::claims::{self, ClaimVerdict, Observations, tidy};
 use crate::json::AsWritten;
 use crate::manifest::InputKind;
 use crate::plan::{Plan, Selection, engine_version};
@@ -259,12 +259,15 @@ fn results(
     if with_series && experiment.kind.has_series() {
         let series = findings.series();
         let row = "one point of a trial's curve: where coverage first crosses a whole percent, and every 10 s";
-        described.push(DescribedTable::of(
-            &series,
-            in_results("series.csv"),
-            ("Curves of the trials", row),
-            |name| dictionary.of_series(name),
-        ));
+        described.push(DescribedTable {
+            joins: Some(("key", in_results("trials.csv"))),
+            ..DescribedTable::of(
+                &series,
+                in_results("series.csv"),
+                ("Curves of the trials", row),
+                |name| dictionary.of_series(name),
+            )
+        });
         found.add_rows("series.csv", &series.columns, findings.series_rows(), scratch)?;
     }
     let files = &mut found.held;
@@ -281,6 +284,30 @@ fn results(
         }
     }
     files.push(("claims.json".to_owned(), verdicts_json(verdicts)));
+    if !verdicts.is_empty() {
+        let (claims, comparisons) = (tidy::claims(verdicts), tidy::comparisons(verdicts));
+        described.push(DescribedTable {
+            key: vec!["claim".to_owned()],
+            ..DescribedTable::of(
+                &claims,
+                in_results("claims.csv"),
+                ("Verdicts on the claims", "one claim, in the manifest's order"),
+                tidy::claims_column,
+            )
+        });
+        described.push(DescribedTable {
+            key: vec!["claim".to_owned(), "comparison".to_owned()],
+            joins: Some(("claim", in_results("claims.csv"))),
+            ..DescribedTable::of(
+                &comparisons,
+                in_results("comparisons.csv"),
+                ("Comparisons behind the verdicts", "one comparison of a claim"),
+                tidy::comparisons_column,
+            )
+        });
+        files.push(("claims.csv".to_owned(), claims.to_csv().into_bytes()));
+        files.push(("comparisons.csv".to_owned(), comparisons.to_csv().into_bytes()));
+    }
     if let Some(known) = &experiment.multiverse {
         let explanation = known.table.explanation();
         let tidy = explanation.tidy();
@@ -325,6 +352,7 @@ pub(crate) fn described_table(exhibit: &Exhibit, path: String) -> DescribedTable
         title: exhibit.title.clone(),
         row: "one cell of the printed table".to_owned(),
         key: Vec::new(),
+        joins: None,
         columns: exhibit.columns.clone(),
     }
 }

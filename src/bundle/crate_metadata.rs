@@ -352,7 +352,11 @@ fn title(path: &str) -> (String, String) {
             ("Trials".into(), "One row a trial: factors, outcome, measures".into())
         }
         "results/series.csv" => {
-            ("Curves".into(), "The trials' curves over coverage and time".into())
+            ("Curves".into(), "The trials' curves over coverage and time, joined to trials.csv by `key`".into())
+        }
+        "results/claims.csv" => ("Verdicts".into(), "One row a claim: what is claimed, and what the trials say of it".into()),
+        "results/comparisons.csv" => {
+            ("Comparisons".into(), "One row for each comparison that a verdict rests on, with its effect and p-values".into())
         }
         "results/claims.json" => {
             ("Claims".into(), "The verdict on every claim and the numbers that decided it".into())

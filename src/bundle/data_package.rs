@@ -60,12 +60,21 @@ pub(super) fn package(
     format!("{package:#}\n").into_bytes()
 }
 
+/// Returns the name of the resource that a table in the file `path` is.
+fn resource_name(path: &str) -> String {
+    path.trim_end_matches(".csv").replace('/', "-").to_ascii_lowercase()
+}
+
 fn resource(table: &DescribedTable, file: FileRef<'_>) -> Value {
-    let name = table.path.trim_end_matches(".csv").replace('/', "-").to_ascii_lowercase();
+    let name = resource_name(&table.path);
     let fields: Vec<Value> = table.columns.iter().map(field).collect();
     let mut schema = json!({"fields": fields, "missingValues": [""]});
     if !table.key.is_empty() {
         schema["primaryKey"] = json!(table.key);
+    }
+    if let Some((column, path)) = &table.joins {
+        let reference = json!({"resource": resource_name(path), "fields": column});
+        schema["foreignKeys"] = json!([{"fields": column, "reference": reference}]);
     }
     json!({
         "profile": "tabular-data-resource",
@@ -164,6 +173,9 @@ pub(super) fn dictionary(content: &BundleContent, tables: &[DescribedTable]) -> 
         ));
         if !table.key.is_empty() {
             text.push_str(&format!(" `{}` tells rows apart.", table.key.join("`, `")));
+        }
+        if let Some((column, path)) = &table.joins {
+            text.push_str(&format!(" `{column}` joins it to `{path}`."));
         }
         text.push_str("\n\n| column | unit | type | range | meaning | empty where |\n| --- | --- | --- | --- | --- | --- |\n");
         for column in &table.columns {

@@ -29,6 +29,7 @@ pub mod published;
 mod score;
 pub mod sensitivity;
 pub mod terms;
+pub mod tidy;
 pub mod verdict;
 mod words;
 

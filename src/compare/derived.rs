@@ -52,7 +52,7 @@ pub(super) fn compare(
     }
     derived.claims = claims(a, b, tolerances);
     if !derived.claims.is_empty() || !tolerances.is_none() {
-        explained.insert("claims.json".to_owned());
+        explained.extend(["claims.json", "claims.csv", "comparisons.csv"].map(str::to_owned));
     }
     // Drawings follow from tables and curves; with tolerances declared, other bytes alone say nothing.
     let is_drawing = |path: &str| path.starts_with("figures/");

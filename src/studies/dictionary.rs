@@ -44,11 +44,8 @@ impl Dictionary<'_> {
         let number = |meaning: &str| Column::number(name, unit_of(name), meaning).at_least(0.0);
         match name {
             "key" => Some(
-                Column::text(
-                    name,
-                    "The trial: the first hex digits of its key in results/trials.csv",
-                )
-                .like("^[0-9a-f]+$"),
+                Column::text(name, "The trial: its key in results/trials.csv")
+                    .like("^[0-9a-f]{64}$"),
             ),
             "time-s" => Some(number("Simulated time since the trial began")),
             "distance-m" => Some(number("Way travelled until then")),

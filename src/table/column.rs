@@ -148,6 +148,8 @@ pub struct DescribedTable {
     pub row: String,
     /// The columns that identify a row among all others; empty where none do.
     pub key: Vec<String>,
+    /// The column that names a row of another table, and that table's path: the two are joined on it.
+    pub joins: Option<(&'static str, String)>,
     /// Its columns, in their order.
     pub columns: Vec<Column>,
 }
@@ -166,6 +168,7 @@ impl DescribedTable {
             title: title.to_owned(),
             row: row.to_owned(),
             key: Vec::new(),
+            joins: None,
             columns: table.columns.iter().map(column).collect(),
         }
     }

@@ -71,7 +71,7 @@ impl Findings<'_> {
     pub fn series_rows(&self) -> impl Iterator<Item = Vec<Value>> {
         self.ledger.entries().flat_map(move |trial| {
             trial.series().iter().map(move |point| {
-                let mut row: Vec<Value> = vec![trial.key().short().into()];
+                let mut row: Vec<Value> = vec![trial.key().hex().into()];
                 row.extend(self.factor_values(trial.condition()));
                 row.push(i64::from(trial.trial()).into());
                 row.extend(
