@@ -3,14 +3,15 @@
 //! Each shard is a bundle of `run --shard I/N`. They must be of one study, by one engine, on the same inputs, and of one
 //! division into N; a shard may be given twice where it says the same twice.
 
-use crate::bundle::{Bundle, Departure, RecordLine, shell_word};
+mod records;
+
+use crate::bundle::{Bundle, Departure, shell_word};
 use crate::digest::{Sha256Digest, TrialKey};
 use crate::json::{self, AsWritten};
-use crate::plan::{ENGINE_VERSION, Plan, ResolvedStudy, Selection, engine_version};
-use crate::studies::TrialRecord;
+use crate::plan::{Dealt, ENGINE_VERSION, Plan, ResolvedStudy, Selection, engine_version};
 use crate::verify::{ReplanError, plan_of};
 use std::collections::BTreeMap;
-use std::collections::btree_map::Entry;
+use std::io;
 use thiserror::Error;
 
 /// Missing shards that a refusal lists.
@@ -25,17 +26,20 @@ pub struct Shard {
     pub bundle: Bundle,
 }
 
-/// All shards of a study as one run.
+/// All shards of a study as one run, whose records are read from them in plan order ([`Merged::records`]).
 #[derive(Debug)]
-pub struct Merged {
+pub struct Merged<'a> {
+    bundles: &'a [Shard],
+    /// The bundles of each shard, by their places among `bundles`: one, and those that repeat it.
+    given: BTreeMap<u32, Vec<usize>>,
+    /// How trials were dealt to shards.
+    dealt: Dealt,
     /// The study, or the part of it that was divided into shards.
     pub plan: Plan,
     /// Which part that is.
     pub selection: Selection,
     /// The manifest, byte for byte.
     pub study_yaml: Vec<u8>,
-    /// The record of every trial, in plan order.
-    pub records: Vec<TrialRecord>,
     /// Into how many shards it was divided.
     pub shards: u32,
     /// How many bundles were given of shards that another one was given of, too.
@@ -147,6 +151,9 @@ pub enum MergeError {
     /// Two records of one trial differ.
     #[error(transparent)]
     Conflict(Box<Conflict>),
+    /// What was merged cannot be written.
+    #[error("records cannot be put together: {0}")]
+    Unwritten(#[from] io::Error),
 }
 
 /// Two records of one trial that differ.
@@ -188,20 +195,20 @@ struct Part {
     of: u32,
 }
 
-/// Puts `shards` together.
+/// Holds `shards` against one another, before their records are read.
 ///
 /// # Errors
-/// Where they are not all shards of one study, each whole and none in contradiction to another.
-pub fn merge(shards: &[Shard]) -> Result<Merged, MergeError> {
+/// Where they are not all shards of one study.
+pub fn merge(shards: &[Shard]) -> Result<Merged<'_>, MergeError> {
     let first = shards.first().ok_or(MergeError::Nothing)?;
     let parts: Vec<Part> = shards.iter().map(part).collect::<Result<_, _>>()?;
     let whole = &parts[0];
     for (shard, part) in shards.iter().zip(&parts) {
         same(first, whole, shard, part)?;
     }
-    let mut given: BTreeMap<u32, usize> = BTreeMap::new();
+    let mut given: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
     for (index, part) in parts.iter().enumerate() {
-        given.entry(part.shard).or_insert(index);
+        given.entry(part.shard).or_default().push(index);
     }
     let of = whole.of;
     if given.len() < of as usize {
@@ -222,32 +229,14 @@ pub fn merge(shards: &[Shard]) -> Result<Merged, MergeError> {
     } else {
         Plan::of(experiment)
     };
-    let mut records = gathered(shards)?;
-    // Whose a trial is, is what a fault is about.
-    for (spec, shard) in plan.trials.iter().zip(plan.dealt(of, whole.selection.dealt)) {
-        let Some(found) = records.get_mut(&spec.key) else {
-            let name = shards[given[&shard]].name.clone();
-            let trial = format!("{}/{}", spec.condition.slug(), spec.trial);
-            return Err(MergeError::Gap { name, trial, shard, of });
-        };
-        found.shard = Some(shard);
-    }
-    for found in records.values() {
-        let shard = parts[found.from].shard;
-        if found.shard != Some(shard) {
-            let name = shards[found.from].name.clone();
-            let trial = name_of(&found.record);
-            return Err(MergeError::Stray { name, trial, shard, of });
-        }
-    }
-    let records = plan.trials.iter().filter_map(|spec| records.remove(&spec.key));
-    let records: Vec<TrialRecord> = records.map(|found| found.record).collect();
     Ok(Merged {
+        bundles: shards,
+        dealt: whole.selection.dealt,
         selection,
         study_yaml: first.bundle.study_yaml().to_vec(),
-        records,
         shards: of,
         repeated: shards.len() - given.len(),
+        given,
         plan,
     })
 }
@@ -338,7 +327,7 @@ fn same(first: &Shard, whole: &Part, shard: &Shard, part: &Part) -> Result<(), M
 }
 
 /// Says which shards are missing, and how each is run.
-fn missing(bundle: &Bundle, whole: &Part, given: &BTreeMap<u32, usize>) -> MergeError {
+fn missing(bundle: &Bundle, whole: &Part, given: &BTreeMap<u32, Vec<usize>>) -> MergeError {
     let overrides = Departure::of(bundle.resolved(), true).overrides;
     let command = |shard: u32| {
         let mut part = whole.selection.clone();
@@ -362,69 +351,4 @@ fn missing(bundle: &Bundle, whole: &Part, given: &BTreeMap<u32, usize>) -> Merge
         told.push(format!("and {left} more are"));
     }
     MergeError::Missing { of: whole.of, found: given.len(), missing: told.join(", ") }
-}
-
-/// A record and where it comes from.
-struct Found {
-    record: TrialRecord,
-    /// The bundle.
-    from: usize,
-    /// The shard that its trial is of, once that is known.
-    shard: Option<u32>,
-}
-
-/// Reads all records of all shards.
-fn gathered(shards: &[Shard]) -> Result<BTreeMap<TrialKey, Found>, MergeError> {
-    let mut records: BTreeMap<TrialKey, Found> = BTreeMap::new();
-    for (from, Shard { bundle, .. }) in shards.iter().enumerate() {
-        for condition in bundle.conditions() {
-            let mut taken = Ok(());
-            bundle.record_lines(&condition.slug, |line| {
-                taken = take(&mut records, shards, from, line);
-                taken.is_ok()
-            });
-            taken?;
-        }
-    }
-    Ok(records)
-}
-
-/// Puts the record of `line`, of the shard `from`, to the others.
-fn take(
-    records: &mut BTreeMap<TrialKey, Found>,
-    shards: &[Shard],
-    from: usize,
-    line: RecordLine<'_>,
-) -> Result<(), MergeError> {
-    let name = &shards[from].name;
-    let record = TrialRecord::from_line(line.text).map_err(|problem| MergeError::NoRecord {
-        name: name.clone(),
-        place: line.place(),
-        problem: problem.to_string(),
-    })?;
-    match records.entry(record.key) {
-        Entry::Vacant(place) => {
-            place.insert(Found { record, from, shard: None });
-        }
-        Entry::Occupied(known) => {
-            let known = known.get();
-            let (stored, fresh) = (known.record.to_line(), record.to_line());
-            if stored != fresh {
-                return Err(MergeError::Conflict(Box::new(Conflict {
-                    trial: name_of(&record),
-                    key: record.key,
-                    first: shards[known.from].name.clone(),
-                    expected: Sha256Digest::of(stored),
-                    name: name.clone(),
-                    found: Sha256Digest::of(fresh),
-                    divergence: known.record.parting(&record),
-                })));
-            }
-        }
-    }
-    Ok(())
-}
-
-fn name_of(record: &TrialRecord) -> String {
-    format!("{}/{}", record.condition.slug(), record.trial)
 }

@@ -17,8 +17,9 @@ use self::told::Faults;
 pub use self::told::told;
 use self::unpack::unpack;
 pub(super) use self::unpack::{inflate, inflating};
-use super::file::{HELD, Passing, SourceReader};
+use super::file::SourceReader;
 use super::path::PAYLOAD;
+use super::scratch::{HELD, Passing};
 use super::{
     BundlePath, Content, Fault, FileRef, Files, LargeFile, LargeFiles, Source, Tree, format,
     in_payload, names,

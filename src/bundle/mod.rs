@@ -31,6 +31,7 @@ mod preview;
 mod reader;
 mod readme;
 mod resolved;
+mod scratch;
 mod told;
 pub mod wall_time;
 mod writer;
@@ -46,14 +47,13 @@ pub use content::{
 };
 pub use departure::{Departure, shell_word};
 pub use fault::{Fault, visible};
-pub use file::{
-    Content, FileRef, Files, Forgetful, InMemory, LargeFile, LargeFiles, Scratch, Source, Spool,
-};
+pub use file::{Content, FileRef, Files, LargeFile, LargeFiles, Lines};
 pub use gather::{Gathered, Gathering, in_parts};
 pub use moment::Moment;
 pub use path::{BundlePath, in_payload};
-pub use reader::{Bundle, OpenError, RecordLine};
+pub use reader::{Bundle, OpenError, RecordLine, RecordLines};
 pub use resolved::{ConditionEntry, InputEntry, Resolved};
+pub use scratch::{Forgetful, InMemory, Scratch, Source, Spool};
 pub use told::is_version;
 pub use writer::{Additions, SealError, Sealed, in_bag, in_bag_info, seal, seal_with};
 

@@ -2,8 +2,8 @@
 
 use super::{
     Archive, BundlePath, Circumstance, ConditionEntry, Fault, FileRef, Files, Form, Gathered,
-    Gathering, InputEntry, LargeFiles, Limits, Resolved, Scratch, Tree, archive, bag, format,
-    in_payload, results_digest_of, told,
+    Gathering, InputEntry, LargeFiles, Limits, Lines, Resolved, Scratch, Tree, archive, bag,
+    format, in_payload, results_digest_of, told,
 };
 use crate::digest::{BundleId, ResultsDigest, Sha256Digest, StudyDigest};
 use crate::plan::{Plan, ResolvedStudy, StudyInput};
@@ -188,17 +188,18 @@ impl Bundle {
     /// Hands over the record lines of a condition, in plan order, until `take` says not to go on; none where there is no such
     /// condition.
     pub fn record_lines(&self, slug: &str, mut take: impl FnMut(RecordLine<'_>) -> bool) {
-        for (path, file) in self.record_parts(slug) {
-            let (mut number, mut goes_on) = (0, true);
-            file.lines(|text| {
-                number += 1;
-                goes_on = take(RecordLine { path: &path, number, text });
-                goes_on
-            });
-            if !goes_on {
+        let mut lines = self.record_reader(slug);
+        while let Some(line) = lines.next_line() {
+            if !take(line) {
                 return;
             }
         }
+    }
+
+    /// Returns the record lines of a condition one by one, in plan order; none where there is no such condition.
+    pub fn record_reader(&self, slug: &str) -> RecordLines<'_> {
+        let parts: Vec<_> = self.record_parts(slug).collect();
+        RecordLines { parts: parts.into_iter(), open: None }
     }
 
     /// Counts the record lines of a condition.
@@ -357,6 +358,28 @@ impl RecordLine<'_> {
     /// Returns where it stands: `data/trials/none.jsonl:2`.
     pub fn place(&self) -> String {
         format!("{}:{}", self.path, self.number)
+    }
+}
+
+/// The record lines of a condition, over all its files.
+#[derive(Debug)]
+pub struct RecordLines<'a> {
+    parts: std::vec::IntoIter<(String, FileRef<'a>)>,
+    open: Option<(String, usize, Lines<'a>)>,
+}
+
+impl RecordLines<'_> {
+    /// Returns the next one; `None` at the end.
+    pub fn next_line(&mut self) -> Option<RecordLine<'_>> {
+        while !self.open.as_mut().is_some_and(|(_, number, lines)| {
+            *number += 1;
+            lines.advance()
+        }) {
+            let (path, file) = self.parts.next()?;
+            self.open = Some((path, 0, file.line_reader()));
+        }
+        let (path, number, lines) = self.open.as_ref()?;
+        Some(RecordLine { path, number: *number, text: lines.line() })
     }
 }
 

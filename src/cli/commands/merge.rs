@@ -7,7 +7,7 @@ use crate::cli::args::{DataFormat, MergeArgs};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::terminal::{Terminal, counted};
 use crate::cli::{checked, interrupt, load};
-use crate::merge::{Merged, Shard, merge};
+use crate::merge::{MergeError, Merged, Shard, merge};
 use crate::provenance::{Environment, RunClock};
 use crate::verify::Level;
 
@@ -25,29 +25,32 @@ pub(in crate::cli) fn run(
         let checked = checked::to_level(Level::Coherent, path, false, args.limits)?;
         shards.push(Shard { name: path.display().to_string(), bundle: checked.bundle });
     }
-    let Merged { plan, selection, study_yaml, records, shards: of, repeated } = merge(&shards)
-        .map_err(|fault| {
-            let exit = if fault.is_misunderstood() { Exit::NotUnderstood } else { Exit::No };
-            Failure { exit, message: fault.to_string() }
-        })?;
-    drop(shards);
+    let refused = |fault: MergeError| {
+        let exit = if fault.is_misunderstood() { Exit::NotUnderstood } else { Exit::No };
+        Failure { exit, message: fault.to_string() }
+    };
+    let merged = merge(&shards).map_err(refused)?;
+    let (of, repeated) = (merged.shards, merged.repeated);
+    let unwritten = |e: std::io::Error| load::unwritten(&args.out, &e);
+    let scratch = load::scratch(args.out.parent().unwrap_or(&args.out));
+    let mut gathering = Gathering::new(&merged.plan, &scratch);
+    merged.records(|record| gathering.take(record)).map_err(|fault| match fault {
+        MergeError::Unwritten(error) => unwritten(error),
+        fault => refused(fault),
+    })?;
     if repeated > 0 {
         let bundles = counted(repeated, "bundle");
         terminal.note(&format!("note: {bundles} of shards that were given before say the same"));
     }
-    let unwritten = |e: std::io::Error| load::unwritten(&args.out, &e);
-    let scratch = load::scratch(args.out.parent().unwrap_or(&args.out));
-    let mut gathering = Gathering::new(&plan, &scratch);
-    for record in records {
-        gathering.take(&record).map_err(unwritten)?;
-    }
     let Gathered { ledger, conditions } = gathering.finish().map_err(unwritten)?;
+    let Merged { plan, selection, study_yaml, .. } = merged;
+    drop(shards);
     let verdicts = assemble::verdicts_of(&plan, &ledger).map_err(Failure::failed)?;
     let asked = Asked { plan: &plan, study_yaml: &study_yaml, selection: &selection };
     let content = assemble::assemble_judged(asked, &ledger, conditions, &verdicts, &scratch)
         .map_err(unwritten)?;
     let not_here =
-        Err("the trials ran on the machines of the shards, whose bundles hold their times");
+        Err("the trials ran on the machines of several shards, so that their times are not of one");
     let measured = wall_time::measured(&plan, &ledger, not_here).map_err(Failure::failed)?;
     let mut circumstance = clock.circumstance(environment, 1);
     circumstance.files = measured.files;
