@@ -186,13 +186,15 @@ fn a_plan_is_shown_before_its_calibration_has_run() {
     );
     let says = format!("note: keys depend on what the calibration measures; {not_run}\n");
     assert_eq!((answer.stderr, answer.code), (says, 0));
-    let listed = "--------  A_68_frontier/0  to do\n--------  A_68_frontier/1  to do\n2 trials: 0 done, 2 to do\n";
+    let listed = "--------  A_68_frontier/0  to do\n--------  A_68_frontier/1  to do\n2 trials: 0 done, 2 to do, about 1 s on ";
     let foretold = answer.stdout.strip_prefix(listed).unwrap_or_default();
+    let (processors, foretold) = foretold.split_once('\n').unwrap_or_default();
     assert!(
-        foretold.starts_with("bundle: at least ")
+        processors.contains(" processor")
+            && foretold.starts_with("bundle: at least ")
             && foretold.ends_with(
-                " kB unpacked; memory: at least 31 MB (no record of this plan is in the store: `reenact run --trials 1` puts one \
-                 of each condition there)\n"
+                " kB unpacked; memory: at least 31 MB; some 0.00 core hours in all (by the manifest: no record of this plan is in \
+                 the store; `reenact run --trials 1` puts one of each condition there)\n"
             ),
         "{}",
         answer.stdout

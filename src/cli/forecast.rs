@@ -1,7 +1,7 @@
 //! What a run asks of the machine, foretold before any trial is executed: the size of its bundle, memory, time and disk.
 //!
-//! It rests on the records that the store has of some of the plan's trials. Where it has none, what can be said is what no bundle of
-//! so many trials goes below.
+//! It rests on the records that the store has of some of the plan's trials. Where it has none, what can be said of sizes is what no
+//! bundle of so many trials goes below, and of time what the manifest lets expect.
 
 use super::exit::Failure;
 use super::load;
@@ -10,7 +10,7 @@ use crate::bundle::{Limits, format};
 use crate::plan::Plan;
 use crate::runner::StoreError;
 use crate::store::{self, Looked};
-use crate::studies::TrialRecord;
+use crate::studies::{StudyKind, TrialRecord};
 use std::path::Path;
 
 /// Trials of one condition whose records are looked at.
@@ -25,12 +25,9 @@ const LEAST_ROW: u64 = 70;
 /// Bytes of a number in a row.
 const CELL: u64 = 12;
 /// Bytes of a point of a curve in `results/series.csv`.
-const POINT: u64 = 60;
+const POINT: u64 = 116;
 /// Bytes of what a bundle holds beside inputs, records and tables of trials: its description alone has as many.
 const REST: u64 = 40_000;
-
-/// Simulated seconds for a second of one processor, as a rule.
-const PACE: f64 = 300.0;
 
 /// Memory (bytes) of the program itself, and of what it holds for each trial and for each of a trial's measures. Measured with
 /// `wander` at ten thousand to a million trials (docs/performance.md).
@@ -77,13 +74,15 @@ pub(super) struct Forecast {
     memory: u64,
     /// Simulated time of all trials (s).
     sim_s: f64,
+    /// Simulated seconds for a second of one processor.
+    pace: f64,
 }
 
 impl Forecast {
     /// Foretells the run of `plan` by what `store` has of it.
     pub(super) fn of(plan: &Plan, store: Option<&Looked<'_>>) -> Result<Self, StoreError> {
         let mut all = Mean::default();
-        let mut conditions: Vec<(u64, Mean)> = Vec::new();
+        let mut conditions: Vec<(u64, Mean, f64)> = Vec::new();
         for (i, trials) in plan.trials.chunk_by(|a, b| a.condition == b.condition).enumerate() {
             let mut mean = Mean::default();
             for spec in trials.iter().take(LOOKED_AT).filter(|_| i < CONDITIONS) {
@@ -92,12 +91,13 @@ impl Forecast {
                     all.add(&record);
                 }
             }
-            conditions.push((trials.len() as u64, mean));
+            conditions.push((trials.len() as u64, mean, trials[0].setup.estimated_seconds()));
         }
         let factors: usize = plan.experiment.factors.iter().map(|f| f.name.len() + 12).sum();
         let has_series = plan.experiment.kind.has_series();
-        let (mut forecast, mut measures) = (Self::nothing(), 0.0);
-        for (trials, mean) in conditions {
+        let (mut forecast, mut measures) = (Self::nothing(plan.experiment.kind), 0.0);
+        for (trials, mean, expected_s) in conditions {
+            let sim_s = if mean.records > 0 { mean.sim_s } else { expected_s };
             let mean = if mean.records > 0 { mean } else { all };
             let line = if mean.records > 0 { mean.line } else { real(LEAST_LINE + factors as u64) };
             let row = real(LEAST_ROW + factors as u64 / 2) + mean.measures * real(CELL);
@@ -106,7 +106,7 @@ impl Forecast {
             forecast.trials += trials;
             forecast.bundle += lines + whole(real(trials) * (row + curve));
             forecast.files += 1 + lines / format::PART;
-            forecast.sim_s += real(trials) * mean.sim_s;
+            forecast.sim_s += real(trials) * sim_s;
             measures += real(trials) * mean.measures;
             let at_once = real(trials.min(AT_ONCE) * UNFOLDED) * line;
             forecast.memory = forecast.memory.max(PROGRAM + whole(at_once));
@@ -122,20 +122,33 @@ impl Forecast {
         Ok(forecast)
     }
 
-    fn nothing() -> Self {
-        Self { trials: 0, records: 0, bundle: REST, files: 30, memory: PROGRAM, sim_s: 0.0 }
+    fn nothing(kind: StudyKind) -> Self {
+        let (bundle, memory, pace) = (REST, PROGRAM, kind.pace());
+        Self { trials: 0, records: 0, bundle, files: 30, memory, sim_s: 0.0, pace }
+    }
+
+    /// Says how long so many of the trials take on so many processors: `about 40 s on 2 processors`.
+    pub(super) fn time_of(&self, trials: usize, processors: usize) -> String {
+        let share = real(trials as u64) / real(self.trials.max(1));
+        let seconds = self.sim_s * share / (self.pace * real(processors.max(1) as u64));
+        let time = match seconds {
+            ..=90.0 => format!("{} s", seconds.ceil()),
+            ..=5400.0 => format!("{:.0} min", seconds / 60.0),
+            _ => format!("{:.1} h", seconds / 3600.0),
+        };
+        format!("about {time} on {}", counted(processors, "processor"))
     }
 
     /// Says it in a line.
     pub(super) fn in_words(&self) -> String {
         let (bundle, memory) = (in_bytes(self.bundle), in_bytes(self.memory));
+        let hours = self.sim_s / self.pace / 3600.0;
         if self.records == 0 {
             return format!(
-                "bundle: at least {bundle} unpacked; memory: at least {memory} (no record of this plan is in the store: `reenact run \
-                 --trials 1` puts one of each condition there)\n"
+                "bundle: at least {bundle} unpacked; memory: at least {memory}; some {hours:.2} core hours in all (by the manifest: no \
+                 record of this plan is in the store; `reenact run --trials 1` puts one of each condition there)\n"
             );
         }
-        let hours = self.sim_s / PACE / 3600.0;
         format!(
             "bundle: about {bundle} unpacked; memory: about {memory}; {hours:.2} core hours in all (by {} in the store)\n",
             counted(self.records, "record")
@@ -221,7 +234,7 @@ mod tests {
     use super::*;
 
     fn large(trials: u64) -> Forecast {
-        let nothing = Forecast::nothing();
+        let nothing = Forecast::nothing(StudyKind::named("wander").unwrap());
         Forecast { trials, bundle: REST + 410 * trials, sim_s: 1.5 * real(trials), ..nothing }
     }
 
@@ -261,12 +274,21 @@ mod tests {
     fn words_say_what_they_rest_on() {
         assert_eq!(
             large(1_000_000).in_words(),
-            "bundle: at least 410 MB unpacked; memory: at least 31 MB (no record of this plan is in the store: `reenact run \
-             --trials 1` puts one of each condition there)\n"
+            "bundle: at least 410 MB unpacked; memory: at least 31 MB; some 0.08 core hours in all (by the manifest: no record of \
+             this plan is in the store; `reenact run --trials 1` puts one of each condition there)\n"
         );
         assert_eq!(
             Forecast { records: 6, ..large(1_000_000) }.in_words(),
-            "bundle: about 410 MB unpacked; memory: about 31 MB; 1.39 core hours in all (by 6 records in the store)\n"
+            "bundle: about 410 MB unpacked; memory: about 31 MB; 0.08 core hours in all (by 6 records in the store)\n"
         );
+    }
+
+    #[test]
+    fn times_are_those_of_the_trials_and_processors_at_hand() {
+        let forecast = large(1_000_000);
+        assert_eq!(forecast.time_of(1_000_000, 2), "about 2 min on 2 processors");
+        assert_eq!(forecast.time_of(1000, 1), "about 1 s on 1 processor");
+        let hours = Forecast { pace: 400.0, ..large(10_000_000) };
+        assert_eq!(hours.time_of(10_000_000, 4), "about 2.6 h on 4 processors");
     }
 }

@@ -95,6 +95,12 @@ pub trait Study: Sync {
         false
     }
 
+    /// Returns how many seconds of it one processor simulates in a second, as a rule: measured with the shipped manifests, where
+    /// worlds and filters make it two or three times more or less. Estimates of time rest on it, and nothing else.
+    fn pace(&self) -> f64 {
+        5000.0
+    }
+
     /// Makes what the trials of a condition need. `None` where that cannot be had, which has been reported then.
     fn setup(&self, condition: &mut dyn ConditionAsWritten) -> Option<Setup>;
 }

@@ -42,7 +42,7 @@ pub(in crate::cli) fn run(
         None => Some(store.look().map_err(Failure::failed)?),
     };
     let mut text = String::new();
-    let (mut done, mut known_seconds) = (0, 0.0);
+    let mut done = 0;
     for spec in &plan.trials {
         let record = match &store {
             Some(store) => store.get(&spec.key).map_err(Failure::failed)?,
@@ -51,7 +51,6 @@ pub(in crate::cli) fn run(
         let state = match &record {
             Some(record) => {
                 done += 1;
-                known_seconds += record.sim_seconds;
                 format!("done  {}", record.outcome.name())
             }
             None => "to do".to_owned(),
@@ -64,13 +63,17 @@ pub(in crate::cli) fn run(
         ));
     }
     let left = plan.trials.len() - done;
-    text.push_str(&format!(
-        "{}: {done} done, {left} to do{}\n",
-        counted(plan.trials.len(), "trial"),
-        estimate(left, done, known_seconds)
-    ));
     let forecast = Forecast::of(&plan, store.as_ref()).map_err(Failure::failed)?;
-    text.push_str(&forecast.in_words());
+    let time = if left == 0 {
+        String::new()
+    } else {
+        format!(", {}", forecast.time_of(left, processors()))
+    };
+    text.push_str(&format!(
+        "{}: {done} done, {left} to do{time}\n{}",
+        counted(plan.trials.len(), "trial"),
+        forecast.in_words()
+    ));
     terminal.result(&text);
     if let Some(missing) = missing {
         terminal.note(&format!("note: keys depend on what the calibration measures; {missing}"));
@@ -80,14 +83,3 @@ pub(in crate::cli) fn run(
 
 /// What stands for a key that nobody can know yet.
 const NO_KEY: &str = "--------";
-
-/// Says how long the rest takes, where trials of this plan have been seen; a processor simulates some 300 times faster
-/// than real time.
-fn estimate(left: usize, done: usize, known_seconds: f64) -> String {
-    if left == 0 || done == 0 {
-        return String::new();
-    }
-    #[expect(clippy::cast_precision_loss, reason = "an estimate")]
-    let seconds = known_seconds / done as f64 * left as f64 / (300.0 * processors() as f64);
-    format!(", about {} s on this machine", seconds.ceil())
-}

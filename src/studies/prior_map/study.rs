@@ -54,6 +54,11 @@ impl Study for PriorMap {
         "Luperto et al. 2020: exploration with prior knowledge."
     }
 
+    fn pace(&self) -> f64 {
+        // The mind takes most of it: a quickstart goes at four times this, 30 particles at half.
+        400.0
+    }
+
     fn defaults(&self) -> Value {
         json!(Parameters::default())
     }
