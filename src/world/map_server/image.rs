@@ -10,9 +10,9 @@ const MAX_PIXELS: u64 = 1 << 23;
 
 /// One pixel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Pixel {
-    pub(super) color: [u8; 3],
-    pub(super) alpha: Option<u8>,
+pub(in crate::world) struct Pixel {
+    pub(in crate::world) color: [u8; 3],
+    pub(in crate::world) alpha: Option<u8>,
 }
 
 impl Pixel {
@@ -20,22 +20,22 @@ impl Pixel {
         Self { color: [grey; 3], alpha: None }
     }
 
-    pub(super) fn color_sum(self) -> f64 {
+    pub(in crate::world) fn color_sum(self) -> f64 {
         self.color.iter().map(|channel| f64::from(*channel)).sum()
     }
 }
 
 /// A decoded image of at least one pixel.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Image {
-    pub(super) width: i32,
-    pub(super) height: i32,
-    pub(super) pixels: Vec<Pixel>,
+pub(in crate::world) struct Image {
+    pub(in crate::world) width: i32,
+    pub(in crate::world) height: i32,
+    pub(in crate::world) pixels: Vec<Pixel>,
 }
 
 /// Why bytes are no image.
 #[derive(Debug, Error)]
-pub(super) enum ImageError {
+pub(in crate::world) enum ImageError {
     #[error("it begins like neither a PNG nor a picture of Netpbm (PGM, PPM, PBM)")]
     UnknownFormat,
     #[error("it is a {0}, which is not read")]
@@ -56,7 +56,7 @@ pub(super) enum ImageError {
 
 impl ImageError {
     /// Returns what to do about it, for the image `name`.
-    pub(super) fn help(&self, name: &str) -> String {
+    pub(in crate::world) fn help(&self, name: &str) -> String {
         match self {
             Self::Foreign(_) => {
                 let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
@@ -70,7 +70,7 @@ impl ImageError {
 }
 
 /// Decodes a PNG or a picture of Netpbm.
-pub(super) fn decode(bytes: &[u8]) -> Result<Image, ImageError> {
+pub(in crate::world) fn decode(bytes: &[u8]) -> Result<Image, ImageError> {
     match bytes {
         [0x89, b'P', b'N', b'G', ..] => decode_png(bytes),
         [b'P', b'1'..=b'6', ..] => netpbm::decode(bytes),

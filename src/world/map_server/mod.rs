@@ -10,7 +10,7 @@
 
 pub mod bag;
 mod descriptor;
-mod image;
+pub(super) mod image;
 pub mod solid;
 mod turned;
 mod write;

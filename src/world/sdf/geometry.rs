@@ -2,6 +2,7 @@
 
 use super::notes::Kind;
 use super::reader::{File, Found, Reader};
+use super::terrain::Extent;
 use crate::document::quoted;
 use crate::document::xml::{self, Faults};
 use crate::world::Solid;
@@ -65,6 +66,7 @@ pub(super) fn read(
     let read = match shape.tag_name().name() {
         "empty" => Some(Shape::Nothing),
         "mesh" => mesh(shape, file, reader, faults),
+        "heightmap" => heightmap(shape, file, reader, faults),
         kind => primitive(shape, kind, faults),
     };
     read.unwrap_or(Shape::Nothing)
@@ -172,6 +174,28 @@ fn polyline(shape: Node<'_, '_>, faults: &mut Faults<'_>) -> Option<Shape> {
     let height = height?;
     check(shape, &[height], faults)?;
     Some(Shape::Polyline { corners, height })
+}
+
+fn heightmap(
+    shape: Node<'_, '_>,
+    file: &File<'_>,
+    reader: &mut Reader<'_>,
+    faults: &mut Faults<'_>,
+) -> Option<Shape> {
+    let uri = xml::child(shape, "uri").map_or("", xml::text);
+    let size = match xml::child(shape, "size") {
+        Some(size) => faults.numbers(size)?,
+        None => [1.0; 3],
+    };
+    check(shape, &size, faults)?;
+    let middle = match xml::child(shape, "pos") {
+        Some(middle) => faults.numbers(middle)?,
+        None => [0.0; 3],
+    };
+    Some(match reader.heightmap(uri, file.path, Extent { size, middle }) {
+        Ok(mesh) => Shape::Mesh { mesh, scale: [1.0; 3] },
+        Err(why) => Shape::Lack(Kind::Heightmap { uri: uri.to_owned(), why }),
+    })
 }
 
 fn mesh(

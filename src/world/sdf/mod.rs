@@ -20,6 +20,7 @@ mod notes;
 mod place;
 mod reader;
 mod state;
+mod terrain;
 
 pub use files::{FilePath, Folders, Models, NoModels, Root, Unplaced};
 pub use floor::{ROLLED_OVER, STEP, WIDE};

@@ -31,6 +31,8 @@ impl Place {
 pub(super) enum Kind {
     /// A collision is missing: the mesh `uri` cannot be had, and why.
     Mesh { uri: String, why: String },
+    /// A collision is missing: the heightmap `uri` cannot be had, and why.
+    Heightmap { uri: String, why: String },
     /// A collision is missing: its shape is one that is not read.
     Shape(String),
     /// A collision is missing: it has no shape.
@@ -125,21 +127,27 @@ fn said(kind: &Kind, note: &Note) -> String {
     // A world counts what it lacks by how these end.
     let missing = if n == 1 { "it is missing".to_owned() } else { format!("{n} are missing") };
     match kind {
-        Kind::Mesh { uri, why } => {
+        Kind::Mesh { uri, why } | Kind::Heightmap { uri, why } => {
             let uri = shortened(uri);
+            let shape = if matches!(kind, Kind::Mesh { .. }) { "mesh" } else { "heightmap" };
             let subject = match n {
-                1 => format!("collision `{name}` is a mesh `{uri}`"),
-                _ => format!("{n} collisions ({names}) are a mesh `{uri}`"),
+                1 => format!("collision `{name}` is a {shape} `{uri}`"),
+                _ => format!("{n} collisions ({names}) are a {shape} `{uri}`"),
             };
             match why.as_str() {
                 "" => format!("{subject}, which cannot be read: {missing}"),
                 why => format!("{subject}; {why}: {missing}"),
             }
         }
-        Kind::Shape(shape) => match n {
-            1 => format!("collision `{name}` is a {shape}, which cannot be read: {missing}"),
-            _ => format!("{n} collisions ({names}) are a {shape}, which cannot be read: {missing}"),
-        },
+        Kind::Shape(shape) => {
+            let a = if shape.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
+            match n {
+                1 => format!("collision `{name}` is {a} {shape}, which cannot be read: {missing}"),
+                _ => format!(
+                    "{n} collisions ({names}) are {a} {shape}, which cannot be read: {missing}"
+                ),
+            }
+        }
         Kind::NoShape if n == 1 => format!("collision `{name}` has no geometry: {missing}"),
         Kind::NoShape => format!("{n} collisions ({names}) have no geometry: {missing}"),
         Kind::Include { uri, why } if n == 1 => {

@@ -4,6 +4,7 @@ use super::files::{FilePath, Folders, Models};
 use super::include::{self, Loaded};
 use super::model::{self, Model};
 use super::notes::{Kind, Notes, Place};
+use super::terrain::{self, Extent};
 use super::{MAX_BYTES, check_macros, known_version};
 use crate::document::sdf;
 use crate::document::xml::{self, Faults};
@@ -253,7 +254,34 @@ impl<'m> Reader<'m> {
                 Err(problem) => why.push((path, problem)),
             }
         }
-        Found::Missing(match &why[..] {
+        Found::Missing(self.absence(&why))
+    }
+
+    /// Returns the surface of the heightmap `uri`, written in the file `beside`.
+    pub(super) fn heightmap(
+        &mut self,
+        uri: &str,
+        beside: &FilePath,
+        extent: Extent,
+    ) -> Result<Mesh, String> {
+        let places =
+            self.folders.places(uri, beside, self.models).map_err(|why| why.to_string())?;
+        let mut why = Vec::new();
+        for path in &places {
+            match self.models.read(path) {
+                Ok(bytes) => {
+                    let surface = terrain::surface(&bytes, extent);
+                    return surface.map_err(|problem| format!("`{}`: {problem}", self.name(path)));
+                }
+                Err(problem) => why.push((path, problem)),
+            }
+        }
+        Err(self.absence(&why))
+    }
+
+    /// Says why none of these places holds a file.
+    fn absence(&self, why: &[(&FilePath, String)]) -> String {
+        match why {
             [(path, problem)] => format!("`{}`: {problem}", self.name(path)),
             [(first, _), (second, _), others @ ..] => {
                 let more = match others.len() {
@@ -263,7 +291,7 @@ impl<'m> Reader<'m> {
                 format!("no such file: `{}`, `{}`{more}", self.name(first), self.name(second))
             }
             [] => "no such file".to_owned(),
-        })
+        }
     }
 
     /// Returns the mesh file at `path`; none where its faults have been told.

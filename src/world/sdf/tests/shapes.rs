@@ -170,6 +170,7 @@ fn what_is_missing_is_told_once_for_each_kind_and_counted_whole() {
         })
         .collect();
     let hills = model("hill", "0 0 0 0 0 0", "<heightmap><uri>hill.png</uri></heightmap>")
+        + &model("urn", "0 0 0 0 0 0", "<image><uri>urn.png</uri></image>")
         + &model("scan", "0 0 0 0 0 0", "<mesh><uri>scan.glb</uri></mesh>");
     let actors = "<actor name='ann'/><actor name='bob'/><light name='lamp'/><physics/><gui/><plugin name='p'/>";
     let world = read_models(&format!("{wall}{chairs}{hills}{actors}"), &mut Shelf::default());
@@ -178,12 +179,32 @@ fn what_is_missing_is_told_once_for_each_kind_and_counted_whole() {
         told,
         [
             " 7 collisions (`chair0/l/c`, `chair1/l/c`, `chair2/l/c`, `chair3/l/c`, ...) are a mesh `model://chair/c.dae`; `m/chair/c.dae`: no such file: 7 are missing",
-            " collision `hill/l/c` is a heightmap `hill.png`, which cannot be read: it is missing",
+            " collision `hill/l/c` is a heightmap `hill.png`; no such file: `hill.png`, `m/hill.png`: it is missing",
+            " collision `urn/l/c` is an image `urn.png`, which cannot be read: it is missing",
             " collision `scan/l/c` is a mesh `scan.glb`; `.glb` is not read (.stl, .obj and .dae are): it is missing",
             " 2 times <actor> (`ann`, `bob`) cannot be read: 2 are missing",
         ]
     );
-    assert_eq!(world.missing(), 11);
+    assert_eq!(world.missing(), 12);
+}
+
+/// A hill of 1 m in a field of 8 m by 8 m: of the flat ground nothing is left, of the hill what a lidar at 0.5 m meets.
+#[test]
+fn a_heightmap_is_floor_where_it_is_flat_and_a_wall_where_it_rises() {
+    let field =
+        "<heightmap><uri>model://field/f.pgm</uri><size>8 8 1</size><pos>1 0 0</pos></heightmap>";
+    let hill = "P2 5 5 255\n0 0 0 0 0\n0 0 0 255 0\n0 0 0 0 0\n0 0 0 0 0\n0 0 0 0 0\n";
+    let mut shelf = Shelf::of(&[("m/field/f.pgm", hill)]);
+    let world = read_models(&model("field", "0 0 0 0 0 0", field), &mut shelf);
+    assert_eq!((world.warnings.len(), world.missing(), world.solids.len()), (0, 0, 1));
+    let Body::Mesh { mesh, standing } = &world.solids[0].body else { panic!("a mesh") };
+    assert_eq!(standing.triangles(mesh).count(), 6, "those at the top");
+    // The hill stands at (3, 2); halfway up it is half as wide.
+    let met: Vec<Outline> = world.slice(0.5);
+    let bounds = met.iter().fold(Bounds::EMPTY, |b, outline| b.union(outline.bounds()));
+    let near = |a: f64, b: f64| (a - b).abs() < 0.02;
+    assert!(near(bounds.min.x, 2.0) && near(bounds.max.x, 4.0), "{bounds:?}");
+    assert!(near(bounds.min.y, 1.0) && near(bounds.max.y, 3.0), "{bounds:?}");
 }
 
 #[test]
