@@ -21,6 +21,7 @@ pub mod figure;
 pub mod geometry;
 pub mod grid;
 pub mod json;
+pub mod labels;
 pub mod math;
 pub mod rng;
 pub mod stats;

@@ -35,6 +35,7 @@ const LAYER_0: &[&str] = &[
     "grid",
     "factor",
     "condition",
+    "labels",
     "stats",
     "table",
     "figure",

@@ -25,6 +25,7 @@ mod original_worlds;
 mod own_worlds;
 mod robots;
 mod sandbox;
+mod schemas;
 mod shards;
 mod shared_store;
 mod standards;

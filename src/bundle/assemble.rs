@@ -183,7 +183,9 @@ fn observed(plan: &Plan, ledger: &Ledger) -> Result<Observations, TrialsTableErr
 /// Returns what tables and figures of `plan` are made from.
 pub fn findings<'a>(plan: &'a Plan, ledger: &'a Ledger) -> Findings<'a> {
     let experiment = &plan.experiment;
-    Findings::new(&experiment.factors, ledger, &experiment.published).designed(experiment.design())
+    Findings::new(&experiment.factors, ledger, &experiment.published)
+        .designed(experiment.design())
+        .labelled(&experiment.labels)
 }
 
 /// Writes an author's ORCID iD, in whatever form a manifest gives it, as the address that identifies a person.

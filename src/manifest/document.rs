@@ -21,6 +21,7 @@ use super::choice::{Choice, FactorDoc, Ordered};
 use super::parameters::ParametersDoc;
 use super::pinned::PinnedDoc;
 use crate::claims::Claim;
+use crate::labels::Labels;
 use crate::studies::StudyKind;
 use crate::studies::{FactorValue, FigureRequest, TableRequest};
 use schemars::JsonSchema;
@@ -78,6 +79,9 @@ pub struct ManifestDoc {
     /// What is varied: every factor with its values, crossed in this order, the last one fastest.
     #[serde(default)]
     pub factors: Ordered<FactorDoc>,
+    /// What readers see for factors and their values, by the factor; files for programs keep names and values as written.
+    #[serde(default)]
+    pub labels: Labels,
     /// Conditions to add to the crossed ones, each with a value for every factor.
     #[serde(default)]
     pub include: Vec<BTreeMap<String, FactorValue>>,

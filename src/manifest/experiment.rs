@@ -7,6 +7,7 @@ use crate::condition::Condition;
 use crate::digest::MeaningDigest;
 use crate::document::Tree;
 use crate::factor::Factor;
+use crate::labels::Labels;
 use crate::studies::{Calibrated, Setup, StudyKind};
 use crate::studies::{FigureRequest, TableRequest};
 use crate::table::Table;
@@ -40,6 +41,8 @@ pub struct Experiment {
     pub shared_noise: Vec<String>,
     /// The factors, in order.
     pub factors: Vec<Factor>,
+    /// What readers see for factors and their values.
+    pub labels: Labels,
     /// The cells of the design, in crossed order.
     pub conditions: Vec<ResolvedCondition>,
     /// The paper's own numbers, by name.

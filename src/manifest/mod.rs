@@ -30,6 +30,7 @@ mod figures;
 mod infer;
 mod input;
 mod knowledge;
+mod labels;
 mod library;
 mod lint;
 mod models;

@@ -4,7 +4,7 @@ use super::claims::as_judged;
 use super::experiment::{Assumption, Experiment, JointDraws};
 use super::input::InputKind;
 use super::library::normalised;
-use super::parameters::{is_whole, schema_of};
+use super::parameters::ParametersSchema;
 use super::resolver::Resolver;
 use super::sensitivity::warn_of_age;
 use crate::claims::Multiverse;
@@ -20,11 +20,11 @@ impl Experiment {
 }
 
 fn choices(kind: StudyKind, assumptions: &[Assumption]) -> Vec<Choice> {
-    let schema = schema_of(kind);
+    let schema = ParametersSchema::of(kind);
     let open = assumptions.iter().filter(|assumption| !assumption.range.is_empty());
     open.map(|assumption| {
         let Assumption { path, value, range, .. } = assumption;
-        Choice::new(path, value, range, is_whole(&schema, path))
+        Choice::new(path, value, range, schema.is_whole(path))
     })
     .collect()
 }

@@ -169,61 +169,90 @@ impl JsonSchema for ParametersDoc {
     }
 
     /// Returns the schema of any study's parameters: `manifest::schema` puts those of one in their place.
-    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let mut schema = Schema::default();
-        schema.insert("anyOf".to_owned(), StudyKind::all().map(schema_of).collect());
+        let mut of = |kind| {
+            let ParametersSchema { groups, values } = ParametersSchema::of(kind);
+            generator.definitions_mut().extend(values);
+            groups
+        };
+        schema.insert("anyOf".to_owned(), StudyKind::all().map(&mut of).collect());
         schema
     }
 }
 
-/// Returns the schema of the parameters of one study as manifests write them.
-pub(super) fn schema_of(kind: StudyKind) -> Value {
-    // Inlined, because its groups differ from the study's own schemas in what their values may be.
-    let settings = schemars::generate::SchemaSettings::draft2020_12().for_deserialize();
-    let generator = settings.with(|s| s.inline_subschemas = true).into_generator();
-    let mut schema = kind.schema(generator);
-    schema.remove("$schema");
-    schema.remove("title");
-    if let Some(object) = schema.as_object_mut() {
-        wrap_values(object);
-    }
-    schema.to_value()
+/// The schema of the parameters of one study as manifests write them.
+#[derive(Debug)]
+pub(super) struct ParametersSchema {
+    groups: Value,
+    /// What each parameter's value may be, by the name under which the groups refer to it: `prior-map.mapping.particles`.
+    values: Map<String, Value>,
 }
 
-/// Returns whether the parameter at `path` (`parameters.mapping.particles`) takes whole numbers only, by the `schema` of its study
-/// ([`schema_of`]).
-pub(super) fn is_whole(schema: &Value, path: &str) -> bool {
-    let mut found = schema;
-    for step in path.split('.').skip(1) {
-        match found.get("properties").and_then(|groups| groups.get(step)) {
-            Some(inner) => found = inner,
-            // Below a parameter are the values of a factor, which are all of its kind.
-            None => break,
+impl ParametersSchema {
+    /// Returns that of the study `kind`.
+    pub(super) fn of(kind: StudyKind) -> Self {
+        // Inlined, because its groups differ from the study's own schemas in what their values may be.
+        let settings = schemars::generate::SchemaSettings::draft2020_12().for_deserialize();
+        let generator = settings.with(|s| s.inline_subschemas = true).into_generator();
+        let mut groups = kind.schema(generator);
+        groups.remove("$schema");
+        groups.remove("title");
+        let mut values = Map::new();
+        if let Some(object) = groups.as_object_mut() {
+            wrap_values(object, kind.name(), &mut values);
+        }
+        Self { groups: groups.to_value(), values }
+    }
+
+    /// Puts it into the schema of a document of this study.
+    pub(super) fn put_into(self, document: &mut Value) {
+        document["properties"]["parameters"] = self.groups;
+        if let Some(definitions) = document.get_mut("$defs").and_then(Value::as_object_mut) {
+            definitions.extend(self.values);
+        } else {
+            document["$defs"] = Value::Object(self.values);
         }
     }
-    let types = match found.pointer("/anyOf/0/type") {
-        Some(Value::Array(types)) => types.clone(),
-        Some(one) => vec![one.clone()],
-        None => Vec::new(),
-    };
-    let has = |name: &str| types.iter().any(|known| known == name);
-    has("integer") && !has("number")
+
+    /// Returns whether the parameter at `path` (`parameters.mapping.particles`) takes whole numbers only.
+    pub(super) fn is_whole(&self, path: &str) -> bool {
+        let mut found = &self.groups;
+        for step in path.split('.').skip(1) {
+            match found.get("properties").and_then(|groups| groups.get(step)) {
+                Some(inner) => found = inner,
+                // Below a parameter are the values of a factor, which are all of its kind.
+                None => break,
+            }
+        }
+        let name = found["$ref"].as_str().and_then(|r| r.strip_prefix(DEFINITIONS));
+        let value = name.and_then(|name| self.values.get(name));
+        let types = match value.and_then(|value| value.pointer("/anyOf/0/type")) {
+            Some(Value::Array(types)) => types.clone(),
+            Some(one) => vec![one.clone()],
+            None => Vec::new(),
+        };
+        let has = |name: &str| types.iter().any(|known| known == name);
+        has("integer") && !has("number")
+    }
 }
 
-/// How deep values by one factor may lie in those by another.
-const NESTED: usize = 3;
+/// Where a schema refers to its definitions.
+const DEFINITIONS: &str = "#/$defs/";
 
-/// Lets every value below `schema` be plain, `{value, why, range}`, `{factor, why}` or `{by, values, otherwise, why}`.
-fn wrap_values(schema: &mut Map<String, Value>) {
+/// Lets every value below `schema`, which is called `name`, be plain, `{value, why, range}`, `{factor, why}` or
+/// `{by, values, otherwise, why}`, and writes to `values` what each may be: values by one factor may lie in those by another.
+fn wrap_values(schema: &mut Map<String, Value>, name: &str, values: &mut Map<String, Value>) {
     let Some(Value::Object(properties)) = schema.get_mut("properties") else { return };
-    for property in properties.values_mut() {
+    for (key, property) in properties {
+        let name = format!("{name}.{key}");
         let Value::Object(object) = property else { continue };
         object.remove("default");
         if object.contains_key("properties") {
-            wrap_values(object);
+            wrap_values(object, &name, values);
             continue;
         }
-        let description = object.get("description").cloned().unwrap_or_default();
+        let description = object.remove("description").unwrap_or_default();
         let plain = Value::Object(object.clone());
         let why = json!({ "type": "string", "description": "Why this value was chosen." });
         let range = json!({
@@ -247,23 +276,20 @@ fn wrap_values(schema: &mut Map<String, Value>) {
             "required": ["factor"],
             "additionalProperties": false,
         });
-        let mut forms = vec![plain.clone(), valued, of_a_factor];
-        for _ in 0..NESTED {
-            let mut outer = forms[..3].to_vec();
-            outer.push(json!({
-                "type": "object",
-                "properties": {
-                    "by": { "type": "string", "description": "The factor that decides." },
-                    "values": { "type": "object", "additionalProperties": { "anyOf": forms } },
-                    "otherwise": plain,
-                    "why": why,
-                },
-                "required": ["by", "values"],
-                "additionalProperties": false,
-            }));
-            forms = outer;
-        }
-        *property = json!({ "description": description, "anyOf": forms });
+        let this = json!({ "$ref": format!("{DEFINITIONS}{name}") });
+        let by_a_factor = json!({
+            "type": "object",
+            "properties": {
+                "by": { "type": "string", "description": "The factor that decides." },
+                "values": { "type": "object", "additionalProperties": this },
+                "otherwise": plain,
+                "why": why,
+            },
+            "required": ["by", "values"],
+            "additionalProperties": false,
+        });
+        *property = json!({ "description": description, "$ref": this["$ref"] });
+        values.insert(name, json!({ "anyOf": [plain, valued, of_a_factor, by_a_factor] }));
     }
 }
 
@@ -295,8 +321,9 @@ mod tests {
 
     #[test]
     fn whole_numbers_are_told_from_others_by_the_schema() {
-        let whole =
-            |kind: &str, path: &str| is_whole(&schema_of(StudyKind::named(kind).unwrap()), path);
+        let whole = |kind: &str, path: &str| {
+            ParametersSchema::of(StudyKind::named(kind).unwrap()).is_whole(path)
+        };
         assert!(whole("prior-map", "parameters.mapping.particles"));
         assert!(whole("deadline", "parameters.pilot.back-off-times"));
         assert!(!whole("deadline", "parameters.rules.schedule.seconds-per-edge"));

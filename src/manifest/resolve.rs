@@ -14,7 +14,9 @@ use super::parts::Parts;
 use super::requests::{self, Requests};
 use super::resolver::Resolver;
 use super::schema::schema;
-use super::{claims, infer, lint, multiverse, numbers, overrides, previous, sensitivity, settings};
+use super::{
+    claims, infer, labels, lint, multiverse, numbers, overrides, previous, sensitivity, settings,
+};
 use crate::condition::Condition;
 use crate::document::{Diagnostic, Node, Parsed, Source, parse_tree_by, read};
 use crate::studies::StudyKind;
@@ -100,6 +102,7 @@ impl Resolver<'_> {
         }
         let (factors, conditions) = cross(doc, &mut self.faults);
         self.factors.clone_from(&factors);
+        labels::check(&doc.labels, &factors, &mut self.faults);
         self.check_shared_noise();
         self.check_prior_names();
         self.check_study_keys();
@@ -136,6 +139,7 @@ impl Resolver<'_> {
             trials: doc.trials,
             shared_noise: doc.shared_noise.clone(),
             factors,
+            labels: doc.labels.clone(),
             conditions,
             published,
             published_files: doc

@@ -5,7 +5,7 @@ use super::faults::step;
 use super::input::{InputKind, WrittenIn};
 use super::library::{Library, joined, normalised, relative_to};
 use super::overrides;
-use super::parameters::{ParametersDoc, is_wrapped, schema_of};
+use super::parameters::{ParametersDoc, ParametersSchema, is_wrapped};
 use crate::document::{Content, Diagnostic, Node, Source, Tree, parse_tree_by, read};
 use crate::studies::StudyKind;
 use schemars::JsonSchema;
@@ -96,7 +96,7 @@ fn settings_file(
     let kind = theirs.as_deref().and_then(StudyKind::named);
     let mut expected = crate::document::schema_of::<SettingsDoc>();
     if let Some(kind) = kind {
-        expected["properties"]["parameters"] = schema_of(kind);
+        ParametersSchema::of(kind).put_into(&mut expected);
     }
     let written = parse_tree_by::<SettingsDoc>(written, &expected)?.tree;
     if let (Some(own), Some(theirs)) = (own, theirs)

@@ -9,6 +9,7 @@ use crate::digest::FileDigest;
 use crate::document::Node;
 use crate::factor::Factor;
 use crate::json::{self, AsWritten};
+use crate::labels::Labels;
 use crate::manifest::{
     Assumption, Author, Cite, Experiment, Meanings, ResolvedCondition, WrittenIn,
 };
@@ -63,6 +64,9 @@ pub struct ResolvedStudy {
     /// The factors, in order.
     #[serde(skip_serializing_if = "AsWritten::is_absent")]
     pub factors: AsWritten<Vec<Factor>>,
+    /// What readers see for factors and their values; absent where the manifest gives no labels.
+    #[serde(skip_serializing_if = "AsWritten::is_absent")]
+    pub labels: AsWritten<Labels>,
     /// The cells of the design, in crossed order.
     #[serde(skip_serializing_if = "AsWritten::is_absent")]
     pub conditions: AsWritten<Vec<StudyCondition>>,
@@ -195,6 +199,9 @@ impl ResolvedStudy {
         };
         if !experiment.limits.is_empty() {
             study.limits = AsWritten::of(&experiment.limits);
+        }
+        if !experiment.labels.is_empty() {
+            study.labels = AsWritten::of(&experiment.labels);
         }
         if let Some(known) = &experiment.sensitivity {
             study.sensitivity = AsWritten::of(&known.as_written);

@@ -8,10 +8,11 @@ use crate::claims::published::PublishedCell;
 use crate::claims::terms::Correction;
 use crate::claims::verdict::{CellNumbers, ComparisonVerdict, agreement_in_words, rounded};
 use crate::claims::{Claim, ClaimVerdict, Judgement, PaperTable};
+use crate::labels::Labels;
 use crate::math::exp;
 use forest::{Quantity, Strip};
 use serde::Serialize;
-use statement::Statement;
+use statement::{Statement, cell_in_words};
 use std::collections::BTreeMap;
 
 /// A claim and what became of it.
@@ -79,7 +80,7 @@ pub struct NoVerdicts {
 }
 
 /// Returns the rows of a list of verdicts, the bytes of `path`; `claims` are the manifest's own, for their reasons, and `published`
-/// the paper's numbers by the name of their table.
+/// the paper's numbers by the name of their table, `labels` what readers see for factors and values.
 ///
 /// # Errors
 /// Where the bytes are no list of verdicts.
@@ -88,6 +89,7 @@ pub(super) fn rows(
     bytes: Option<&[u8]>,
     claims: &[Claim],
     published: &BTreeMap<String, Vec<PublishedCell>>,
+    labels: &Labels,
 ) -> Result<Vec<ClaimRow>, NoVerdicts> {
     let Some(bytes) = bytes else { return Ok(Vec::new()) };
     let verdicts: Vec<ClaimVerdict> = serde_json::from_slice(bytes)
@@ -106,7 +108,7 @@ pub(super) fn rows(
         .map(|(quantity, strips)| (quantity, forest::axis_of(strips.into_iter())))
         .collect();
     let drawn = |verdict: ClaimVerdict, strip: Option<&Strip>| {
-        let row = ClaimRow { why: why(&verdict.id), ..row(verdict) };
+        let row = ClaimRow { why: why(&verdict.id), ..row(verdict, labels) };
         let Some(strip) = strip else { return row };
         let axis = &axes[&strip.quantity];
         ClaimRow {
@@ -121,12 +123,12 @@ pub(super) fn rows(
     Ok(verdicts.into_iter().zip(&strips).map(|(v, strip)| drawn(v, strip.as_ref())).collect())
 }
 
-fn row(verdict: ClaimVerdict) -> ClaimRow {
+fn row(verdict: ClaimVerdict, labels: &Labels) -> ClaimRow {
     ClaimRow {
         numbers: numbers(&verdict) + &censored(&verdict),
         differs: differs(verdict.judgement, verdict.paper_table).to_owned(),
         rule: rule(&verdict),
-        comparisons: verdict.comparisons.iter().map(comparison).collect(),
+        comparisons: verdict.comparisons.iter().map(|c| comparison(c, labels)).collect(),
         verdict: verdict.judgement.to_string(),
         paper_table: verdict.paper_table.to_string(),
         id: verdict.id,
@@ -208,15 +210,15 @@ fn censored(verdict: &ClaimVerdict) -> String {
     verdict.censored().map(words).unwrap_or_default()
 }
 
-fn comparison(comparison: &ComparisonVerdict) -> ComparisonRow {
+fn comparison(comparison: &ComparisonVerdict, labels: &Labels) -> ComparisonRow {
     let reason = comparison.reason.clone().filter(|reason| !reason.is_empty());
     ComparisonRow {
         about: Statement::read(&comparison.about)
-            .map_or_else(|| comparison.about.clone(), |statement| statement.in_words()),
+            .map_or_else(|| comparison.about.clone(), |statement| statement.in_words(labels)),
         verdict: comparison.judgement.to_string(),
         finding: reason.unwrap_or_else(|| effect(comparison)),
         test: test(comparison),
-        cells: comparison.cells.iter().map(cell).collect(),
+        cells: comparison.cells.iter().map(|c| cell(c, labels)).collect(),
     }
 }
 
@@ -324,7 +326,7 @@ fn test_name(name: &str) -> String {
 }
 
 /// Writes a cell: `start=A, strategy=random: 96 %, 48 of 50 runs`.
-fn cell(cell: &CellNumbers) -> String {
+fn cell(cell: &CellNumbers, labels: &Labels) -> String {
     let (trials, reached) = (cell.trials, cell.reached);
     let mut parts = Vec::new();
     match (cell.successes, cell.mean) {
@@ -347,12 +349,13 @@ fn cell(cell: &CellNumbers) -> String {
     if let Some(published) = cell.published {
         parts.push(format!("paper {}", fixed(published, 2)));
     }
-    format!("{}: {}", cell.cell, parts.join(", "))
+    format!("{}: {}", cell_in_words(&cell.cell, labels), parts.join(", "))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::labels;
     use serde_json::{Value, json};
 
     fn one(verdict: &str, comparisons: &[Value]) -> ClaimRow {
@@ -365,9 +368,15 @@ mod tests {
             "id": "D1", "ours": "it is so", "why": "the claim's own words", "expect": {"untestable": {"because": "so"}},
         });
         let claims = [serde_json::from_value(claim).unwrap()];
-        rows("claims.json", Some(verdict.to_string().as_bytes()), &claims, &BTreeMap::new())
-            .unwrap()
-            .remove(0)
+        rows(
+            "claims.json",
+            Some(verdict.to_string().as_bytes()),
+            &claims,
+            &BTreeMap::new(),
+            &labels::NONE,
+        )
+        .unwrap()
+        .remove(0)
     }
 
     fn compared(verdict: &str) -> Value {
@@ -434,11 +443,13 @@ mod tests {
     fn what_has_no_effect_keeps_its_reason_and_what_is_no_list_is_refused() {
         assert_eq!(one("cannot-be-tested", &[]).numbers, "for a reason");
         assert!(
-            rows("claims.json", Some(b"{}"), &[], &BTreeMap::new())
+            rows("claims.json", Some(b"{}"), &[], &BTreeMap::new(), &labels::NONE)
                 .unwrap_err()
                 .to_string()
                 .starts_with("claims.json: ")
         );
-        assert!(rows("claims.json", None, &[], &BTreeMap::new()).unwrap().is_empty());
+        assert!(
+            rows("claims.json", None, &[], &BTreeMap::new(), &labels::NONE).unwrap().is_empty()
+        );
     }
 }

@@ -45,8 +45,9 @@ pub fn content_of(
     let published = published
         .map(|(name, table)| (name.clone(), published::read(table, &factors).unwrap_or_default()))
         .collect();
-    let rows =
-        |path: &str, bytes: Option<&[u8]>| claim::rows(path, bytes, &experiment.claims, &published);
+    let rows = |path: &str, bytes: Option<&[u8]>| {
+        claim::rows(path, bytes, &experiment.claims, &published, &experiment.labels)
+    };
     let claims = rows("results/claims.json", bundle.result("claims.json"))?;
     let machine_claims = rows("circumstances/claims.json", machine_verdicts)?;
     let section = cite.and_then(|cite| cite.section.as_deref()).unwrap_or_default();

@@ -126,7 +126,9 @@ pub(super) fn partial(plan: &Plan, selection: &Selection) -> Option<String> {
         parts.push(format!("{trials} per condition instead of {}", plan.experiment.trials));
     }
     for (factor, values) in &selection.only {
-        parts.push(format!("only {factor} {}", values.join(", ")));
+        let labels = &plan.experiment.labels;
+        let values: Vec<&str> = values.iter().map(|value| labels.value(factor, value)).collect();
+        parts.push(format!("only {} {}", labels.factor(factor), values.join(", ")));
     }
     if let Some((shard, of)) = selection.shard {
         parts.push(format!("only shard {shard} of {of}"));

@@ -6,7 +6,6 @@
 
 use super::columns::{Columns, of_factor};
 use super::{Findings, TableRequest};
-use crate::condition::Condition;
 use crate::stats::compatibility::{Agreement, Printed, rules};
 use crate::table::{Column, Table, Value};
 use serde::{Serialize, Serializer};
@@ -181,13 +180,17 @@ impl Exhibit {
         let tidy = declared.table(&cells);
         // A factor that is called like a column of numbers would be taken for one; its column comes first in the table.
         let known = |column: Column| of_factor(findings.factors, &column.name).unwrap_or(column);
+        let mut set = wanted.set(&cells, findings);
+        if set.print.is_none() && !findings.labels.is_empty() {
+            set.print = Some(labelled(&tidy, findings));
+        }
         Self {
             id: request.id.clone(),
             title: request.title.clone(),
             columns: declared.described().into_iter().map(known).collect(),
             tidy,
             answer: wanted.answer(&cells),
-            set: wanted.set(&cells, findings),
+            set,
         }
     }
 
@@ -217,16 +220,16 @@ impl From<Printed> for Measured {
 }
 
 /// Cells of which so many stand abreast in a line, each line named by its first one.
-pub(super) struct Abreast<'a, C> {
+pub(super) struct Abreast<'a, C, L> {
     /// The cells, line by line.
     pub cells: &'a [C],
     /// How many are a line.
     pub of: usize,
     /// What names a line.
-    pub label: fn(&C) -> Vec<String>,
+    pub label: L,
 }
 
-impl<C> Abreast<'_, C> {
+impl<C, L: Fn(&C) -> Vec<String>> Abreast<'_, C, L> {
     fn lines(&self) -> impl Iterator<Item = (Vec<String>, &[C])> {
         self.cells.chunks(self.of.max(1)).map(|line| ((self.label)(&line[0]), line))
     }
@@ -256,7 +259,18 @@ impl<C> Abreast<'_, C> {
     }
 }
 
-/// Returns the values of factors, which name a line.
-pub(super) fn values(rows: &Condition) -> Vec<String> {
-    rows.iter().map(|(_, value)| value.clone()).collect()
+/// Returns the `tidy` form with what readers see for factors and their values.
+fn labelled(tidy: &Table, findings: &Findings<'_>) -> Table {
+    let labels = findings.labels;
+    let is_factor = |name: &str| findings.factors.iter().any(|factor| factor.name == name);
+    let heads = tidy.columns.iter().map(|name| labels.factor(name).to_owned());
+    let mut table = Table::new(heads);
+    for row in &tidy.rows {
+        let shown = |(name, value): (&String, &Value)| match value {
+            Value::Text(text) if is_factor(name) => labels.value(name, text).into(),
+            other => other.clone(),
+        };
+        table.push(tidy.columns.iter().zip(row).map(shown).collect());
+    }
+    table
 }

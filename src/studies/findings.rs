@@ -4,6 +4,7 @@ use super::columns::of_factor;
 use super::{Entry, Group, Ledger, Setup};
 use crate::condition::Condition;
 use crate::factor::Factor;
+use crate::labels::{self, Labels};
 use crate::stats::compatibility::{Silence, absence};
 use crate::table::{Column, Table, Value};
 use std::collections::{BTreeMap, BTreeSet};
@@ -19,6 +20,8 @@ pub struct Findings<'a> {
     pub ledger: &'a Ledger,
     /// The paper's own numbers, by name: factor columns, `coverage-percent`, `value`, `sd`, `n`.
     pub published: &'a BTreeMap<String, Table>,
+    /// What readers see for factors and their values.
+    pub labels: &'a Labels,
 }
 
 impl<'a> Findings<'a> {
@@ -28,13 +31,20 @@ impl<'a> Findings<'a> {
         ledger: &'a Ledger,
         published: &'a BTreeMap<String, Table>,
     ) -> Self {
-        Self { factors, design: Vec::new(), ledger, published }
+        Self { factors, design: Vec::new(), ledger, published, labels: &labels::NONE }
     }
 
     /// Returns the same with the conditions of the whole `design`.
     #[must_use]
     pub fn designed(mut self, design: impl Iterator<Item = (&'a Condition, &'a Setup)>) -> Self {
         self.design = design.collect();
+        self
+    }
+
+    /// Returns the same with what readers see for factors and their values.
+    #[must_use]
+    pub fn labelled(mut self, labels: &'a Labels) -> Self {
+        self.labels = labels;
         self
     }
 

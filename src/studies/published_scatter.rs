@@ -2,11 +2,12 @@
 
 use super::Drawn;
 use super::findings::Findings;
-use super::outcomes::{OutcomeTable, Quantity, named, published_share};
+use super::outcomes::{OutcomeTable, Quantity, published_share};
 use super::prior_map::CoverageTable;
 use super::requests::{TableLayout, TableRequest};
 use crate::condition::Condition;
 use crate::figure::{Scatter, ScatterPoint};
+use crate::labels::Labels;
 use crate::math;
 use crate::stats::distribution::student_t_quantile;
 use crate::stats::rank::pearson;
@@ -98,7 +99,7 @@ impl Findings<'_> {
                 };
                 let baseline = table.baseline.as_ref().map_or("", |value| &value.0);
                 let (quantity, unit) = if wanted.ratios {
-                    (format!("ratio of {name} to {baseline}"), "")
+                    (format!("ratio of {name} to {}", self.labels.value(&table.by, baseline)), "")
                 } else {
                     (format!("{name} to levels of coverage ({unit}), mean"), unit)
                 };
@@ -120,7 +121,7 @@ impl Findings<'_> {
         let far = farthest(&pairs, logarithmic);
         let points = pairs.iter().enumerate().map(|(i, pair)| ScatterPoint {
             group: groups.iter().position(|group| *group == level(pair)).unwrap_or_default(),
-            name: pair.values.iter().map(|(f, v)| named(f, v)).collect::<Vec<_>>().join(", "),
+            name: self.labels.condition(&pair.values),
             published: pair.published,
             published_interval: pair.published_interval,
             ours: pair.ours,
@@ -128,7 +129,11 @@ impl Findings<'_> {
             label: if far.contains(&i) { pair.short.clone() } else { String::new() },
         });
         let shown = |group: &String| {
-            if by == COVERAGE { format!("{group} % coverage") } else { named_level(&by, group) }
+            if by == COVERAGE {
+                format!("{group} % coverage")
+            } else {
+                named_level(self.labels, &by, group)
+            }
         };
         let has_intervals = pairs.iter().any(|p| p.ours_interval.is_some());
         let both = has_intervals && pairs.iter().any(|p| p.published_interval.is_some());
@@ -155,9 +160,9 @@ impl Findings<'_> {
             .filter_map(|cell| {
                 let ((published, n), ours) = (cell.published?, cell.ours?);
                 let values = cell.rows.clone().with(&table.by, &cell.by);
-                let short = cell.rows.iter().map(|(_, v)| v.as_str()).chain([cell.by.as_str()]);
+                let short = self.labels.values(&values).join(" ");
                 Some(Pair {
-                    short: short.collect::<Vec<_>>().join(" "),
+                    short,
                     values,
                     published,
                     published_interval: n
@@ -178,8 +183,7 @@ impl Findings<'_> {
                 let ((published, sd, runs), ours) = (cell.published?, cell.ours?);
                 let values = cell.rows.clone().with(&table.by, &cell.by);
                 let values = values.with(COVERAGE, cell.percent.to_string());
-                let short =
-                    values.iter().map(|(_, v)| v.as_str()).collect::<Vec<_>>().join(" ") + " %";
+                let short = self.labels.values(&values).join(" ") + " %";
                 let pair = if ratios {
                     if cell.by == baseline {
                         return None;
@@ -213,12 +217,12 @@ impl Findings<'_> {
 /// The level of coverage as if it were a factor.
 const COVERAGE: &str = "coverage-percent";
 
-fn named_level(factor: &str, value: &str) -> String {
+fn named_level(labels: &Labels, factor: &str, value: &str) -> String {
     // A name says itself what it is; a number or a truth does not.
     if value.parse::<f64>().is_ok() || matches!(value, "true" | "false") || value.len() < 3 {
-        named(factor, value)
+        labels.in_words(factor, value)
     } else {
-        value.to_owned()
+        labels.value(factor, value).to_owned()
     }
 }
 

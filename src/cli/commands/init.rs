@@ -18,6 +18,8 @@ const MANIFEST: &str = include_str!("init/study.yaml");
 const WORLD: &str = include_str!("../../../worlds/basic.yaml");
 const ROBOT: &str = include_str!("../../../robots/kobuki.urdf");
 const WORLD_NAME: &str = "apartment.yaml";
+/// The schema by which editors complete and check the manifest, beside it: nothing has to be fetched.
+const SCHEMA_NAME: &str = "manifest.schema.json";
 const ROBOT_NAME: &str = "kobuki.urdf";
 
 /// Where no world reaches (m): a start that is in nobody's way while the world is read.
@@ -45,6 +47,8 @@ pub(in crate::cli) fn run(args: &InitArgs, terminal: Terminal) -> Result<Exit, F
     if args.world.is_none() {
         load::write(&folder.join(WORLD_NAME), WORLD.as_bytes())?;
     }
+    let schema = format!("{:#}\n", crate::manifest::schema(None));
+    load::write(&folder.join(SCHEMA_NAME), schema.as_bytes())?;
     if args.robot.is_none() && args.world.is_none() && args.map.is_none() {
         load::write(&manifest, MANIFEST.replace("STUDY-NAME", name).as_bytes())?;
     } else {

@@ -72,7 +72,9 @@ pub(in crate::cli) fn run(args: &ReplayArgs, terminal: Terminal) -> Result<Exit,
         let found = if same { "equals" } else { "DIFFERS from" };
         let text = format!("{name}: the re-enacted record {found} the archived one");
         notes.push(Note { text, good: same });
-        played.push((name, recording));
+        // Readers of the page see labels; whoever asks for the trial again needs its name.
+        let title = plan.experiment.labels.title(&spec.condition, spec.trial);
+        played.push((title.unwrap_or(name), recording));
     }
     if let Some(path) = &args.html {
         let trials: Vec<(String, &Recording)> =

@@ -270,7 +270,9 @@ impl Done {
                 .collect();
             let came =
                 if failed.is_empty() { Came::Passed } else { Came::Broken(failed.join("\n")) };
-            let name = format!("{} of {slug}", counted(trials.len(), "trial"));
+            let labels = &self.plan.experiment.labels;
+            let of = if labels.is_empty() { slug } else { labels.condition(condition) };
+            let name = format!("{} of {of}", counted(trials.len(), "trial"));
             let case = Case { name, class: RUN, came, said: String::new() };
             (!trials.is_empty()).then_some(case)
         });

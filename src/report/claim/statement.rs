@@ -1,6 +1,8 @@
 //! What a comparison states, read from the words in which `claims.json` has it (`METRIC: (FACTOR=VALUE, ...) < (...) within X`),
 //! and said as one would.
 
+use crate::labels::Labels;
+
 /// Factor values that name cells: `start=C, deadline-s=680|477`.
 type Pins<'a> = Vec<(&'a str, &'a str)>;
 
@@ -36,7 +38,8 @@ impl<'a> Statement<'a> {
     }
 
     /// Says it as one would: `success: strategy random higher than frontier, at start A and deadline-s 680`.
-    pub(super) fn in_words(&self) -> String {
+    pub(super) fn in_words(&self, labels: &Labels) -> String {
+        let said = |pins: &Pins<'a>| said(pins, labels);
         let metric = self.metric;
         let tail = if self.tail.is_empty() { String::new() } else { format!(" {}", self.tail) };
         let Some(second) = &self.second else {
@@ -60,7 +63,7 @@ impl<'a> Statement<'a> {
         };
         // One factor on both sides is named once.
         let other = match (&one[..], &other[..]) {
-            ([(factor, _)], [(same, value)]) if factor == same => either(value),
+            ([(factor, _)], [(same, value)]) if factor == same => either(factor, value, labels),
             _ => said(&other),
         };
         let place =
@@ -81,8 +84,8 @@ fn pins(text: &str) -> Option<Pins<'_>> {
     text.split(", ").map(|pin| pin.split_once('=')).collect()
 }
 
-fn either(values: &str) -> String {
-    let values: Vec<&str> = values.split('|').collect();
+fn either(factor: &str, values: &str, labels: &Labels) -> String {
+    let values: Vec<&str> = values.split('|').map(|value| labels.value(factor, value)).collect();
     match values[..] {
         [.., last] if values.len() > 1 => {
             format!("{} or {last}", values[..values.len() - 1].join(", "))
@@ -91,10 +94,28 @@ fn either(values: &str) -> String {
     }
 }
 
-fn said(pins: &Pins<'_>) -> String {
-    let pins: Vec<String> =
-        pins.iter().map(|(factor, value)| format!("{factor} {}", either(value))).collect();
-    pins.join(", ")
+/// Names cells; a label says itself what it is, a value stands behind its factor.
+fn said(pins: &Pins<'_>, labels: &Labels) -> String {
+    let pin = |(factor, values): &(&str, &str)| {
+        let either = either(factor, values, labels);
+        let first = values.split('|').next().unwrap_or_default();
+        match labels.label(factor, first) {
+            Some(_) => either,
+            None => format!("{} {either}", labels.factor(factor)),
+        }
+    };
+    pins.iter().map(pin).collect::<Vec<_>>().join(", ")
+}
+
+/// Returns the cell that `text` names (`start=A, strategy=random`) as readers see it; of another form, as it is.
+pub(super) fn cell_in_words(text: &str, labels: &Labels) -> String {
+    if labels.is_empty() {
+        return text.to_owned();
+    }
+    match pins(text) {
+        Some(pins) if !pins.is_empty() => said(&pins, labels),
+        _ => text.to_owned(),
+    }
 }
 
 /// Where an effect has to lie for a statement to hold, in the unit of the effect.
@@ -144,10 +165,30 @@ impl Wanted {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::labels::NONE;
+
+    #[test]
+    fn labels_stand_for_factors_and_values() {
+        let labels: Labels = serde_json::from_str(
+            r#"{"furnished": {"values": {"true": "furnished", "false": "unfurnished"}}, "prior": {"name": "prior knowledge"}}"#,
+        )
+        .unwrap();
+        let about = "time-s-at-70: (furnished=true, prior=none) > (furnished=false, prior=none)";
+        assert_eq!(
+            Statement::read(about).unwrap().in_words(&labels),
+            "time-s-at-70: furnished higher than unfurnished, at prior knowledge none"
+        );
+        assert_eq!(
+            cell_in_words("furnished=true|false, prior=none", &labels),
+            "furnished or unfurnished, prior knowledge none"
+        );
+        assert_eq!(cell_in_words("all trials", &labels), "all trials");
+        assert_eq!(cell_in_words("start=A", &NONE), "start=A");
+    }
 
     #[test]
     fn what_is_compared_is_said_once_and_where_after_it() {
-        let said = |about| Statement::read(about).map(|s| s.in_words()).unwrap_or_default();
+        let said = |about| Statement::read(about).map(|s| s.in_words(&NONE)).unwrap_or_default();
         for (about, words) in [
             (
                 "success: (deadline-s=680, start=A, strategy=random) > (deadline-s=680, start=A, strategy=frontier)",

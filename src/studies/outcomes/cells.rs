@@ -73,6 +73,12 @@ impl Findings<'_> {
         values
     }
 
+    /// Returns what readers see for the values that stand side by side.
+    pub(super) fn shown_columns(&self, request: &OutcomeTable) -> Vec<String> {
+        let values = self.columns_of(request);
+        values.iter().map(|value| self.labels.value(&request.by, value).to_owned()).collect()
+    }
+
     fn outcome_cell(
         &self,
         request: &OutcomeTable,

@@ -6,6 +6,7 @@ use super::{
 };
 use crate::condition::Condition;
 use crate::figure::{Estimate, EstimateChart, Look, Panel, PanelLine, Part, ShareChart, Shares};
+use crate::labels::Labels;
 use crate::stats::summary::quantile;
 use crate::studies::findings::Findings;
 use crate::studies::{Drawn, End, Outcome};
@@ -30,23 +31,11 @@ fn stack() -> Vec<(Outcome, Look)> {
     looks.into_iter().flat_map(of).collect()
 }
 
-/// Returns a factor's value in words: `deadline 680 s`, `furnished true`.
-pub(in crate::studies) fn named(factor: &str, value: &str) -> String {
-    let units = [("-m-s", "m/s"), ("-s", "s"), ("-m", "m"), ("-deg", "°"), ("-percent", "%")];
-    for (suffix, unit) in units {
-        if let Some(name) = factor.strip_suffix(suffix)
-            && value.parse::<f64>().is_ok()
-        {
-            return format!("{} {value} {unit}", name.replace('-', " "));
-        }
-    }
-    format!("{} {value}", factor.replace('-', " "))
-}
-
 /// Returns panels of `cells`, `abreast` rows each, in lines by the first of several factors that have rows.
 fn lines<C, R>(
     cells: &[C],
     abreast: usize,
+    labels: &Labels,
     rows_of: impl Fn(&C) -> &Condition,
     row: impl Fn(&C) -> R,
 ) -> Vec<PanelLine<R>> {
@@ -55,7 +44,7 @@ fn lines<C, R>(
         let Some(first) = group.first() else { continue };
         let values = rows_of(first);
         let own = usize::from(values.len() > 1);
-        let words: Vec<String> = values.iter().map(|(f, v)| named(f, v)).collect();
+        let words: Vec<String> = values.iter().map(|(f, v)| labels.in_words(f, v)).collect();
         let line = words[..own].join(", ");
         let limit = values.iter().skip(own).find(|(factor, _)| factor == DEADLINE);
         let panel = Panel {
@@ -108,13 +97,13 @@ impl OutcomeShares {
 impl Findings<'_> {
     /// Makes a requested figure: estimates with intervals, the paper's numbers under ours.
     fn outcome_figure(&self, title: &str, request: &OutcomeTable) -> EstimateChart {
-        let names = self.columns_of(request);
+        let names = self.shown_columns(request);
         let cells = self.outcome_cells(request);
         let is_mean = matches!(request.show, Quantity::Mean(_));
         let by_deadline = matches!(&request.show, Quantity::Mean(measure) if measure == TIME)
             && request.rows.iter().any(|factor| factor == DEADLINE);
         let row = |cell: &OutcomeCell| self.estimate(request, cell);
-        let mut lines = lines(&cells, names.len(), |cell| &cell.rows, row);
+        let mut lines = lines(&cells, names.len(), self.labels, |cell| &cell.rows, row);
         if !by_deadline {
             lines.iter_mut().flat_map(|l| &mut l.panels).for_each(|panel| panel.mark = None);
         }
@@ -165,7 +154,7 @@ impl Findings<'_> {
             only: request.only.clone(),
             published: None,
         };
-        let names = self.columns_of(&table);
+        let names = self.shown_columns(&table);
         let cells = self.outcome_cells(&table);
         let ended = |outcome: Outcome| self.ledger.count(outcome) > 0;
         let printed =
@@ -194,8 +183,8 @@ impl Findings<'_> {
             title: title.to_owned(),
             quantity: "share of trials (%)".to_owned(),
             parts: parts.iter().map(named_part).collect(),
+            lines: lines(&cells, names.len(), self.labels, |cell| &cell.rows, row),
             names,
-            lines: lines(&cells, self.columns_of(&table).len(), |cell| &cell.rows, row),
         }
     }
 
@@ -296,18 +285,6 @@ mod tests {
             only: BTreeMap::new(),
             published: published.map(str::to_owned),
         }
-    }
-
-    #[test]
-    fn factors_are_told_with_their_units() {
-        let told = [
-            ("deadline-s", "68"),
-            ("node-noise-m", "0.5"),
-            ("prior", "none"),
-            ("ray-stop", "even"),
-        ]
-        .map(|(factor, value)| named(factor, value));
-        assert_eq!(told, ["deadline 68 s", "node noise 0.5 m", "prior none", "ray stop even"]);
     }
 
     #[test]

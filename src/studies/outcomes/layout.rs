@@ -3,9 +3,7 @@
 use super::{OutcomeCell, OutcomeTable, Percent, Quantity};
 use crate::stats::compatibility::Agreement;
 use crate::studies::columns::{Columns, whole};
-use crate::studies::exhibit::{
-    Abreast, Grid, GridCell, Layout, Lines, Measured, Set, Source, values,
-};
+use crate::studies::exhibit::{Abreast, Grid, GridCell, Layout, Lines, Measured, Set, Source};
 use crate::studies::{Findings, TableRequest};
 use crate::table::{Column, unit_of};
 
@@ -76,10 +74,16 @@ impl Layout for OutcomeTable {
     /// Sets the values side by side; where the paper's are asked for, they stand in columns of their own in a document, in the
     /// same column in a terminal.
     fn set(&self, cells: &[OutcomeCell], findings: &Findings<'_>) -> Set {
-        let side_by_side = findings.columns_of(self);
+        let labels = findings.labels;
+        let side_by_side = findings.shown_columns(self);
+        let rows = labels.factors(&self.rows);
         let is_published = self.published.is_some();
-        let abreast = Abreast { cells, of: side_by_side.len(), label: |cell| values(&cell.rows) };
-        let with = |columns: Vec<String>| [self.rows.clone(), columns].concat();
+        let abreast = Abreast {
+            cells,
+            of: side_by_side.len(),
+            label: |cell: &OutcomeCell| labels.values(&cell.rows),
+        };
+        let with = |columns: Vec<String>| [rows.clone(), columns].concat();
         let both = side_by_side.iter().flat_map(|value| {
             [Some(value.clone()), is_published.then(|| format!("{value} (paper)"))]
         });
@@ -97,7 +101,7 @@ impl Layout for OutcomeTable {
                 source: Source::of(self.published.as_ref()),
                 decimals: 1,
                 of_trials: true,
-                row_header: self.rows.join(", "),
+                row_header: rows.join(", "),
                 columns: side_by_side,
                 rows: abreast.rows(grid_cell),
             },

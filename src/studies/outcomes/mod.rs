@@ -7,7 +7,6 @@ mod layout;
 
 pub use cells::{Estimate, OutcomeCell};
 pub(super) use cells::{measured, published_share};
-pub(super) use charts::named;
 
 use crate::studies::{FactorValue, Outcome};
 use schemars::JsonSchema;

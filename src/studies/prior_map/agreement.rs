@@ -6,6 +6,7 @@ mod layout;
 use super::requests::{AgreementTable, CoverageTable};
 use super::results::CoverageCell;
 use crate::condition::Condition;
+use crate::labels::Labels;
 use crate::math::{exp, ln};
 use crate::rng::{Seeds, Stream};
 use crate::stats::agreement::{Line, line, log_ratio_half_width, rmse, skill_over_constant};
@@ -161,7 +162,8 @@ impl Findings<'_> {
                     let part: Vec<CoverageCell> =
                         cells.iter().filter(|cell| cell.rows.contains(&level)).cloned().collect();
                     let scope = format!("{factor}={}", level.1);
-                    found.push(agreement(id, (&scope, &scope), &part));
+                    let shown = in_scope(&scope, self.labels);
+                    found.push(agreement(id, (&scope, &shown), &part));
                 }
             }
             // The levels of a single factor have been compared above.
@@ -169,7 +171,7 @@ impl Findings<'_> {
                 let has = |cell: &&CoverageCell| cell.rows.has_all(reading);
                 let part: Vec<CoverageCell> = cells.iter().filter(has).cloned().collect();
                 let pairs: Vec<String> = reading.iter().map(|(f, v)| format!("{f}={v}")).collect();
-                let values: Vec<&str> = reading.iter().map(|(_, v)| v.as_str()).collect();
+                let values = self.labels.values(reading);
                 let names = (pairs.join(", "), values.join(", "));
                 found.push(agreement(id, (&names.0, &names.1), &part));
             }
@@ -182,12 +184,22 @@ impl Findings<'_> {
                     .cloned()
                     .collect();
                 let scope = format!("{}={value}", table.by);
-                found.push(agreement(id, (&scope, &scope), &part));
+                let shown = in_scope(&scope, self.labels);
+                found.push(agreement(id, (&scope, &shown), &part));
             }
         }
         found.retain(|part| part.ratios > 0 || part.scope == "all");
         found
     }
+}
+
+/// Returns the part of a table that `scope` names (`all`, or `factor=value` once or more often) as readers see it.
+pub(super) fn in_scope(scope: &str, labels: &Labels) -> String {
+    let shown = |pair: &str| {
+        let label = pair.split_once('=').and_then(|(factor, value)| labels.label(factor, value));
+        label.unwrap_or(pair).to_owned()
+    };
+    scope.split(", ").map(shown).collect::<Vec<_>>().join(", ")
 }
 
 /// Computes the agreement of `cells` with the paper's; their arms are numbered `among` others.

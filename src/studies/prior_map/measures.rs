@@ -5,9 +5,7 @@ use crate::condition::Condition;
 use crate::stats::compatibility::{Agreement, Ours, Printed};
 use crate::stats::summary::Summary;
 use crate::studies::columns::{Columns, whole};
-use crate::studies::exhibit::{
-    Abreast, Grid, GridCell, Layout, Lines, Measured, Set, Source, values,
-};
+use crate::studies::exhibit::{Abreast, Grid, GridCell, Layout, Lines, Measured, Set, Source};
 use crate::studies::{Findings, TableRequest};
 use crate::table::Column;
 
@@ -127,9 +125,15 @@ impl Layout for MeasuresTable {
     }
 
     /// Sets one line a cell of the design; the measures stand side by side, the paper's in parentheses.
-    fn set(&self, cells: &[MeasureCell], _: &Findings<'_>) -> Set {
-        let abreast = Abreast { cells, of: self.measures.len(), label: |cell| values(&cell.rows) };
-        let heads = self.rows.iter().chain(&self.measures).cloned().collect();
+    fn set(&self, cells: &[MeasureCell], findings: &Findings<'_>) -> Set {
+        let labels = findings.labels;
+        let abreast = Abreast {
+            cells,
+            of: self.measures.len(),
+            label: |cell: &MeasureCell| labels.values(&cell.rows),
+        };
+        let rows = labels.factors(&self.rows);
+        let heads = rows.iter().chain(&self.measures).cloned().collect();
         let table = abreast.table(heads, |cell| [in_print(cell)]);
         let is_compared = cells.iter().any(|cell| cell.agreement.method().is_some());
         let papers = is_compared.then_some("in parentheses: the paper's");
@@ -143,7 +147,7 @@ impl Layout for MeasuresTable {
                 source: Source::of(self.published.as_ref()),
                 decimals: 1,
                 of_trials: false,
-                row_header: self.rows.join(", "),
+                row_header: rows.join(", "),
                 columns: self.measures.clone(),
                 rows: abreast.rows(|cell| GridCell {
                     ours: cell.ours.map(measured),

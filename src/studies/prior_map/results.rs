@@ -158,7 +158,8 @@ impl Findings<'_> {
         let only: Condition = wanted.only.iter().map(|(f, v)| (f, &v.0)).collect();
         let series = self.values_of(&wanted.by).into_iter().map(|value| {
             let fixed = only.clone().with(&wanted.by, &value);
-            self.curve(wanted, &fixed, value, tables)
+            let curve = self.curve(wanted, &fixed, &value, tables);
+            Series { name: self.labels.value(&wanted.by, &value).to_owned(), ..curve }
         });
         let x_title = match wanted.against {
             Metric::TimeS => "time (s)",
@@ -177,7 +178,7 @@ impl Findings<'_> {
         &self,
         wanted: &CoverageCurve,
         fixed: &Condition,
-        name: String,
+        value: &str,
         tables: &[&CoverageTable],
     ) -> Series {
         let runs: Vec<Vec<(f64, f64)>> = self
@@ -207,7 +208,7 @@ impl Findings<'_> {
             .filter(|t| t.metric == wanted.against && t.by == wanted.by)
             .flat_map(|t| self.coverage_cells(t))
             .filter(|cell| {
-                cell.by == name
+                cell.by == value
                     && cell.rows.iter().all(|row| !fixed.iter().any(|f| f.0 == row.0 && f != row))
             })
             .filter_map(|cell| {
@@ -216,7 +217,7 @@ impl Findings<'_> {
                 Some(PublishedPoint { x, y, x_error: sd, y_error: None })
             })
             .collect();
-        Series { name, points, band, published }
+        Series { name: value.to_owned(), points, band, published }
     }
 }
 

@@ -53,22 +53,24 @@ impl Files<'_> {
         };
         let parameters = parameters(robot);
         format!(
-            "# A study of a robot and a world of your own, written by `reenact init`: change anything and run it again.\n\
+            "# yaml-language-server: $schema={}\n# A study of a robot and a world of your own, written by `reenact init`: change anything and run it again.\n\
              # `reenact check` tells every fault; docs/manifest.md explains every key.\n#\n{robot_text}{world_text}\
              reenact: 1\nname: {name}\ntitle: Does a robot explore {} sooner with {knows}?\n\
              authors: [{{name: Your Name}}]\nlicense: CC-BY-4.0\n\n\
              study: prior-map\nseed: 1\ntrials: 10\nrobot: {robot_entry}\nworld: {world_entry}\n\
              start: {{x-m: {}, y-m: {}, heading-deg: {}}}\n\
-             factors:\n  prior: [none, {prior}]\nprior-maps:\n  {prior}: {prior_map}\n{parameters}\
+             factors:\n  prior: [none, {prior}]\nlabels:\n  prior: {{values: {{none: no prior, {prior}: {}}}}}\nprior-maps:\n  {prior}: {prior_map}\n{parameters}\
              tables:\n  - id: distance\n    title: Distance travelled (m) at levels of coverage\n    \
              coverage-table: {{metric: distance-m, at: [70, 80, 90, 95], by: prior, baseline: none}}\n\
              figures:\n  - id: coverage\n    title: Coverage over time\n    coverage-curve: {{against: time-s, by: prior}}\n\
              claims:\n  - id: C1\n    ours: with {knows} the robot has covered 90 % after a shorter way than without\n    \
              expect: {{less: {{metric: distance-m-at-90, where: {{prior: {prior}}}, than: {{where: {{prior: none}}}}, test: mann-whitney, censored: worst}}}}\n",
+            super::SCHEMA_NAME,
             world.name,
             start.x,
             start.y,
             start.heading.to_degrees(),
+            prior.replace('-', " "),
         )
     }
 }

@@ -1,6 +1,6 @@
 //! What is shown of how coverage tables agree with the paper's.
 
-use super::{TableAgreement, percent};
+use super::{TableAgreement, in_scope, percent};
 use crate::stats::{Interval, real};
 use crate::studies::columns::Columns;
 use crate::studies::exhibit::{Grid, GridCell, GridRow, Layout, Lines, Measured, Set, Source};
@@ -147,7 +147,7 @@ impl Layout for AgreementTable {
     }
 
     /// Sets one line a part of a table. The columns of the page are its measures of agreement, each on its own.
-    fn set(&self, cells: &[TableAgreement], _: &Findings<'_>) -> Set {
+    fn set(&self, cells: &[TableAgreement], findings: &Findings<'_>) -> Set {
         let columns = [
             "tau",
             "bias (%)",
@@ -161,7 +161,7 @@ impl Layout for AgreementTable {
             "share of ratios inside",
         ];
         let row = |part: &TableAgreement| GridRow {
-            label: format!("{}, {}", part.table, part.scope),
+            label: format!("{}, {}", part.table, in_scope(&part.scope, findings.labels)),
             cells: numbers(part).to_vec(),
         };
         let table = in_print(cells);

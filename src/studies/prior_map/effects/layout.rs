@@ -1,10 +1,9 @@
 //! What is shown of effects.
 
 use super::Effect;
+use crate::labels::Labels;
 use crate::studies::columns::Columns;
-use crate::studies::exhibit::{
-    Abreast, Grid, GridCell, Layout, Lines, Measured, Set, Source, values,
-};
+use crate::studies::exhibit::{Abreast, Grid, GridCell, Layout, Lines, Measured, Set, Source};
 use crate::studies::prior_map::{EffectsTable, Metric};
 use crate::studies::{Findings, TableRequest};
 use crate::table::{Column, Table, Value};
@@ -124,12 +123,15 @@ impl Layout for EffectsTable {
 
     /// Sets the largest effects as lines. On the page one line a level of a factor in a cell of the design: the coverages stand
     /// side by side, and beside each effect what lies between the first level and the paper.
-    fn set(&self, cells: &[Effect], _: &Findings<'_>) -> Set {
-        let (table, more) = in_print(cells);
+    fn set(&self, cells: &[Effect], findings: &Findings<'_>) -> Set {
+        let labels = findings.labels;
+        let (table, more) = in_print(cells, labels);
         let abreast = Abreast {
             cells,
             of: self.at.len(),
-            label: |effect| [vec![choice(effect)], values(&effect.within)].concat(),
+            label: |effect: &Effect| {
+                [vec![choice(effect, labels)], labels.values(&effect.within)].concat()
+            },
         };
         let measured = |mean: f64, n: Option<u64>| Measured { mean, sd: None, n };
         Set {
@@ -162,12 +164,15 @@ impl Layout for EffectsTable {
     }
 }
 
-fn choice(effect: &Effect) -> String {
-    format!("{} {} for {}", effect.factor, effect.level, effect.against)
+/// Returns what is chosen instead of what, by labels where there are any.
+fn choice(effect: &Effect, labels: &Labels) -> String {
+    let Effect { factor, level, against, .. } = effect;
+    let [level, against] = [level, against].map(|value| labels.value(factor, value));
+    format!("{} {level} for {against}", labels.factor(factor))
 }
 
 /// Returns the largest effects, up or down, and how many more there are.
-fn in_print(effects: &[Effect]) -> (Table, usize) {
+fn in_print(effects: &[Effect], labels: &Labels) -> (Table, usize) {
     let mut effects: Vec<&Effect> = effects.iter().collect();
     let size = |effect: &Effect| effect.log_ratio.map_or(-1.0, f64::abs);
     // Stable: equal effects stay in the order of the request.
@@ -181,8 +186,8 @@ fn in_print(effects: &[Effect]) -> (Table, usize) {
             .map_or("-".to_owned(), |(low, high)| format!("{low:+.0} to {high:+.0}"));
         let (here, there) = (effect.runs, effect.runs_against);
         let texts = [
-            choice(effect),
-            values(&effect.within).join(", "),
+            choice(effect, labels),
+            labels.values(&effect.within).join(", "),
             format!("{} %", effect.percent),
             points(effect.percent_moved()),
             interval,
@@ -204,7 +209,7 @@ mod tests {
         with_findings(|findings| {
             let wanted = request(&["noise", "gain", "ray-stop"], &["environment"], &[70, 80]);
             let effects = findings.effects(&wanted);
-            let (print, more) = in_print(&effects);
+            let (print, more) = in_print(&effects, findings.labels);
             assert_eq!((effects.len(), print.rows.len(), more), (6, 6, 0));
             let first: Vec<&str> = effects.iter().map(|effect| effect.factor.as_str()).collect();
             assert_eq!(first, ["noise", "noise", "gain", "gain", "ray-stop", "ray-stop"]);
@@ -224,7 +229,8 @@ mod tests {
             assert_eq!(print.value(&print.rows[2], "runs").to_string(), "4/5, 4/4");
             assert_eq!(print.value(&print.rows[2], "paper").to_string(), "-45 %");
             let many: Vec<u32> = (0..30).map(|_| 80).collect();
-            let (print, more) = in_print(&findings.effects(&request(&["gain"], &[], &many)));
+            let (print, more) =
+                in_print(&findings.effects(&request(&["gain"], &[], &many)), findings.labels);
             assert_eq!((print.rows.len(), more), (PRINTED, 5));
         });
     }

@@ -38,7 +38,8 @@ impl PlanFigure {
         let Some((condition, setup)) = found.and_then(|(c, s)| Some((c, s.of::<Setup>()?))) else {
             return words_alone(title, NO_CONDITION);
         };
-        let prior = condition.value("prior").unwrap_or("prior map");
+        let prior = condition.value("prior");
+        let prior = prior.map_or("prior map", |prior| findings.labels.value("prior", prior));
         plan_figure(title, setup, &self.crossed, with_prior.then_some(prior))
     }
 }

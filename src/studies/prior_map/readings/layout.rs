@@ -1,11 +1,12 @@
 //! What is shown of readings.
 
 use super::{ReadingScore, SPEED, Whose};
+use crate::labels::Labels;
 use crate::stats::real;
 use crate::studies::columns::Columns;
 use crate::studies::exhibit::{Grid, GridCell, GridRow, Layout, Lines, Measured, Set, Source};
 use crate::studies::prior_map::ReadingsTable;
-use crate::studies::prior_map::agreement::percent;
+use crate::studies::prior_map::agreement::{in_scope, percent};
 use crate::studies::{Findings, TableRequest, coverage_tables};
 use crate::table::{Column, Table, Value};
 
@@ -116,7 +117,9 @@ impl Layout for ReadingsTable {
             )
     }
 
-    fn set(&self, cells: &[ReadingScore], _: &Findings<'_>) -> Set {
+    fn set(&self, cells: &[ReadingScore], findings: &Findings<'_>) -> Set {
+        let labels = findings.labels;
+        let reading = |score: &ReadingScore| labels.value(&self.by, &score.reading).to_owned();
         let columns = [
             "tau",
             "bias",
@@ -128,10 +131,15 @@ impl Layout for ReadingsTable {
             "spread",
         ];
         let row = |score: &ReadingScore| GridRow {
-            label: format!("{}, {}, {}", score.scope, score.quantity, score.reading),
+            label: format!(
+                "{}, {}, {}",
+                in_scope(&score.scope, labels),
+                score.quantity,
+                reading(score)
+            ),
             cells: numbers(score).to_vec(),
         };
-        let table = in_print(cells);
+        let table = in_print(cells, &self.by, labels);
         Set {
             grid: Grid {
                 quantity: "of our cells beside the paper's".to_owned(),
@@ -245,7 +253,7 @@ fn numbers(score: &ReadingScore) -> [GridCell; 8] {
 }
 
 /// Returns the lines, in 80 columns where names are short.
-fn in_print(scores: &[ReadingScore]) -> Table {
+fn in_print(scores: &[ReadingScore], by: &str, labels: &Labels) -> Table {
     let columns =
         ["part, reading", "tau %", "near", "bias %", "in", "slope", "r", "score", "skill"];
     let mut table = Table::new(columns);
@@ -260,10 +268,15 @@ fn in_print(scores: &[ReadingScore]) -> Table {
             }
             None => format!("{:.0}", 100.0 * tau),
         });
-        let scope = if score.scope == "all" { String::new() } else { format!("{}, ", score.scope) };
+        let scope = if score.scope == "all" {
+            String::new()
+        } else {
+            format!("{}, ", in_scope(&score.scope, labels))
+        };
+        let reading = labels.value(by, &score.reading);
         let ratio = |i: usize| number(score.ratios.map(|all| all[i]), 2);
         let texts = [
-            format!("{scope}{}, {}", score.quantity, score.reading),
+            format!("{scope}{}, {reading}", score.quantity),
             tau,
             number(score.nearest, 2),
             format!("{:+.0}", percent(score.bias)),

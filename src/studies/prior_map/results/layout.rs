@@ -3,11 +3,10 @@
 use super::super::cell_tests::{self, CellTests, Difference};
 use super::super::requests::{CoverageTable, Metric};
 use super::{CoverageCell, printed};
+use crate::labels::Labels;
 use crate::stats::compatibility::{Agreement, Silence};
 use crate::studies::columns::Columns;
-use crate::studies::exhibit::{
-    Abreast, Grid, GridCell, Layout, Lines, Measured, Set, Source, values,
-};
+use crate::studies::exhibit::{Abreast, Grid, GridCell, Layout, Lines, Measured, Set, Source};
 use crate::studies::{Findings, TableRequest};
 use crate::table::{Column, Table, Value};
 
@@ -83,26 +82,29 @@ impl Layout for CoverageTable {
     }
 
     fn set(&self, cells: &[CoverageCell], findings: &Findings<'_>) -> Set {
-        let side_by_side = findings.values_of(&self.by);
+        let labels = findings.labels;
+        let values = findings.values_of(&self.by);
+        let side_by_side: Vec<String> =
+            values.iter().map(|value| labels.value(&self.by, value).to_owned()).collect();
         let abreast = Abreast {
             cells,
             of: side_by_side.len(),
-            label: |cell| {
-                let mut label = values(&cell.rows);
+            label: |cell: &CoverageCell| {
+                let mut label = labels.values(&cell.rows);
                 label.push(format!("{} %", cell.percent));
                 label
             },
         };
-        let mut heads = self.rows.clone();
+        let mut heads = labels.factors(&self.rows);
         heads.push("coverage".to_owned());
         let header = heads.join(", ");
         heads.extend(side_by_side.iter().flat_map(|by| [by.clone(), format!("{by} (paper)")]));
         let readings = findings.readings(self);
         let lines = if readings.len() > 1 {
             let cells = cells.iter().filter(|cell| cell.trials > 0).count();
-            Lines::Elsewhere { cells, by: readings.join(", ") }
+            Lines::Elsewhere { cells, by: labels.factors(&readings).join(", ") }
         } else {
-            self.lines(cells)
+            self.lines(cells, labels)
         };
         let print = abreast.table(heads, |cell| [ours_in_print(cell), published_in_print(cell)]);
         let mut grid = Grid {
@@ -120,26 +122,27 @@ impl Layout for CoverageTable {
         };
         // The page takes the first column for the baseline.
         if let Some(baseline) = self.baseline.as_ref()
-            && let Some(i) = grid.columns.iter().position(|by| *by == baseline.0)
+            && let Some(i) = values.iter().position(|by| *by == baseline.0)
         {
             grid.columns.swap(0, i);
             grid.rows.iter_mut().for_each(|row| row.cells.swap(0, i));
         }
-        Set { grid, print: Some(print), lines, legend: self.legend(cells), more: 0 }
+        Set { grid, print: Some(print), lines, legend: self.legend(cells, labels), more: 0 }
     }
 }
 
 impl CoverageTable {
     /// Returns one line a cell.
-    fn lines(&self, cells: &[CoverageCell]) -> Lines {
+    fn lines(&self, cells: &[CoverageCell], labels: &Labels) -> Lines {
         let name = |cell: &CoverageCell| {
-            let mut parts = values(&cell.rows);
-            parts.push(cell.by.clone());
+            let mut parts = labels.values(&cell.rows);
+            parts.push(labels.value(&self.by, &cell.by).to_owned());
             parts.join(", ")
         };
         let is_published = cells.iter().any(|cell| cell.published.is_some());
         let is_censored = cells.iter().any(|cell| !censored(cell).is_empty());
-        let header = self.rows.iter().chain([&self.by]).cloned().collect::<Vec<_>>().join(", ");
+        let heads = self.rows.iter().chain([&self.by]).map(|factor| labels.factor(factor));
+        let header = heads.collect::<Vec<_>>().join(", ");
         let mut columns = vec!["coverage".to_owned(), header, "ours".to_owned(), String::new()];
         if is_published {
             columns.extend(["", "paper's", ""].map(str::to_owned));
@@ -180,12 +183,13 @@ impl CoverageTable {
         Lines::all(table, 2, [1])
     }
 
-    fn legend(&self, cells: &[CoverageCell]) -> Vec<String> {
+    fn legend(&self, cells: &[CoverageCell], labels: &Labels) -> Vec<String> {
         let is_compared = cells
             .iter()
             .any(|cell| cell.difference_percent.or(cell.published_difference_percent).is_some());
         let baseline = self.baseline.as_ref().filter(|_| is_compared);
-        baseline.map(|value| format!("%: of the mean against {}", value.0)).into_iter().collect()
+        let against = baseline.map(|value| labels.value(&self.by, &value.0));
+        against.map(|value| format!("%: of the mean against {value}")).into_iter().collect()
     }
 }
 
