@@ -1,6 +1,7 @@
 //! From a plan and its records to everything a bundle says: the one function that `run` seals with and
 //! `verify` derives with.
 
+use super::account::{Account, Shown, ToldFigure};
 use super::content::{BundleContent, Person, Publication, SealedCondition, SealedInput, in_parts};
 use super::{Content, Gathered, InMemory, LargeFile, Scratch, Spool, format, wall_time};
 use crate::claims::multiverse::Explanation;
@@ -83,8 +84,17 @@ pub fn assemble_judged(
         let input = experiment.inputs.iter().find(|input| input.as_written == as_written)?;
         Some(format!("{}{}", format::INPUTS, input.name))
     };
-    let Results { held: results, large: large_results, mut tables } =
+    let Results { held: results, large: large_results, mut tables, exhibits, figures } =
         results(plan, ledger, verdicts, !in_parts(&conditions), scratch)?;
+    let account = Account::of(Shown {
+        plan,
+        ledger,
+        conditions: conditions.len() as u64,
+        partial: super::partial(plan, selection),
+        verdicts,
+        exhibits,
+        figures,
+    });
     tables.extend(described_inputs(plan));
     // What was found before what was given.
     tables.sort_by_key(|table| (table.path.starts_with(format::INPUTS), table.path.clone()));
@@ -116,6 +126,7 @@ pub fn assemble_judged(
         robustness: experiment.sensitivity.as_ref().and_then(|known| sealed_at(&known.as_written)),
         multiverse: experiment.multiverse.as_ref().and_then(|known| sealed_at(&known.as_written)),
         partial: plan.partial,
+        account,
     })
 }
 
@@ -201,6 +212,10 @@ struct Results {
     large: Vec<(String, LargeFile)>,
     /// What the columns of their tables say.
     tables: Vec<DescribedTable>,
+    /// Their tables, as they are shown.
+    exhibits: Vec<Exhibit>,
+    /// Their figures, as they are told.
+    figures: Vec<ToldFigure>,
 }
 
 impl Results {
@@ -279,10 +294,18 @@ fn results(
         described.push(described_table(&exhibit, in_results(&path("csv"))));
         files.push((path("csv"), exhibit.tidy.to_csv().into_bytes()));
         files.push((path("md"), in_markdown(&exhibit).into_bytes()));
+        found.exhibits.push(exhibit);
     }
     for request in &experiment.figures {
         if let Some(drawn) = request.draw(&findings, &experiment.tables) {
-            files.push((format!("figures/{}.svg", request.id), drawn.svg.into_bytes()));
+            let path = format!("figures/{}.svg", request.id);
+            found.figures.push(ToldFigure {
+                path: in_results(&path),
+                title: request.title.clone(),
+                caption: drawn.caption.to_owned(),
+                alt: drawn.alt,
+            });
+            files.push((path, drawn.svg.into_bytes()));
         }
     }
     files.push(("claims.json".to_owned(), verdicts_json(verdicts)));

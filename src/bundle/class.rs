@@ -98,6 +98,7 @@ const TABLE: &[Row] = &[
         Class::Derived(3),
         "this program's own source, where it is of the same version",
     ),
+    Row(Which::File(format::INDEX), Class::Derived(3), "manifest, inputs and records"),
     Row(
         Which::File(format::README),
         Class::Derived(3),

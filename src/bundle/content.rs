@@ -1,6 +1,6 @@
 //! What goes into a bundle, as values: the content, the same for everyone, and the circumstances of one run.
 
-use super::{Content, LargeFile, Moment, format, names};
+use super::{Account, Content, LargeFile, Moment, format, names};
 use crate::digest::FileDigest;
 use crate::digest::Sha256Digest;
 use crate::plan::ResolvedStudy;
@@ -47,6 +47,8 @@ pub struct BundleContent {
     pub multiverse: Option<String>,
     /// Whether only part of the study was run.
     pub partial: bool,
+    /// What it found, in words.
+    pub account: Account,
 }
 
 impl BundleContent {

@@ -333,6 +333,10 @@ fn title(path: &str) -> (String, String) {
             "Resolved study".into(),
             "The manifest with every default and override, and the digest of every input".into(),
         ),
+        format::INDEX => (
+            "Page of the findings".into(),
+            "What was found and what that does not show: claims, tables, figures; how to check it".into(),
+        ),
         format::README => ("Read me".into(), "How to check this bundle and run it again".into()),
         format::LICENSE => ("Licences".into(), "Which licence holds for what".into()),
         format::DATA_PACKAGE => (

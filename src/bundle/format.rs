@@ -46,6 +46,8 @@ pub const MERGED_SHARDS: &str = "shards-merged";
 pub const METADATA: &str = "ro-crate-metadata.json";
 /// The crate's page for people.
 pub const PREVIEW: &str = "ro-crate-preview.html";
+/// The page that says what was found, for whoever opens the folder.
+pub const INDEX: &str = "index.html";
 /// How to check the bundle and run it again.
 pub const README: &str = "README.md";
 /// Under which licences the bundle may be shared.

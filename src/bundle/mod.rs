@@ -7,6 +7,7 @@
 //! [`BundleContent`] and a [`Circumstance`] are sealed into a [`Sealed`] tree; [`archive`] turns a tree into a zip
 //! and back, trusting nothing; [`Bundle`] reads an opened tree by meaning.
 
+mod account;
 pub mod archive;
 pub mod assemble;
 pub mod bag;
@@ -22,8 +23,11 @@ mod data_package;
 mod departure;
 mod fault;
 mod file;
+mod finding;
 pub mod format;
 mod gather;
+mod index;
+mod limits;
 mod moment;
 pub mod names;
 mod path;
@@ -39,6 +43,7 @@ mod writer;
 #[cfg(test)]
 pub(crate) mod sample;
 
+pub use account::{Account, Question, ToldClaim, ToldFigure, ToldTable};
 pub use archive::{Archive, Form, Limits};
 pub use capsule::Capsule;
 pub use class::{Class, class_of, is_tag_file, table_in_markdown};
@@ -48,7 +53,9 @@ pub use content::{
 pub use departure::{Departure, shell_word};
 pub use fault::{Fault, visible};
 pub use file::{Content, FileRef, Files, LargeFile, LargeFiles, Lines};
+pub use finding::{Found, finding};
 pub use gather::{Gathered, Gathering, in_parts};
+pub use limits::{Exhibited, limits, partial};
 pub use moment::Moment;
 pub use path::{BundlePath, in_payload};
 pub use reader::{Bundle, OpenError, RecordLine, RecordLines};

@@ -1,6 +1,6 @@
-//! `README.md` and `LICENSE.txt`: what a stranger reads first. They hold no number that the results hold too.
+//! `README.md` and `LICENSE.txt`: what a stranger reads first.
 
-use super::{Additions, BundleContent, Circumstance, Departure, format};
+use super::{Account, Additions, BundleContent, Circumstance, Departure, bag, format};
 use crate::digest::ResultsDigest;
 use crate::table::{Column, Kind};
 use std::collections::BTreeSet;
@@ -27,6 +27,7 @@ pub(super) fn readme(
         }
         text.push('\n');
     }
+    text.push_str(&found(&content.account));
     let again = again(content);
     text.push_str(&format!(
         "
@@ -61,6 +62,7 @@ Checksums show that nothing changed since they were made; who made them, only a 
 
 | path | holds |
 | --- | --- |
+| `index.html` | what was found, to be opened in a browser: claims, tables, figures, limits |
 | `study.yaml` | the manifest, byte for byte as its author wrote it |
 | `study.resolved.json` | the same with every default and override written out, and the digest of every input |
 | `inputs/` | robots, worlds, prior maps and whatever else the manifest names |
@@ -107,6 +109,24 @@ The crates that it needs are named in its `Cargo.lock`, each with its digest; th
     text + &later
 }
 
+/// Tells the finding, and what the numbers cannot show.
+fn found(account: &Account) -> String {
+    let mut text = String::new();
+    if !account.finding.is_empty() {
+        text.push_str(&format!(
+            "\n## What was found\n\n{}\n\n`index.html` has claims, tables and figures; any browser opens it.\n",
+            bag::one_line(&account.finding)
+        ));
+    }
+    if !account.limits.is_empty() {
+        text.push_str("\n## What the numbers cannot show\n\n");
+        for limit in &account.limits {
+            text.push_str(&format!("- {}\n", bag::one_line(limit)));
+        }
+    }
+    text
+}
+
 /// Returns the command that gives the results digest again, wherever the bundle is unpacked.
 fn again(content: &BundleContent) -> String {
     let departure = Departure::of(&content.resolved, content.partial);
@@ -140,6 +160,61 @@ Inputs are then those in `inputs/`, whatever paths the manifest names them by; t
     text
 }
 
+/// Asks the data one question, in words and in Python: how many trials of a condition succeeded, and whether a claim holds.
+fn question(account: &Account) -> String {
+    let Some(question) = &account.question else { return String::new() };
+    // JSON's strings are Python's, and end no line.
+    let quoted = |text: &str| serde_json::Value::from(text).to_string();
+    let words: Vec<String> =
+        question.condition.iter().map(|(factor, value)| format!("{factor} {value}")).collect();
+    let of = match &words[..] {
+        [] => "all trials".to_owned(),
+        words => format!("the trials with {}", bag::one_line(&words.join(", "))),
+    };
+    let claim = question.claim.as_ref().and_then(|id| account.claims.iter().find(|c| c.id == *id));
+    let outcomes = question.outcomes.join(" or ");
+    let mut text = format!("\nWhich share of {of} ended `{outcomes}`");
+    if let Some(claim) = claim {
+        let whose = if claim.is_ours { "our check" } else { "the paper's claim" };
+        let (id, words) = (bag::one_line(&claim.id), bag::one_line(&claim.words));
+        text.push_str(&format!(", and does {whose} {id} hold: \u{201c}{words}\u{201d}"));
+    }
+    let texts: Vec<String> =
+        question.condition.iter().map(|(factor, _)| format!("{}: str", quoted(factor))).collect();
+    text.push_str(&format!(
+        "? With Python and pandas, in this folder:
+
+```python
+import pandas
+trials = pandas.read_csv(\"results/trials.csv\", dtype={{{}}}, keep_default_na=False, na_values=[\"\"])
+",
+        texts.join(", ")
+    ));
+    text.push_str("asked = trials");
+    for (i, (factor, value)) in question.condition.iter().enumerate() {
+        let before = if i == 0 { "[" } else { " & " };
+        let (factor, value) = (quoted(factor), quoted(value));
+        text.push_str(&format!("{before}(trials[{factor}] == {value})"));
+    }
+    text.push_str(if question.condition.is_empty() { "\n" } else { "]\n" });
+    let names: Vec<String> = question.outcomes.iter().map(|name| quoted(name)).collect();
+    text.push_str(&format!(
+        "print(asked[\"outcome\"].value_counts())
+print(asked[\"outcome\"].isin([{}]).mean())
+",
+        names.join(", ")
+    ));
+    if let Some(claim) = claim {
+        text.push_str(&format!(
+            "claims = pandas.read_json(\"results/claims.json\", dtype=False).set_index(\"id\")
+print(claims.loc[{}, [\"verdict\", \"paper-table\"]])
+",
+            quoted(&claim.id)
+        ));
+    }
+    text + "```\n"
+}
+
 /// Writes three lines that read the trials with what people analyse data with; nothing where there are no trials to
 /// read.
 fn reading(content: &BundleContent) -> String {
@@ -163,11 +238,12 @@ fn reading(content: &BundleContent) -> String {
         return String::new();
     };
     let (measure, by) = (&measure.name, by.join(", "));
+    let question = question(&content.account);
     format!(
         "
 ## Read the data
-
-In this folder. With Python and pandas:
+{question}
+All conditions:
 
 ```python
 import pandas
@@ -218,4 +294,62 @@ pub(super) fn license_address(license: &str) -> Option<String> {
     let spdx = !license.is_empty()
         && license.bytes().all(|b| b.is_ascii_alphanumeric() || b"-.+".contains(&b));
     spdx.then(|| format!("https://spdx.org/licenses/{license}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{sample, seal};
+    use super::*;
+
+    fn readme_of(content: &BundleContent) -> String {
+        let sealed = seal(content, &sample::circumstance()).unwrap();
+        String::from_utf8(sealed.tree["data/README.md"].clone()).unwrap()
+    }
+
+    #[test]
+    fn it_tells_the_finding_and_asks_the_data_a_question() {
+        let readme = readme_of(&sample::content());
+        let found = "
+## What was found
+
+Of the paper's one claim, 1 holds here.
+
+`index.html` has claims, tables and figures; any browser opens it.
+
+## What the numbers cannot show
+
+- The corridors are invented.
+
+## Check it
+";
+        assert!(readme.contains(found), "{readme}");
+        let question = "
+## Read the data
+
+Which share of the trials with prior none ended `explored`, and does the paper's claim P1 hold: \u{201c}A floor plan shortens the \
+                        way.\u{201d}? With Python and pandas, in this folder:
+
+```python
+import pandas
+trials = pandas.read_csv(\"results/trials.csv\", dtype={\"prior\": str}, keep_default_na=False, na_values=[\"\"])
+asked = trials[(trials[\"prior\"] == \"none\")]
+print(asked[\"outcome\"].value_counts())
+print(asked[\"outcome\"].isin([\"explored\"]).mean())
+claims = pandas.read_json(\"results/claims.json\", dtype=False).set_index(\"id\")
+print(claims.loc[\"P1\", [\"verdict\", \"paper-table\"]])
+```
+";
+        assert!(readme.contains(question), "{readme}");
+    }
+
+    #[test]
+    fn what_a_stranger_wrote_ends_no_line_of_code() {
+        let mut content = sample::content();
+        let evil = "x\"\n```\nimport os";
+        let question = content.account.question.as_mut().unwrap();
+        question.condition = vec![("prior".into(), evil.into())];
+        let readme = readme_of(&content);
+        assert!(readme.contains(r#"(trials["prior"] == "x\"\n```\nimport os")"#), "{readme}");
+        assert!(readme.lines().all(|line| line != "import os"), "{readme}");
+    }
 }

@@ -1,8 +1,9 @@
 //! A small bundle for tests, and tools to damage it.
 
 use super::{
-    BundleContent, Circumstance, Content, FileRef, Form, Moment, Person, Publication, Sealed,
-    SealedCondition, Tree, bag, format, in_parts, seal, seal_inputs,
+    Account, BundleContent, Circumstance, Content, FileRef, Form, Moment, Person, Publication,
+    Question, Sealed, SealedCondition, ToldClaim, ToldFigure, ToldTable, Tree, bag, format,
+    in_parts, seal, seal_inputs,
 };
 use crate::condition::Condition;
 use crate::digest::{Sha256Digest, TrialKey};
@@ -155,6 +156,43 @@ pub(crate) fn content_of(
         robustness: None,
         multiverse: None,
         partial: false,
+        account: account(),
+    }
+}
+
+/// Tells what the sample found.
+fn account() -> Account {
+    Account {
+        finding: "Of the paper's one claim, 1 holds here.".into(),
+        limits: vec!["The corridors are invented.".into()],
+        partial: None,
+        claims: vec![ToldClaim {
+            id: "P1".into(),
+            words: "A floor plan shortens the way.".into(),
+            is_ours: false,
+            cite: "section 3".into(),
+            verdict: "supported".into(),
+            paper_table: "supports".into(),
+        }],
+        tables: vec![ToldTable {
+            path: "results/tables/distance.csv".into(),
+            title: "Distance".into(),
+            answer: None,
+            lines: Table::new(["coverage", "distance-m"]),
+            more: 0,
+            rules: None,
+        }],
+        figures: vec![ToldFigure {
+            path: "results/figures/distance.svg".into(),
+            title: "Distance".into(),
+            caption: "One bar a prior.".into(),
+            alt: "A bar chart.".into(),
+        }],
+        question: Some(Question {
+            condition: vec![("prior".into(), "none".into())],
+            outcomes: vec!["explored".into()],
+            claim: Some("P1".into()),
+        }),
     }
 }
 

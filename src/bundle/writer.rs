@@ -4,7 +4,7 @@ use super::path::PAYLOAD;
 use super::{
     Bundle, BundleContent, BundlePath, Capsule, Circumstance, Content, FileRef, Files, Form,
     LargeFile, LargeFiles, Limits, Resolved, Tree, archive, bag, citation, crate_metadata,
-    data_package, format, in_payload, names, preview, readme, results_digest_of,
+    data_package, format, in_payload, index, names, preview, readme, results_digest_of,
 };
 use crate::digest::{BundleId, ResultsDigest, Sha256Digest, StudyDigest};
 use std::io::{self, Seek, Write};
@@ -167,6 +167,7 @@ pub fn seal_with(
     payload.add(format::DICTIONARY, data_package::dictionary(content, &tables).into())?;
     payload.add(format::CITATION, citation::cff(content, circumstance, results_digest).into())?;
     payload.add(format::ZENODO, citation::zenodo(content, results_digest))?;
+    payload.add(format::INDEX, index::page(content, &stem, results_digest).into())?;
     let readme = readme::readme(content, circumstance, results_digest, additions);
     payload.add(format::README, readme.into())?;
     payload.add(format::LICENSE, readme::license(content).into())?;

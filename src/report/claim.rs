@@ -203,10 +203,12 @@ fn numbers(verdict: &ClaimVerdict) -> String {
     }
 }
 
+/// What is said of runs without the measure that they are compared by.
+pub(super) const CENSORED: &str = "never reached the measure";
+
 /// Counts in words the runs that never reached what they were compared by; empty where all did.
 fn censored(verdict: &ClaimVerdict) -> String {
-    let words =
-        |(censored, all)| format!("; {censored} of {all} runs compared never reached the measure");
+    let words = |(censored, all)| format!("; {censored} of {all} runs compared {CENSORED}");
     verdict.censored().map(words).unwrap_or_default()
 }
 

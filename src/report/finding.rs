@@ -2,72 +2,24 @@
 
 use super::ReportContent;
 use super::page::apart;
-use crate::stats::compatibility::{Agreement, Tally};
+use crate::bundle::{self, Found};
+use crate::stats::compatibility::Agreement;
 
 /// Returns the finding of `content`: its tables' answers, what became of the paper's claims, and how its printed numbers compare.
 pub(super) fn finding(content: &ReportContent) -> String {
-    // The page has the rest of the answer a little further down.
-    let first = content.answers.first().map(|found| match found.answer.split_once(". ") {
-        Some((sentence, _)) => format!("{sentence}."),
-        None => found.answer.clone(),
-    });
-    let mut sentences: Vec<String> = first.into_iter().collect();
     let (claims, _) = apart(&content.claims);
-    let count = |verdict: &str| claims.iter().filter(|claim| claim.verdict == verdict).count();
-    let mut parts = Vec::new();
-    if !claims.is_empty() {
-        let told = [
-            ("supported", "holds here", "hold here"),
-            ("contradicted", "does not", "do not"),
-            ("inconclusive", "stays open", "stay open"),
-            ("cannot-be-tested", "cannot be tested", "cannot be tested"),
-        ];
-        let told: Vec<String> = told
-            .into_iter()
-            .filter_map(|(verdict, one, many)| match count(verdict) {
-                0 => None,
-                1 => Some(format!("1 {one}")),
-                n => Some(format!("{n} {many}")),
-            })
-            .collect();
-        let whose = match claims.len() {
-            1 => "Of the paper's one claim".to_owned(),
-            n => format!("Of the paper's {n} claims"),
-        };
-        parts.push(format!("{whose}, {}", joined(&told)));
-    }
-    let cells: Vec<Agreement> = content
-        .tables
-        .iter()
-        .flat_map(|t| &t.rows)
-        .flat_map(|r| &r.cells)
-        .map(|c| c.agreement)
-        .collect();
-    if let Some(tally) =
-        Tally::of(&cells).into_iter().max_by_key(|tally| tally.good + tally.fair + tally.bad)
-    {
-        parts.push(tally.in_words());
-    }
-    if let Some(partial) = &content.partial {
-        parts.insert(0, format!("A part of the study was run ({})", partial.trim_end_matches('.')));
-    }
-    if parts.is_empty() {
-        let (trials, conditions) = (content.headline.trials, content.headline.conditions);
-        parts.push(format!(
-            "{trials} trials in {conditions} conditions were run; no claim is made of them"
-        ));
-    }
-    sentences.push(parts.join("; ") + ".");
-    sentences.join(" ")
-}
-
-/// Joins `parts` as one speaks: `a, b and c`.
-fn joined(parts: &[String]) -> String {
-    match parts {
-        [] => String::new(),
-        [one] => one.clone(),
-        [all @ .., last] => format!("{} and {last}", all.join(", ")),
-    }
+    let verdicts: Vec<String> = claims.iter().map(|claim| claim.verdict.clone()).collect();
+    let rows = content.tables.iter().flat_map(|table| &table.rows);
+    let cells: Vec<Agreement> =
+        rows.flat_map(|row| &row.cells).map(|cell| cell.agreement).collect();
+    bundle::finding(Found {
+        answer: content.answers.first().map(|found| found.answer.as_str()),
+        verdicts: &verdicts,
+        cells: &cells,
+        partial: content.partial.as_deref(),
+        trials: content.headline.trials,
+        conditions: content.headline.conditions,
+    })
 }
 
 #[cfg(test)]

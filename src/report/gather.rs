@@ -6,11 +6,11 @@ use super::content::{
 };
 use super::evaluation::{Evaluated, evaluation};
 use super::origin::provenance;
-use super::{claim, limits, multiverse};
-use crate::bundle::{Bundle, Fault, Forgetful, Gathered, assemble};
+use super::{claim, multiverse};
+use crate::bundle::{self, Bundle, Exhibited, Fault, Forgetful, Gathered, assemble};
 use crate::claims::published;
 use crate::plan::{Plan, Selection};
-use crate::studies::{Exhibit, Findings, Ledger};
+use crate::studies::{Exhibit, Findings, GridRow, Ledger};
 
 /// Why a bundle gives no report.
 #[derive(Debug, thiserror::Error)]
@@ -66,6 +66,11 @@ pub fn content_of(
         .map(|exhibit| ReportTable::of(exhibit, section, trials_a_cell(plan)))
         .collect();
     let figures = figures(bundle, plan, &findings);
+    let drawn: Vec<&str> = figures.iter().map(|figure| figure.id.as_str()).collect();
+    let grids: Vec<&[GridRow]> = tables.iter().map(|table| &table.rows[..]).collect();
+    let censored = claims.iter().filter(|c| c.numbers.contains(claim::CENSORED)).count();
+    let shown = Exhibited { tables: &grids, figures: &drawn, censored };
+    let limits = bundle::limits(plan, &ledger, shown);
     let headline = headline(bundle, plan, &ledger);
     let circumstance = bundle.circumstance();
     let trial = plan.trials.first().map(|t| format!("{}/{}", t.condition.slug(), t.trial));
@@ -79,8 +84,8 @@ pub fn content_of(
         },
         authors: experiment.authors.iter().map(|a| a.name.clone()).collect(),
         license: experiment.license.clone().unwrap_or_default(),
-        limits: limits::limits(plan, &ledger, &tables, &claims, &figures),
-        partial: limits::partial(plan, selection),
+        limits,
+        partial: bundle::partial(plan, selection),
         evaluation: evaluation(Evaluated {
             file: &format!("{}-{}.zip", bundle.name(), bundle.results_digest().short()),
             trial: trial.as_deref().unwrap_or_default(),

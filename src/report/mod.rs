@@ -17,7 +17,6 @@ mod graph_still;
 mod hinges;
 mod inline_svg;
 mod latex;
-mod limits;
 mod multiverse;
 mod origin;
 mod pack;

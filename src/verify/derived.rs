@@ -117,7 +117,8 @@ fn identifier(bundle: &Bundle) -> Option<Fault> {
 }
 
 /// What says how to read, cite and check the rest.
-const DESCRIPTIONS: [&str; 6] = [
+const DESCRIPTIONS: [&str; 7] = [
+    format::INDEX,
     format::README,
     format::LICENSE,
     format::DATA_PACKAGE,

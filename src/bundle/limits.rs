@@ -1,19 +1,22 @@
 //! What the numbers cannot show: what the manifest states, and what the bundle itself shows.
 
-use super::{ClaimRow, Figure, ReportTable};
 use crate::plan::{Plan, Selection};
 use crate::stats::compatibility::{Agreement, Silence};
-use crate::studies::{Ledger, Outcome, TableLayout};
+use crate::studies::{GridRow, Ledger, Outcome, TableLayout};
 
-/// Returns the limits, one sentence each, the manifest's own first. `tables` are those of the page, in the order of the
-/// plan's requests.
-pub(super) fn limits(
-    plan: &Plan,
-    ledger: &Ledger,
-    tables: &[ReportTable],
-    claims: &[ClaimRow],
-    figures: &[Figure],
-) -> Vec<String> {
+/// What a bundle shows by itself, of which limits are told.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Exhibited<'a> {
+    /// The rows of its tables, in the order in which the manifest asks for them.
+    pub tables: &'a [&'a [GridRow]],
+    /// The ids of the figures that are drawn.
+    pub figures: &'a [&'a str],
+    /// How many verdicts compare runs of which some never reached the measure.
+    pub censored: usize,
+}
+
+/// Returns the limits, one sentence each, the manifest's own first.
+pub fn limits(plan: &Plan, ledger: &Ledger, shown: Exhibited<'_>) -> Vec<String> {
     let experiment = &plan.experiment;
     let mut limits = experiment.limits.clone();
     let simulated = "Simulated in two dimensions by Reenact's own simulator, with robots and worlds as sealed here";
@@ -49,31 +52,28 @@ pub(super) fn limits(
             ));
         }
     }
-    limits.extend(cells(plan, tables));
-    limits.extend(left_out(plan, figures));
+    limits.extend(cells(plan, shown.tables));
+    limits.extend(left_out(plan, shown.figures));
     if !experiment.shared_noise.is_empty() {
         limits.push(format!(
             "Trials that differ in {} alone see the same noise: they are paired, not independent.",
             experiment.shared_noise.join(", ")
         ));
     }
-    let censored =
-        claims.iter().filter(|c| c.numbers.contains("never reached the measure")).count();
-    if censored > 0 {
+    if shown.censored > 0 {
         limits.push(format!(
             "{} runs of which some never reached the measure: see their details.",
-            counted(censored, "verdict compares", "verdicts compare")
+            counted(shown.censored, "verdict compares", "verdicts compare")
         ));
     }
     limits
 }
 
 /// Names the figures of the manifest in which no trial has anything to show.
-fn left_out(plan: &Plan, figures: &[Figure]) -> Option<String> {
-    let is_drawn = |id: &str| figures.iter().any(|figure| figure.id == id);
+fn left_out(plan: &Plan, figures: &[&str]) -> Option<String> {
     let wanted = plan.experiment.figures.iter();
     let missing: Vec<String> = wanted
-        .filter(|request| !is_drawn(&request.id))
+        .filter(|request| !figures.contains(&request.id.as_str()))
         .map(|request| format!("\u{201c}{}\u{201d}", request.title))
         .collect();
     let one = "figure is left out, in which no trial of this run has anything to show";
@@ -83,13 +83,13 @@ fn left_out(plan: &Plan, figures: &[Figure]) -> Option<String> {
 }
 
 /// Names the cells that no run reached, and the means of fewer runs than there were.
-fn cells(plan: &Plan, tables: &[ReportTable]) -> Option<String> {
+fn cells(plan: &Plan, tables: &[&[GridRow]]) -> Option<String> {
     let (mut unreached, mut absent, mut left_out, mut fewer) = (0, 0, 0, 0);
     for (request, table) in plan.experiment.tables.iter().zip(tables) {
         if !matches!(request.layout, TableLayout::CoverageTable(_)) {
             continue;
         }
-        let all = || table.rows.iter().flat_map(|row| &row.cells);
+        let all = || table.iter().flat_map(|row| &row.cells);
         let most = all().filter_map(|cell| cell.ours?.n).max().unwrap_or(0);
         let silent = |why| all().filter(|cell| cell.agreement == Agreement::Silent(why)).count();
         unreached += silent(Silence::NotReached);
@@ -116,7 +116,7 @@ fn cells(plan: &Plan, tables: &[ReportTable]) -> Option<String> {
 }
 
 /// Returns in words why a run is partial, from the selection that was sealed with it.
-pub(super) fn partial(plan: &Plan, selection: &Selection) -> Option<String> {
+pub fn partial(plan: &Plan, selection: &Selection) -> Option<String> {
     if !plan.partial {
         return None;
     }
@@ -146,10 +146,10 @@ fn counted(n: usize, one: &str, several: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::content_of;
     use super::*;
     use crate::bundle::{Bundle, Limits, assemble};
     use crate::plan::engine_version;
+    use crate::report::content_of;
     use crate::studies::GridCell;
     use crate::studies::TrialRecord;
     use crate::verify::plan_of;
@@ -184,11 +184,9 @@ mod tests {
         silent(&mut tables[0].rows[1].cells[1], Silence::NotRun);
         let few = tables[1].rows[0].cells[1].ours.as_mut().unwrap();
         few.n = Some(3);
-        let claims = [ClaimRow {
-            numbers: "p = 0.02; 6 of 100 runs compared never reached the measure".to_owned(),
-            ..ClaimRow::default()
-        }];
-        let limits = limits(&plan, &Ledger::of(&records), &tables, &claims, &[]);
+        let rows: Vec<&[GridRow]> = tables.iter().map(|table| &table.rows[..]).collect();
+        let shown = Exhibited { tables: &rows, censored: 1, ..Exhibited::default() };
+        let limits = limits(&plan, &Ledger::of(&records), shown);
         let expected = [
             "the house is invented",
             "Simulated in two dimensions by Reenact's own simulator, with robots and worlds as sealed here; the paper's runs \
@@ -210,7 +208,7 @@ mod tests {
         let (_, mut plan, _) = quickstart();
         plan.experiment.cite = None;
         plan.experiment.published.clear();
-        let limits = limits(&plan, &Ledger::default(), &[], &[], &[]);
+        let limits = limits(&plan, &Ledger::default(), Exhibited::default());
         assert!(limits.iter().any(|limit| limit.ends_with("worlds as sealed here.")), "{limits:?}");
         assert!(limits.iter().all(|limit| !limit.contains("paper")), "{limits:?}");
     }
