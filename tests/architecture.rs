@@ -66,6 +66,7 @@ const DOORS: &[(&str, &[&str])] = &[
     ("mesh_loader", &["world/mesh/files.rs"]),
     ("minijinja", &["report/template.rs"]),
     ("minisign_verify", &["verify/signature/minisign.rs"]),
+    ("pdf_writer", &["report/print/pdf.rs"]),
     ("png", &["world/map_server/image.rs", "report/show/grid.rs"]),
     ("rand_chacha", &["rng.rs"]),
     ("rapier2d", &["sim/engine.rs"]),
@@ -78,6 +79,7 @@ const DOORS: &[(&str, &[&str])] = &[
     ("ssh_key", &["verify/signature/allowed_signers.rs", "verify/signature/ssh.rs"]),
     ("strsim", &["document/diagnostic.rs"]),
     ("tempfile", &["store/partial.rs", "store/scratch.rs"]),
+    ("ttf_parser", &["report/print/face.rs"]),
     ("zip", &["bundle/archive.rs"]),
 ];
 

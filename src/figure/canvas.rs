@@ -24,16 +24,24 @@ pub(crate) struct Canvas {
     elements: Vec<Element>,
     /// Lines of text below everything else.
     key: usize,
+    /// Whether it is a column of a paper: its caption has the title, and the legend stands below.
+    narrow: bool,
 }
 
 impl Canvas {
     /// Creates a sheet for `bounds` (m) with about `width` by at most `height` px for the drawing.
     pub(crate) fn new(bounds: Bounds, width: f64, height: f64) -> Self {
         let scale = (width / bounds.width()).min(height / bounds.height());
-        let mut canvas = Self { bounds, scale, elements: Vec::new(), key: 0 };
+        let mut canvas = Self { bounds, scale, elements: Vec::new(), key: 0, narrow: false };
         let (w, h) = canvas.size();
         canvas.push(Element::new("rect").at("width", w).at("height", h).set("fill", "#fff"));
         canvas
+    }
+
+    /// Creates a sheet for `bounds` (m) that is `width` px wide in all.
+    pub(crate) fn of_width(bounds: Bounds, width: f64) -> Self {
+        let canvas = Self::new(bounds, width - LEFT - RIGHT, f64::INFINITY);
+        Self { narrow: true, ..canvas }
     }
 
     /// Returns the width and height of the sheet (px).
@@ -233,6 +241,9 @@ impl Canvas {
         for (y, size, fill, weight, text) in
             [(24.0, 16.0, INK, "bold", title), (44.0, 12.0, FAINT, "normal", subtitle)]
         {
+            if self.narrow && weight == "bold" {
+                continue;
+            }
             self.push(
                 Element::new("text")
                     .at("x", LEFT)
@@ -258,30 +269,45 @@ impl Canvas {
 
     /// Draws swatches with names, below the drawing to the right of the scale bar.
     pub(crate) fn legend(&mut self, entries: &[(String, &str, &str)]) {
-        let (_, height) = self.size();
+        let (width, height) = self.size();
         let mut x = LEFT + round_step(self.bounds.width() / 4.0) * self.scale + 80.0;
+        // The bottom of the line of names.
+        let mut base = height - 19.0;
+        if self.narrow {
+            (x, base, self.key) = (LEFT, height + 8.0, 1);
+        }
+        let mut drawn = Vec::new();
         for (name, fill, stroke) in entries {
-            self.push(
+            #[expect(clippy::cast_precision_loss, reason = "names are short")]
+            let advance = name.chars().count() as f64 * 6.6;
+            if self.narrow && x > LEFT && x + 19.0 + advance > width - RIGHT {
+                (x, base, self.key) = (LEFT, base + 17.0, self.key + 1);
+            }
+            drawn.push(
                 Element::new("rect")
                     .at("x", x)
-                    .at("y", height - 28.0)
+                    .at("y", base - 9.0)
                     .at("width", 14.0)
                     .at("height", 10.0)
                     .set("fill", fill)
                     .set("stroke", stroke),
             );
-            self.push(
+            drawn.push(
                 Element::new("text")
                     .at("x", x + 19.0)
-                    .at("y", height - 19.0)
+                    .at("y", base)
                     .at("font-size", 12.0)
                     .set("fill", INK)
                     .text(name),
             );
-            #[expect(clippy::cast_precision_loss, reason = "names are short")]
-            let advance = name.chars().count() as f64 * 6.6;
             x += 19.0 + advance + 18.0;
         }
+        if self.narrow {
+            let below = self.whole().1 - height;
+            let ground = Element::new("rect").at("y", height).at("width", width);
+            self.push(ground.at("height", below).set("fill", "#fff"));
+        }
+        drawn.into_iter().for_each(|element| self.push(element));
     }
 
     /// Explains the numbers in the drawing, in lines below the legend.

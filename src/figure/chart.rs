@@ -120,6 +120,21 @@ pub(super) struct KeyItem {
     pub(super) text: String,
 }
 
+/// Breaks `text` where words end into lines of at most `width` px, where words allow that.
+pub(super) fn broken(text: &str, width: f64) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split(' ') {
+        match lines.last_mut() {
+            Some(line) if text_width(&format!("{line} {word}"), TEXT) <= width => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
 /// Draws the key, wrapped between `left` and `right` px from `top` px on, and returns it with its height (px).
 pub(super) fn key(items: Vec<KeyItem>, left: f64, right: f64, top: f64) -> (Element, f64) {
     let mut group = Element::new("g");
@@ -127,14 +142,23 @@ pub(super) fn key(items: Vec<KeyItem>, left: f64, right: f64, top: f64) -> (Elem
     let rows = if items.is_empty() { 0.0 } else { 1.0 };
     for KeyItem { mark, text } in items {
         let width = 36.0 + text_width(&text, TEXT) + 14.0;
+        // What fits on no line is broken.
+        let lines = if width - 14.0 > right - left {
+            broken(&text, right - left - 36.0)
+        } else {
+            vec![text]
+        };
         if x > left && x + width > right {
             (x, row) = (left, row + 1.0);
         }
         let y = top + row * 20.0 + 10.0;
         let place = format!("translate({} {})", svg::number(x + 14.0), svg::number(y));
         group.push(Element::new("g").set("transform", place).child(mark));
-        group.push(label(x + 32.0, y + 4.5, "start", &text));
+        for (i, line) in lines.iter().enumerate() {
+            group.push(label(x + 32.0, y + 4.5 + 17.0 * real(i), "start", line));
+        }
         x += width;
+        row += real(lines.len() - 1) * 0.85;
     }
     (group, (row + rows) * 20.0)
 }

@@ -2,6 +2,7 @@
 
 use super::axis::Axis;
 use super::chart::{KeyItem, error_bar, key, label, rule, sheet};
+use super::medium::Medium;
 use super::palette::{OURS, OURS_TINT, PUBLISHED, published_point};
 use super::panels::{Area, Layout, Panel, PanelLine};
 use super::svg::Element;
@@ -60,6 +61,11 @@ impl EstimateChart {
 
     /// Draws the chart as the text of an SVG file.
     pub fn to_svg(&self) -> String {
+        self.to_svg_on(Medium::Screen)
+    }
+
+    /// Draws it as wide as `medium` wants it.
+    pub fn to_svg_on(&self, medium: Medium) -> String {
         let dots = !self.boxes.is_empty();
         let counts = dots && self.all_behind().is_none();
         let layout = Layout {
@@ -68,14 +74,15 @@ impl EstimateChart {
             pitch: if self.is_compared() { PITCH } else { PITCH - 6.0 },
             beside: if counts { (BESIDE, "n") } else { (0.0, "") },
             title: &self.quantity,
+            medium,
         };
-        let axis = |line: &PanelLine<Estimate>| {
+        let axis = |line: &PanelLine<Estimate>, most: u32| {
             let rows = line.panels.iter().flat_map(|panel| &panel.rows);
             let values = rows.flat_map(ends).chain([0.0]);
             match self.end {
-                Some(end) => Axis::covering("", [0.0, end], 6),
+                Some(end) => Axis::covering("", [0.0, end], most.min(6)),
                 // Numbers of four digits need more room than those of two.
-                None => Axis::covering("", values, 5),
+                None => Axis::covering("", values, most.min(5)),
             }
         };
         let laid =

@@ -4,6 +4,7 @@ use super::axis::Axis;
 use super::chart::{
     KeyItem, Plot, TEXT, error_bar, key, label, real, rule, sheet, spread, text_width,
 };
+use super::medium::Medium;
 use super::palette::Style;
 use super::svg::{Element, path_data};
 
@@ -60,7 +61,13 @@ impl LineChart {
 
     /// Draws the chart as the text of an SVG file.
     pub fn to_svg(&self) -> String {
-        let plot = self.plot();
+        self.to_svg_on(Medium::Screen)
+    }
+
+    /// Draws it as wide as `medium` wants it.
+    pub fn to_svg_on(&self, medium: Medium) -> String {
+        let width = medium.width().unwrap_or(WIDTH);
+        let plot = self.plot(width);
         let mut body = vec![plot.y_axis(), plot.x_axis()];
         for (i, series) in self.series.iter().enumerate() {
             body.extend(band(&plot, Style::of(i), series));
@@ -72,7 +79,7 @@ impl LineChart {
             body.extend(series.published.iter().map(|p| published(&plot, Style::of(i), p)));
         }
         let mut items = Vec::new();
-        if self.labels_fit() {
+        if self.labels_fit(width, &plot) {
             body.extend(self.end_labels(&plot));
         } else {
             items.extend(self.series.iter().enumerate().map(|(i, series)| {
@@ -86,11 +93,12 @@ impl LineChart {
         }
         items.extend(self.meaning_items());
         let top = plot.bottom + 52.0;
-        let (key, height) = key(items, 24.0, WIDTH - 8.0, top);
-        sheet(WIDTH, top + height + 6.0, &self.title, body.into_iter().chain([key]))
+        let (key, height) = key(items, 24.0, width - 8.0, top);
+        sheet(width, top + height + 6.0, &self.title, body.into_iter().chain([key]))
     }
 
-    fn plot(&self) -> Plot {
+    fn plot(&self, width: f64) -> Plot {
+        let height = PLOT_HEIGHT.min(0.62 * width);
         let points = || self.series.iter().flat_map(|s| s.points.iter().copied());
         let bands = || self.series.iter().flat_map(|s| s.band.iter().copied());
         let published = || self.series.iter().flat_map(|s| s.published.iter().copied());
@@ -102,16 +110,20 @@ impl LineChart {
             .map(|p| p.1)
             .chain(bands().flat_map(|b| [b.1, b.2]))
             .chain(published().flat_map(|p| around(p.y, p.y_error)));
-        let (x, y) = (Axis::covering(&self.x_title, x, 9), Axis::covering(&self.y_title, y, 8));
-        let right = if self.labels_fit() { self.label_width() + 34.0 } else { 16.0 };
-        Plot {
+        let many = if width < WIDTH { 6 } else { 9 };
+        let (x, y) = (Axis::covering(&self.x_title, x, many), Axis::covering(&self.y_title, y, 8));
+        let mut plot = Plot {
             left: Plot::left_margin(&y),
-            right: WIDTH - right,
+            right: width - 16.0,
             top: 14.0,
-            bottom: 14.0 + PLOT_HEIGHT,
+            bottom: 14.0 + height,
             x,
             y,
+        };
+        if self.labels_fit(width, &plot) {
+            plot.right = width - self.label_width() - 34.0;
         }
+        plot
     }
 
     fn label_width(&self) -> f64 {
@@ -119,8 +131,9 @@ impl LineChart {
     }
 
     /// Returns whether every curve can be named at its end.
-    fn labels_fit(&self) -> bool {
-        self.label_width() <= WIDTH * 0.3 && real(self.series.len()) * LABEL_GAP <= PLOT_HEIGHT
+    fn labels_fit(&self, width: f64, plot: &Plot) -> bool {
+        let height = plot.bottom - plot.top;
+        self.label_width() <= width * 0.3 && real(self.series.len()) * LABEL_GAP <= height
     }
 
     /// Describes the chart for those who cannot see it: where each curve ends, and where it first had nine tenths of

@@ -7,8 +7,10 @@
 mod axis;
 pub(crate) mod canvas;
 mod chart;
+mod data;
 mod estimate;
 mod line;
+mod medium;
 mod palette;
 mod panels;
 mod plan;
@@ -20,6 +22,7 @@ pub mod svg;
 pub use axis::{Axis, Tick};
 pub use estimate::{Estimate, EstimateChart};
 pub use line::{LineChart, PublishedPoint, Series};
+pub use medium::{Medium, for_paper};
 pub use palette::{INK, Marker, PAPER, Style};
 pub use panels::{Panel, PanelLine};
 pub use plan::{Plan, cell_runs};

@@ -4,6 +4,7 @@
 
 use super::axis::Axis;
 use super::chart::{TEXT, label, real, rule, text_width};
+use super::medium::Medium;
 use super::svg::Element;
 
 /// Panels beside one another at most; more go to the next line.
@@ -11,6 +12,8 @@ const ABREAST: usize = 4;
 /// Width (px) of a panel with others beside it, and of one alone.
 const PANEL: f64 = 150.0;
 const ALONE: f64 = 300.0;
+/// The least width (px) of a panel on paper.
+const LEAST: f64 = 84.0;
 /// Space between panels (px): the last label of one axis stands clear of the first of the next.
 const GAP: f64 = 26.0;
 /// Space (px) above the rows for the names of the panels, and below for the axis.
@@ -75,6 +78,8 @@ pub(super) struct Layout<'a> {
     pub(super) beside: (f64, &'a str),
     /// Title of the axes, with their unit.
     pub(super) title: &'a str,
+    /// What it is laid out for.
+    pub(super) medium: Medium,
 }
 
 /// The drawn lines.
@@ -86,20 +91,18 @@ pub(super) struct Laid {
 }
 
 impl Layout<'_> {
-    /// Draws `lines`, each with the axis that `axis` gives and the rows with which `draw` fills a panel. The widest
+    /// Draws `lines`, each with the axis that `axis` gives, of so many ticks at most, and the rows with which `draw` fills a panel. The widest
     /// name sets the width of the panels; then each line is drawn from the top down: names, ticks, rows, rule.
     pub(super) fn draw<R>(
         &self,
         lines: &[PanelLine<R>],
-        axis: impl Fn(&PanelLine<R>) -> Axis,
+        axis: impl Fn(&PanelLine<R>, u32) -> Axis,
         draw: impl Fn(&Area<'_>, &Panel<R>) -> Vec<Element>,
     ) -> Laid {
         let abreast =
             lines.iter().map(|line| line.panels.len()).max().unwrap_or(1).clamp(1, ABREAST);
         let named = lines.iter().flat_map(|line| &line.panels).map(|panel| panel.name.as_str());
         let widest = named.map(|name| text_width(name, TEXT)).fold(0.0, f64::max);
-        // No name runs into the next, nor into what stands above the numbers beside the rows.
-        let panel = if abreast == 1 { ALONE } else { PANEL }.max(widest + 8.0);
         let head = |line: &PanelLine<R>| {
             let named =
                 !line.name.is_empty() || line.panels.iter().any(|panel| !panel.name.is_empty());
@@ -109,13 +112,32 @@ impl Layout<'_> {
         let heads = lines.iter().map(|line| text_width(&line.name, TEXT) * 1.1);
         let left = names.chain(heads).fold(0.0, f64::max).max(40.0) + 24.0;
         let beside = self.beside.0;
+        // No name runs into the next, nor into what stands above the numbers beside the rows.
+        let (abreast, panel, width) = match self.medium.width() {
+            None => {
+                let panel = if abreast == 1 { ALONE } else { PANEL }.max(widest + 8.0);
+                (abreast, panel, left + (panel + beside + GAP) * real(abreast) - GAP + 22.0)
+            }
+            Some(width) => {
+                let each = |n: usize| (width - 22.0 - left + GAP) / real(n) - beside - GAP;
+                let fits = |n: &usize| each(*n) >= (widest + 8.0).max(LEAST);
+                let abreast = (1..=abreast).rev().find(fits).unwrap_or(1);
+                (abreast, each(abreast), width)
+            }
+        };
         let step = panel + beside + GAP;
-        let width = left + step * real(abreast) - GAP + 22.0;
+        let most = match self.medium {
+            Medium::Screen => u32::MAX,
+            // Labels of four digits stand apart.
+            Medium::Paper { .. } => {
+                (2..6).rev().find(|n| f64::from(*n) * 38.0 <= panel).map_or(3, |n| n + 1)
+            }
+        };
         let height = self.pitch * real(self.names.len());
         let mut body = Vec::new();
         let mut y = 8.0;
         for line in lines {
-            let axis = axis(line);
+            let axis = axis(line, most);
             for (i, panels) in line.panels.chunks(abreast).enumerate() {
                 if i == 0 && !line.name.is_empty() {
                     let name = label(left - 12.0, y + 15.0, "end", &line.name);

@@ -1,6 +1,7 @@
 //! A building from above, with its dimensions; over it, where wanted, the obstacles of a grid map.
 
 use super::canvas::{ACCENT, Canvas, metres};
+use super::medium::Medium;
 use super::svg::{Element, number};
 use crate::geometry::{Bounds, Outline, Point, Pose};
 use crate::grid::{Cell, Occupancy, OccupancyGrid};
@@ -37,6 +38,11 @@ impl Plan<'_> {
     /// Draws the plan as an SVG file: furniture under walls, the map's obstacles, crosses, the start, outer dimensions,
     /// axes, heading and legend, in this order.
     pub fn to_svg(&self) -> String {
+        self.to_svg_on(Medium::Screen)
+    }
+
+    /// Draws it as wide as `medium` wants it.
+    pub fn to_svg_on(&self, medium: Medium) -> String {
         let shapes = self.walls.iter().chain(&self.furniture);
         let mut inner = shapes.fold(Bounds::EMPTY, |b, outline| b.union(outline.bounds()));
         if inner.is_empty() {
@@ -49,7 +55,11 @@ impl Plan<'_> {
             }
         }
         let span = whole.width().max(whole.height());
-        let mut canvas = Canvas::new(whole.grown(0.09 * span), 900.0, 640.0);
+        let whole = whole.grown(0.09 * span);
+        let mut canvas = match medium.width() {
+            None => Canvas::new(whole, 900.0, 640.0),
+            Some(width) => Canvas::of_width(whole, width),
+        };
         let fills = [(&self.walls, WALL), (&self.furniture, FURNITURE)];
         for (outlines, fill) in fills.into_iter().rev() {
             for outline in outlines {

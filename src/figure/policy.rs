@@ -2,7 +2,8 @@
 //!
 //! Over 400 lines, as graph, arrows, labels and key of a panel share their measures.
 
-use super::chart::{KeyItem, key, label, rule, sheet, text_width};
+use super::chart::{KeyItem, broken, key, label, rule, sheet, text_width};
+use super::medium::Medium;
 use super::palette::{INK, PAPER};
 use super::svg::{Element, path_data};
 use crate::geometry::{Bounds, Outline, Point};
@@ -102,12 +103,22 @@ const MARGIN: f64 = 10.0;
 impl PolicyChart {
     /// Draws the chart as the text of an SVG file.
     pub fn to_svg(&self) -> String {
+        self.to_svg_on(Medium::Screen)
+    }
+
+    /// Draws it as wide as `medium` wants it.
+    pub fn to_svg_on(&self, medium: Medium) -> String {
         let places = self.vertices.iter().fold(Bounds::EMPTY, |b, v| b.including(v.at));
         let mut whole = self.walls.iter().fold(places, |b, wall| b.union(wall.bounds()));
         if whole.is_empty() {
             whole = Bounds { min: Point::ZERO, max: Point::new(1.0, 1.0) };
         }
-        let scale = WIDTH / whole.width().max(1.0);
+        let building = match medium.width() {
+            // The building is drawn with 0.3 m around it.
+            Some(width) => (width - 2.0 * MARGIN) / (1.0 + 0.6 / whole.width().max(1.0)),
+            None => WIDTH,
+        };
+        let scale = building / whole.width().max(1.0);
         let mut body = Vec::new();
         let mut top = 10.0;
         for (i, panel) in self.panels.iter().enumerate() {
@@ -118,14 +129,20 @@ impl PolicyChart {
             };
             // A part is twice as large, where words still fit beside it.
             let large = MARGIN + 2.0 * bounds.width() * scale + 14.0;
-            let has_room = i > 0 && large < 0.55 * WIDTH;
+            let has_room = i > 0 && large < 0.55 * WIDTH && medium == Medium::Screen;
             let (scale, beside) = if has_room { (2.0 * scale, large) } else { (scale, 0.0) };
             let mut y = top + 13.0;
             let x = if has_room { beside } else { MARGIN };
             for (line, text) in [&panel.name, &panel.how, &panel.told].into_iter().enumerate() {
-                let text = label(x, y, "start", text);
-                body.push(if line == 0 { text.set("font-weight", "bold") } else { text });
-                y += 18.0;
+                let lines = match medium {
+                    Medium::Screen => vec![text.clone()],
+                    Medium::Paper { .. } => broken(text, building),
+                };
+                for text in lines {
+                    let text = label(x, y, "start", &text);
+                    body.push(if line == 0 { text.set("font-weight", "bold") } else { text });
+                    y += 18.0;
+                }
             }
             if has_room {
                 body.push(label(x, y, "start", "elsewhere as above"));
@@ -139,7 +156,7 @@ impl PolicyChart {
             }
             top += (bounds.height() * scale).max(if has_room { 72.0 } else { 0.0 }) + 18.0;
         }
-        let width = WIDTH + 0.6 * scale + 2.0 * MARGIN;
+        let width = building + 0.6 * scale + 2.0 * MARGIN;
         let (key, height) = key(self.items(), MARGIN, width - 4.0, top);
         sheet(width, top + height + 8.0, &self.title, body.into_iter().chain([key]))
     }

@@ -2,10 +2,13 @@
 
 use super::axis::Axis;
 use super::chart::{KeyItem, Plot, TEXT, error_bar, key, label, rule, sheet, text_width};
+use super::medium::Medium;
 use super::palette::Style;
 use super::svg::{Element, path_data};
 
+/// Side of the square (px), and the longest on paper.
 const SIDE: f64 = 390.0;
+const LARGE: f64 = 520.0;
 /// Height of a line of text (px).
 const LINE: f64 = 17.0;
 /// Radius of a point (px).
@@ -63,6 +66,11 @@ impl Scatter {
     /// Draws the chart as the text of an SVG file: grid, axes and the line of equality, error bars, points, notes, then
     /// labels where there is room.
     pub fn to_svg(&self) -> String {
+        self.to_svg_on(Medium::Screen)
+    }
+
+    /// Draws it as wide as `medium` wants it, the square in the middle where that is wider.
+    pub fn to_svg_on(&self, medium: Medium) -> String {
         let shown = |v: f64| v.is_finite() && (!self.logarithmic || v > 0.0);
         let points: Vec<&ScatterPoint> =
             self.points.iter().filter(|p| shown(p.published) && shown(p.ours)).collect();
@@ -84,9 +92,11 @@ impl Scatter {
         };
         let x = axis(format!("paper: {}", self.quantity));
         let y = axis(format!("ours: {}", self.quantity));
-        let left = Plot::left_margin(&y);
-        let plot = Plot { left, right: left + SIDE, top: 14.0, bottom: 14.0 + SIDE, x, y };
-        let width = plot.right + 16.0;
+        let margin = Plot::left_margin(&y);
+        let width = medium.width().unwrap_or(margin + SIDE + 16.0);
+        let side = (width - margin - 16.0).min(if medium == Medium::Screen { SIDE } else { LARGE });
+        let left = margin + (width - margin - 16.0 - side) / 2.0;
+        let plot = Plot { left, right: left + side, top: 14.0, bottom: 14.0 + side, x, y };
 
         let grid = plot.x.ticks.iter().map(|tick| {
             let x = plot.px(tick.value);

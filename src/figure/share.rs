@@ -2,6 +2,7 @@
 
 use super::axis::Axis;
 use super::chart::{KeyItem, key, label, sheet};
+use super::medium::Medium;
 use super::palette::{INK, PAPER, hatching};
 use super::panels::{Area, Layout, Panel, PanelLine};
 use super::svg::Element;
@@ -107,9 +108,19 @@ impl ShareChart {
 
     /// Draws the chart as the text of an SVG file.
     pub fn to_svg(&self) -> String {
-        let layout =
-            Layout { names: &self.names, pitch: PITCH, beside: (0.0, ""), title: &self.quantity };
-        let axis = |_: &PanelLine<Shares>| Axis::covering("", [0.0, 100.0], 6);
+        self.to_svg_on(Medium::Screen)
+    }
+
+    /// Draws it as wide as `medium` wants it.
+    pub fn to_svg_on(&self, medium: Medium) -> String {
+        let layout = Layout {
+            names: &self.names,
+            pitch: PITCH,
+            beside: (0.0, ""),
+            title: &self.quantity,
+            medium,
+        };
+        let axis = |_: &PanelLine<Shares>, most: u32| Axis::covering("", [0.0, 100.0], most.min(6));
         let laid = layout.draw(&self.lines, axis, |area, panel| self.panel(area, panel));
         let (key, height) = key(self.items(), 12.0, laid.width - 4.0, laid.bottom);
         let bottom = laid.bottom + height + 8.0;

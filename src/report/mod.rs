@@ -21,6 +21,7 @@ mod multiverse;
 mod origin;
 mod pack;
 pub mod page;
+mod print;
 mod recorded;
 pub mod replay;
 pub mod show;
@@ -41,6 +42,7 @@ pub use gather::{UnreadBundle, content_of};
 pub use latex::latex;
 pub use origin::{InputRow, Provenance};
 pub use page::page;
+pub use print::{NoFigures, Unprintable, printed_figures};
 pub use replay::{Note, replay_page};
 pub use still::{Shown, still_svg};
 

@@ -10,6 +10,7 @@ const SCRIPT: &str = concat!(
     "\n",
     include_str!("templates/unpack.js"),
     include_str!("templates/draw.js"),
+    include_str!("templates/view.js"),
     include_str!("templates/graph.js"),
     include_str!("templates/panels.js"),
     include_str!("templates/chart.js"),
@@ -91,6 +92,7 @@ mod tests {
         let parts = [
             include_str!("templates/unpack.js"),
             include_str!("templates/draw.js"),
+            include_str!("templates/view.js"),
             include_str!("templates/graph.js"),
             include_str!("templates/panels.js"),
             include_str!("templates/chart.js"),

@@ -3,10 +3,11 @@
 use super::{FactorValue, Findings, Setup};
 use crate::condition::Condition;
 use crate::figure::svg;
+use crate::table::Table;
 use std::collections::BTreeMap;
 
 /// A figure.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Drawn {
     /// The file.
     pub svg: String,
@@ -14,6 +15,8 @@ pub struct Drawn {
     pub caption: &'static str,
     /// What it shows, for those who cannot see it: its kind, its title, its extremes.
     pub alt: String,
+    /// What is drawn, in its units.
+    pub data: Table,
 }
 
 impl Drawn {
@@ -24,10 +27,11 @@ impl Drawn {
         svg: String,
         words: String,
         caption: &'static str,
+        data: Table,
     ) -> Self {
         let alt = [format!("{kind}: {title}"), words];
         let alt = alt.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(". ");
-        Self { svg, caption, alt }
+        Self { svg, caption, alt, data }
     }
 }
 

@@ -6,7 +6,7 @@ use super::outcomes::{OutcomeTable, Quantity, published_share};
 use super::prior_map::CoverageTable;
 use super::requests::{TableLayout, TableRequest};
 use crate::condition::Condition;
-use crate::figure::{Scatter, ScatterPoint};
+use crate::figure::{Medium, Scatter, ScatterPoint};
 use crate::labels::Labels;
 use crate::math;
 use crate::stats::distribution::student_t_quantile;
@@ -66,12 +66,14 @@ impl PublishedScatter {
         title: &str,
         findings: &Findings<'_>,
         tables: &[TableRequest],
+        medium: Medium,
     ) -> Option<Drawn> {
         let chart = findings.scatter_figure(title, self, tables);
         let caption = "One point for each number that the paper prints; on the dashed line ours is the same. Those farthest \
                        from it are named.";
         (!chart.is_empty()).then(|| {
-            Drawn::new(("Scatter chart", title), chart.to_svg(), chart.in_words(), caption)
+            let (svg, data) = (chart.to_svg_on(medium), chart.data());
+            Drawn::new(("Scatter chart", title), svg, chart.in_words(), caption, data)
         })
     }
 }

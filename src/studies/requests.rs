@@ -1,6 +1,7 @@
 //! What a manifest may ask to see: tables and figures in its study's layouts.
 
 use super::{Drawn, Exhibit, Findings, PublishedScatter, deadline, inference, outcomes, prior_map};
+use crate::figure::Medium;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -116,15 +117,27 @@ impl FigureRequest {
     /// Draws the figure of `findings`; `tables` are all that the manifest asks for. `None` where no trial that was run has
     /// anything to show in it, as a partial run may leave it: axes alone would look like a result.
     pub fn draw(&self, findings: &Findings<'_>, tables: &[TableRequest]) -> Option<Drawn> {
+        self.draw_for(findings, tables, Medium::Screen)
+    }
+
+    /// Draws it as wide as `medium` wants it.
+    pub fn draw_for(
+        &self,
+        findings: &Findings<'_>,
+        tables: &[TableRequest],
+        medium: Medium,
+    ) -> Option<Drawn> {
         let title = self.title.as_str();
         match &self.layout {
-            FigureLayout::CoverageCurve(wanted) => wanted.draw(title, findings, tables),
-            FigureLayout::WorldPlan(wanted) => Some(wanted.draw(title, findings)),
-            FigureLayout::PriorOverWorld(wanted) => Some(wanted.draw_with_prior(title, findings)),
-            FigureLayout::OutcomeBars(wanted) => wanted.draw(title, findings),
-            FigureLayout::OutcomeShares(wanted) => wanted.draw(title, findings),
-            FigureLayout::PublishedScatter(wanted) => wanted.draw(title, findings, tables),
-            FigureLayout::PolicyGraph(wanted) => Some(wanted.draw(title, findings)),
+            FigureLayout::CoverageCurve(wanted) => wanted.draw(title, findings, tables, medium),
+            FigureLayout::WorldPlan(wanted) => Some(wanted.draw(title, findings, medium)),
+            FigureLayout::PriorOverWorld(wanted) => {
+                Some(wanted.draw_with_prior(title, findings, medium))
+            }
+            FigureLayout::OutcomeBars(wanted) => wanted.draw(title, findings, medium),
+            FigureLayout::OutcomeShares(wanted) => wanted.draw(title, findings, medium),
+            FigureLayout::PublishedScatter(wanted) => wanted.draw(title, findings, tables, medium),
+            FigureLayout::PolicyGraph(wanted) => Some(wanted.draw(title, findings, medium)),
         }
     }
 }

@@ -13,6 +13,8 @@ enum ValueError {
     Rows,
     #[error("expected a number above 0")]
     Rate,
+    #[error("expected a width in millimetres from 60mm to 300mm, such as 88mm")]
+    Width,
     #[error("expected a size such as 500M, 8G or a number of bytes")]
     Size,
 }
@@ -29,6 +31,13 @@ fn rows(text: &str) -> Result<Rows, ValueError> {
 fn rate(text: &str) -> Result<f64, ValueError> {
     let rate = text.parse().ok().filter(|rate: &f64| rate.is_finite() && *rate > 0.0);
     rate.ok_or(ValueError::Rate)
+}
+
+/// Reads the width of a figure in print (mm).
+fn print_width(text: &str) -> Result<f64, ValueError> {
+    let number = text.strip_suffix("mm").ok_or(ValueError::Width)?;
+    let width: f64 = number.trim_end().parse().map_err(|_| ValueError::Width)?;
+    (60.0..=300.0).contains(&width).then_some(width).ok_or(ValueError::Width)
 }
 
 /// Reads a size in bytes, or with one of the letters K, M, G and T of that many times 1024.
@@ -174,6 +183,12 @@ pub(in crate::cli) struct ExportArgs {
     /// A folder of LaTeX: every table with booktabs beside the paper's numbers, every number by its name in `numbers.tex`
     #[arg(long, group = "form", conflicts_with = "signature")]
     pub(in crate::cli) latex: bool,
+    /// Its figures for print, laid out for the width: of each an SVG, a PDF, and a CSV of what is drawn, into this folder
+    #[arg(long, group = "form", value_name = "DIR", conflicts_with_all = ["signature", "out"])]
+    pub(in crate::cli) figures: Option<PathBuf>,
+    /// How wide a figure stands in print, 60mm to 300mm: a column of IEEE's is 88mm, a page 180mm [default: 88mm]
+    #[arg(long, value_name = "MM", requires = "figures", value_parser = print_width)]
+    pub(in crate::cli) width: Option<f64>,
     /// Put this signature of its `tagmanifest-sha256.txt` into it
     #[arg(long, value_name = "FILE", conflicts_with = "rocrate")]
     pub(in crate::cli) signature: Option<PathBuf>,
@@ -238,6 +253,16 @@ pub(in crate::cli) struct ReplayArgs {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn widths_in_print_have_their_unit() {
+        let read = |text: &str| print_width(text).map_err(|e| e.to_string());
+        assert_eq!((read("88mm"), read("180 mm"), read("62.5mm")), (Ok(88.0), Ok(180.0), Ok(62.5)));
+        for text in ["", "88", "mm", "3.5in", "59mm", "301mm", "NaNmm"] {
+            let expected = "expected a width in millimetres from 60mm to 300mm, such as 88mm";
+            assert_eq!(read(text), Err(expected.to_owned()), "{text}");
+        }
+    }
 
     #[test]
     fn sizes_are_read_as_people_write_them() {

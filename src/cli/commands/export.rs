@@ -5,9 +5,12 @@ use crate::cli::args::ExportArgs;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::terminal::Terminal;
 use crate::cli::{checked, load};
-use crate::report;
+use crate::report::{self, NoFigures};
 use crate::verify::{path_in_bag, plan_of};
 use std::io;
+
+/// A column of most papers in two columns (mm).
+const COLUMN_MM: f64 = 88.0;
 
 /// Writes a bundle again.
 pub(in crate::cli) fn run(args: &ExportArgs, terminal: Terminal) -> Result<Exit, Failure> {
@@ -21,6 +24,23 @@ pub(in crate::cli) fn run(args: &ExportArgs, terminal: Terminal) -> Result<Exit,
         let folder = args.out.join(format!("{stem}-latex"));
         for (name, text) in report::latex(&content) {
             load::write(&folder.join(name), text.as_bytes())?;
+        }
+        terminal.result(&format!("{words}\n{}", folder.display()));
+        return Ok(Exit::Yes);
+    }
+    if let Some(folder) = &args.figures {
+        let (plan, _) = plan_of(&bundle).map_err(Failure::not_understood)?;
+        let files = report::printed_figures(&bundle, &plan, args.width.unwrap_or(COLUMN_MM));
+        let files = files.map_err(|error| {
+            let exit = match error {
+                NoFigures::Unprintable { .. } => Exit::Failed,
+                NoFigures::Records(_) => Exit::No,
+                NoFigures::None => Exit::NotUnderstood,
+            };
+            Failure { exit, message: error.to_string() }
+        })?;
+        for (name, bytes) in files {
+            load::write(&folder.join(name), &bytes)?;
         }
         terminal.result(&format!("{words}\n{}", folder.display()));
         return Ok(Exit::Yes);

@@ -3,7 +3,7 @@
 
 const chart = element("coverage");
 const looks = [["ink", []], ["path", [7, 4]], ["chosen", [2, 3]]];
-const inset = { left: 44, right: 16, top: 10, bottom: 30 };
+const inset = { left: 46, right: 16, top: 8, bottom: 26 };
 const racing = trials.some((trial) => trial.deadline);
 const mapping = !racing && trials.some((trial) => trial.coverage.some((percent) => percent > 0));
 // One list of [time, value] a trial; what is known of a graph rises in steps.
@@ -20,57 +20,89 @@ const least = racing ? 4 : 1;
 const highest = mapping ? 100 : curves.flat().reduce((most, [, value]) => Math.max(most, value), least);
 const label = (c) => (mapping ? `${c} %` : racing ? c : `${c.toFixed(0)} m`);
 
-function drawChart() {
-  const ratio = window.devicePixelRatio || 1, width = chart.clientWidth, height = chart.clientHeight;
-  chart.width = Math.round(width * ratio);
-  chart.height = Math.round(height * ratio);
-  const context = chart.getContext("2d");
+// Under a deadline the clock runs to it, whether the trial does or not.
+const span = Math.max(end, ...trials.map((trial) => trial.deadline ?? 0)) || 1;
+const fonts = "12px system-ui, sans-serif";
+let scale = null;
+
+// Axes, curves and deadline, drawn once; the hand of the clock moves over them.
+function chartGround(width, height, ratio) {
+  const ground = document.createElement("canvas");
+  [ground.width, ground.height] = [Math.round(width * ratio), Math.round(height * ratio)];
+  const context = ground.getContext("2d");
   context.scale(ratio, ratio);
-  const px = (t) => inset.left + (width - inset.left - inset.right) * t / (end || 1);
+  const px = (t) => inset.left + (width - inset.left - inset.right) * t / span;
   const py = (c) => height - inset.bottom - (height - inset.top - inset.bottom) * c / highest;
-  context.font = "12px system-ui, sans-serif";
+  const line = (from, to, name, thick) => {
+    context.strokeStyle = colour[name];
+    context.lineWidth = thick;
+    trace(context, [from, to], ([t, c]) => [px(t), py(c)], false);
+    context.stroke();
+  };
+  context.font = fonts;
   context.textAlign = "right";
   for (const c of mapping ? [0, 50, 100] : [0, highest]) {
-    context.strokeStyle = colour.edge;
-    context.lineWidth = 1;
-    trace(context, [[0, c], [end, c]], ([t, v]) => [px(t), py(v)], false);
-    context.stroke();
+    line([0, c], [span, c], "edge", 1);
     context.fillStyle = colour.soft;
     context.fillText(label(c), inset.left - 6, py(c) + 4);
   }
-  const step = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000].find((s) => end / s <= width / 90) ?? 10000;
+  const step = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000].find((s) => span / s <= width / 90) ?? 10000;
   context.textAlign = "center";
-  for (let t = 0; t <= end; t += step) context.fillText(`${t} s`, px(t), height - 10);
+  for (let t = 0; t <= span; t += step) {
+    if (px(t) < width - 24 || px(t) + 16 < width) context.fillText(`${t} s`, px(t), height - 8);
+  }
   trials.forEach((trial, i) => {
-    const [name, dash] = looks[i % looks.length], stroke = colour[name], frame = frameAt(trial);
-    context.strokeStyle = context.fillStyle = stroke;
+    const [name, dash] = looks[i % looks.length];
+    context.strokeStyle = colour[name];
     context.lineWidth = 2;
     context.setLineDash(dash);
     trace(context, curves[i], ([t, c]) => [px(t), py(c)], false);
     context.stroke();
     context.setLineDash([]);
+    if (trial.deadline) line([trial.deadline, 0], [trial.deadline, highest], "chosen", 3);
+  });
+  const deadline = trials.find((trial) => trial.deadline)?.deadline;
+  context.font = "600 " + fonts;
+  context.textAlign = "right";
+  if (deadline) halo(context, `deadline ${deadline.toFixed(0)} s`, px(deadline) - 6, py(0) - 6);
+  return { ground, px, py, width, height, ratio, look: colour.ink };
+}
+
+function drawChart() {
+  const ratio = Math.min(window.devicePixelRatio || 1, 2), width = chart.clientWidth, height = chart.clientHeight;
+  if (!scale || scale.width !== width || scale.ratio !== ratio || scale.look !== colour.ink) {
+    [chart.width, chart.height] = [Math.round(width * ratio), Math.round(height * ratio)];
+    scale = chartGround(width, height, ratio);
+  }
+  const context = chart.getContext("2d"), { px, py, ground } = scale;
+  context.setTransform(1, 0, 0, 1, 0, 0);
+  context.clearRect(0, 0, chart.width, chart.height);
+  context.drawImage(ground, 0, 0);
+  context.setTransform(ratio, 0, 0, ratio, 0, 0);
+  // What is past is shaded.
+  context.fillStyle = colour.path;
+  context.globalAlpha = 0.1;
+  context.fillRect(px(0), inset.top, px(now) - px(0), height - inset.top - inset.bottom);
+  context.globalAlpha = 1;
+  trials.forEach((trial, i) => {
+    const frame = frameAt(trial);
     if (frame < 0) return;
     const value = curves[i][lastAt(curves[i].length, (k) => curves[i][k][0], now + 1e-6)]?.[1] ?? 0;
-    disc(context, [px(trial.time[frame]), py(value)], 4.5);
+    context.fillStyle = colour[looks[i % looks.length][0]];
+    disc(context, [px(Math.min(now, trial.time.at(-1))), py(value)], 4.5);
     context.fill();
-    // Named at the lower right where there is room; the headings of the trials show their lines anyway.
-    context.textAlign = "right";
-    const y = py(0) - 8 - 16 * (trials.length - 1 - i);
-    if (trials.length > 1 && width > 600) {
-      halo(context, trial.name, width - inset.right - 40, y);
-      context.strokeStyle = stroke;
-      context.lineWidth = 2;
-      context.setLineDash(dash);
-      trace(context, [[width - inset.right - 32, y - 4], [width - inset.right, y - 4]], (p) => p, false);
-      context.stroke();
-      context.setLineDash([]);
-    }
   });
-  context.strokeStyle = colour.ink;
-  context.lineWidth = 1;
+  context.strokeStyle = context.fillStyle = colour.ink;
+  context.lineWidth = 2;
   trace(context, [[now, 0], [now, highest]], ([t, c]) => [px(t), py(c)], false);
   context.stroke();
+  // A handle to hold the hand by.
+  disc(context, [px(now), py(0)], 7);
+  context.fill();
 }
+
+// The instant at `x` px of the chart.
+const instantAt = (x) => (x - inset.left) / (chart.clientWidth - inset.left - inset.right) * span;
 
 // The line of trial `i`, for its heading.
 function swatch(i) {

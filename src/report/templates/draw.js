@@ -34,19 +34,32 @@ function paint(canvas, frame, cells, pixel) {
   context.putImageData(image, 0, 0);
 }
 
-// Brings the map of `panel` to `frame`; backwards means from the beginning.
+// Brings the map of `panel` to `frame`; backwards means from the beginning. Only rows that changed are painted again.
 function advanceMap(panel, frame) {
-  const { trial } = panel;
+  const { trial, map, cells } = panel, { width, height } = trial.frame;
   const wanted = lastAt(trial.maps.length, (i) => trial.maps[i][0], frame);
   if (wanted === panel.applied && !panel.stale) return;
+  let rows = [height, -1];
+  if (wanted < panel.applied || panel.stale) rows = [0, height - 1];
   if (wanted < panel.applied) {
-    panel.cells.fill(0);
+    cells.fill(0);
     panel.applied = -1;
   }
-  while (panel.applied < wanted) applyRuns(trial.maps[++panel.applied][1], panel.cells);
-  const colours = [0, opaque(colour.free), opaque(colour.occupied)];
-  paint(panel.map, trial.frame, panel.cells, (kind) => colours[kind]);
+  while (panel.applied < wanted) {
+    const [first, last] = applyRuns(trial.maps[++panel.applied][1], cells);
+    if (last < first) continue;
+    rows = [Math.min(rows[0], Math.floor(first / width)), Math.max(rows[1], Math.floor(last / width))];
+  }
   panel.stale = false;
+  if (rows[1] < rows[0]) return;
+  const colours = [0, opaque(colour.free), opaque(colour.occupied)];
+  panel.pixels ??= new ImageData(map.width, map.height);
+  const pixels = new Uint32Array(panel.pixels.data.buffer);
+  for (let row = rows[0], from = row * width; row <= rows[1]; row++) {
+    let to = (height - 1 - row) * width;
+    for (let x = 0; x < width; x++) pixels[to++] = colours[cells[from++]];
+  }
+  map.getContext("2d").putImageData(panel.pixels, 0, 0, 0, height - 1 - rows[1], width, rows[1] - rows[0] + 1);
 }
 
 function paintPrior(panel) {
@@ -61,34 +74,7 @@ function paintPrior(panel) {
     kind === 2 || (kind === 1 && x % 4 === 0 && y % 4 === 0) ? ink : 0);
 }
 
-// --- a view of one trial ----------------------------------------------------------------------------------
-
-// What stands above a map and the controls below it: on one screen with them, nothing of it is covered.
-function covered() {
-  const above = element("trials").getBoundingClientRect().top + window.scrollY;
-  const below = document.querySelector(".controls").offsetHeight + 70;
-  return Math.max(0.28 * window.innerHeight, Math.min(above, 260) + below);
-}
-
-// Sizes the canvas to its column and the world's shape, and returns the transform to its pixels.
-function viewport(panel) {
-  const { canvas, trial: { view: [x0, y0, x1, y1] } } = panel;
-  const ratio = window.devicePixelRatio || 1;
-  const width = canvas.clientWidth;
-  const wanted = Math.round(width * (y1 - y0) / (x1 - x0));
-  const height = Math.max(160, Math.min(wanted, window.innerHeight - covered()));
-  if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
-    canvas.width = Math.round(width * ratio);
-    canvas.height = Math.round(height * ratio);
-    canvas.style.height = height + "px";
-  }
-  const context = canvas.getContext("2d");
-  context.setTransform(ratio, 0, 0, ratio, 0, 0);
-  const scale = Math.min(width / (x1 - x0), height / (y1 - y0));
-  const left = (width - scale * (x1 - x0)) / 2, top = (height - scale * (y1 - y0)) / 2;
-  const at = ([x, y]) => [left + (x - x0) * scale, top + (y1 - y) * scale];
-  return { context, width, height, scale, at };
-}
+// --- what stands on the ground --------------------------------------------------------------------------
 
 function trace(context, list, at, closed) {
   context.beginPath();
@@ -128,15 +114,14 @@ function drawWorld({ context, at, scale }, trial) {
 }
 
 // Where the trial began, and where it was to go.
-function drawEnds({ context, at }, trial) {
+function drawEnds(view, trial) {
+  const { context, at } = view;
   context.lineWidth = 2;
-  context.font = "600 12px system-ui, sans-serif";
-  context.textAlign = "left";
   const [x, y] = at([trial.x[0], trial.y[0]]);
   context.strokeStyle = colour.ink;
   disc(context, [x, y], 5);
   context.stroke();
-  halo(context, "start", x + 9, y - 6);
+  beside(view, "start", x, y, 6);
   if (!trial.goal) return;
   const [u, v] = at(trial.goal);
   context.beginPath();
@@ -144,7 +129,7 @@ function drawEnds({ context, at }, trial) {
   context.fillStyle = colour.chosen;
   context.fill();
   context.stroke();
-  halo(context, "goal", u + 9, v + 12);
+  beside(view, "goal", u, v, 9);
 }
 
 function drawScan({ context, at }, trial, frame) {
@@ -156,22 +141,29 @@ function drawScan({ context, at }, trial, frame) {
   trace(context, [[trial.x[taken], trial.y[taken]], ...ends], at, true);
   context.fill();
   context.globalAlpha = 1;
+  context.beginPath();
   for (const point of ends) {
     const [x, y] = at(point);
-    context.fillRect(x - 1.25, y - 1.25, 2.5, 2.5);
+    context.rect(x - 1.25, y - 1.25, 2.5, 2.5);
   }
+  context.fill();
 }
 
-function drawFrontiers({ context, at, scale, width }, trial, decision) {
-  const side = Math.max(3, trial.frame.resolution * scale);
-  context.fillStyle = colour.frontier;
-  for (const frontier of decision.frontiers) {
-    for (const point of frontier.cells) {
-      const [x, y] = at(point);
-      context.fillRect(x - side / 2, y - side / 2, side, side);
+function drawFrontiers(view, trial, decision) {
+  const { context, at, scale } = view, told = [];
+  const side = Math.max(3 / scale, trial.frame.resolution), [left, top] = at([0, 0]);
+  if (decision.side !== side) {
+    decision.side = side;
+    decision.cells = new Path2D();
+    for (const [x, y] of decision.frontiers.flatMap((frontier) => frontier.cells)) {
+      decision.cells.rect(x - side / 2, y - side / 2, side, side);
     }
   }
-  context.font = "600 12px system-ui, sans-serif";
+  context.fillStyle = colour.frontier;
+  context.save();
+  context.transform(scale, 0, 0, -scale, left, top);
+  context.fill(decision.cells);
+  context.restore();
   // The best are drawn last, so that no worse one covers them.
   for (const i of [...decision.ranked].reverse()) {
     const frontier = decision.frontiers[i], chosen = i === decision.chosen;
@@ -189,29 +181,34 @@ function drawFrontiers({ context, at, scale, width }, trial, decision) {
     context.fill();
     context.stroke();
     if (frontier.rank > 6 && !chosen) continue;
-    const text = `${frontier.rank}: ${frontier.utility.toFixed(2)}`;
-    const left = x + radius + 60 > width;
-    context.textAlign = left ? "right" : "left";
-    halo(context, text, x + (left ? -1 : 1) * (radius + 6), y + 4);
+    told.unshift([`${frontier.rank}: ${frontier.utility.toFixed(2)}`, x, y, radius]);
   }
+  // ... and told first; the chosen one before all.
+  const chosen = decision.ranked.indexOf(decision.chosen);
+  if (chosen > 0 && told[chosen]) told.unshift(...told.splice(Math.min(chosen, told.length - 1), 1));
+  for (const label of told) beside(view, ...label);
 }
 
-// Text that can be read on any ground.
-function halo(context, text, x, y) {
-  context.lineJoin = "round";
-  context.lineWidth = 4;
-  context.strokeStyle = colour.card;
-  context.strokeText(text, x, y);
-  context.fillStyle = colour.ink;
-  context.fillText(text, x, y);
+// Where the robot was, in the world's coordinates: grown with time, made anew backwards.
+function trailOf(panel, frame) {
+  const { trial } = panel;
+  if (!panel.trail || panel.trailed > frame) [panel.trail, panel.trailed] = [new Path2D(), -1];
+  while (panel.trailed < frame) {
+    const i = ++panel.trailed;
+    if (i) panel.trail.lineTo(trial.x[i], trial.y[i]); else panel.trail.moveTo(trial.x[i], trial.y[i]);
+  }
+  return panel.trail;
 }
 
-function drawPath({ context, at }, trial, frame) {
+function drawPath({ context, at, scale }, panel, frame) {
+  const { trial } = panel, [left, top] = at([0, 0]);
   context.lineJoin = "round";
   context.strokeStyle = colour.trail;
-  context.lineWidth = 1.5;
-  trace(context, trial.x.slice(0, frame + 1).map((x, i) => [x, trial.y[i]]), at, false);
-  context.stroke();
+  context.lineWidth = 1.5 / scale;
+  context.save();
+  context.transform(scale, 0, 0, -scale, left, top);
+  context.stroke(trailOf(panel, frame));
+  context.restore();
   const entry = latest(trial.paths, frame);
   if (!entry) return;
   context.strokeStyle = colour.path;
@@ -227,7 +224,12 @@ function drawRobot({ context, at, scale }, trial, frame) {
   const [sin, cos] = [Math.sin(heading), Math.cos(heading)];
   const placed = ([u, v]) => at([x + u * cos - v * sin, y + u * sin + v * cos]);
   let reach = 0.3;
-  if (trial.footprint.corners) {
+  const size = trial.footprint.corners ? 2 * Math.max(...trial.footprint.corners.map(([u]) => u)) * scale : 8;
+  if (size < 8) {
+    // Of a building that is small on the screen a robot is still seen.
+    disc(context, placed([0, 0]), 4.5);
+    reach = 8 / scale;
+  } else if (trial.footprint.corners) {
     trace(context, trial.footprint.corners, placed, true);
     reach = Math.max(reach, ...trial.footprint.corners.map(([u]) => u * 1.5));
   } else {

@@ -43,8 +43,7 @@ function drawGraph(view, graph) {
     drawArrow(view, pair(place(from)), pair(place(to)), fast ? 3.5 : 1.5);
     context.globalAlpha = 1;
   }
-  context.font = "600 12px system-ui, sans-serif";
-  context.textAlign = "left";
+  const told = [];
   graph.vertices.forEach((vertex, i) => {
     const [x, y] = spot(vertex.at), target = i === graph.target;
     context.beginPath();
@@ -54,8 +53,10 @@ function drawGraph(view, graph) {
     context.lineWidth = i === graph.current ? 3.5 : 1.5;
     context.fill();
     context.stroke();
-    halo(context, vertex.label + (target ? " ◆" : "") + (vertex.goal ? " goal" : ""), x + 9, y - 6);
+    const label = [vertex.label + (target ? " ◆" : "") + (vertex.goal ? " goal" : ""), x, y, 6];
+    if (target || vertex.goal || i === graph.current) told.unshift(label); else told.push(label);
   });
+  for (const label of told) beside(view, ...label);
 }
 
 // Clock against deadline, and what the robot is about.

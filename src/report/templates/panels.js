@@ -36,9 +36,11 @@ const latest = (list, frame) => list[lastAt(list.length, (i) => list[i][0], fram
 function panelOf(trial) {
   const section = make("section", "card trial");
   section.setAttribute("aria-label", trial.name);
-  const view = make("div", "view"), side = make("div");
+  const side = make("section", "card trial side");
+  side.setAttribute("aria-label", `${trial.name}, in words`);
   const canvas = make("canvas");
   canvas.setAttribute("role", "img");
+  canvas.tabIndex = 0;
   const status = make("p", "now");
   const scroll = make("div", "scroll"), table = make("table", "decision"), events = make("ul", "events");
   const policy = make("table", "decision");
@@ -47,37 +49,67 @@ function panelOf(trial) {
     .forEach(([name, value]) => scroll.setAttribute(name, value));
   scroll.append(table, policy);
   side.append(status, scroll, events);
-  view.append(canvas, side);
   const heading = make("h2", "", trial.outcome ? `${trial.name}: ${trial.outcome.replaceAll("-", " ")}` : trial.name);
   if (trials.length > 1) heading.prepend(swatch(trials.indexOf(trial)));
-  section.append(heading, view);
-  element("trials").append(section);
+  const top = make("div", "top");
   const cells = new Uint8Array(trial.frame.width * trial.frame.height);
-  return { trial, canvas, status, table, policy, events, cells, map: picture(trial.frame), applied: -1, stale: true };
+  const map = picture(trial.frame);
+  const panel = { trial, canvas, status, table, policy, events, cells, map, applied: -1, stale: true };
+  top.append(heading, zoomButtons(panel));
+  if (trials.length > 1) side.prepend(make("h3", "", trial.name));
+  section.append(top, canvas);
+  element("trials").append(section);
+  element("sides").append(side);
+  handle(panel);
+  return panel;
 }
 
-function drawPanel(panel) {
-  const { trial } = panel, frame = frameAt(trial), view = viewport(panel), { context } = view;
+const boxes = [...document.querySelectorAll("[data-layer]")];
+const layers = Object.fromEntries(boxes.map((box) => [box.dataset.layer, box]));
+
+// What changes seldom: map, prior and walls, drawn once for as long as they and the view of them stay.
+function groundOf(panel, view, frame) {
+  const { trial } = panel, shown = (name) => layers[name].checked;
+  if (shown("map")) advanceMap(panel, frame);
+  const state = [panel.applied, view.lens, shown("map"), shown("prior"), shown("world"), colour.free].join();
+  if (panel.ground && panel.stands === state) return panel.ground;
+  panel.stands = state;
+  if (!panel.ground) {
+    panel.ground = document.createElement("canvas");
+    [panel.ground.width, panel.ground.height] = [panel.canvas.width, panel.canvas.height];
+  }
+  const context = panel.ground.getContext("2d"), over = { ...view, context };
+  context.setTransform(view.ratio, 0, 0, view.ratio, 0, 0);
   // Without a map there is nothing unknown to show.
   context.fillStyle = mapping ? colour.unknown : colour.free;
   context.fillRect(0, 0, view.width, view.height);
-  const shown = (name) => document.querySelector(`[data-layer=${name}]`).checked;
+  if (shown("map")) drawGrid(over, panel.map, trial.frame, trial.pose, 1);
+  if (shown("prior") && panel.prior) drawGrid(over, panel.prior, trial.prior.frame, [0, 0, 0], 0.6);
+  if (shown("world")) drawWorld(over, trial);
+  drawScale(over);
+  return panel.ground;
+}
+
+function drawPanel(panel) {
+  const { trial } = panel, frame = frameAt(trial), view = viewOf(panel, panel.canvas.getContext("2d"));
+  const { context } = view, shown = (name) => layers[name].checked;
+  const over = now >= (trial.time.at(-1) ?? 0);
+  const state = [frame, over, view.lens, colour.free, ...Object.values(layers).map((box) => box.checked)].join();
+  if (panel.drawn === state) return;
+  panel.drawn = state;
   const decision = latest(trial.decisions, frame), graph = latest(trial.graphs, frame);
-  if (shown("map")) {
-    advanceMap(panel, frame);
-    drawGrid(view, panel.map, trial.frame, trial.pose, 1);
-  }
-  if (shown("prior") && panel.prior) drawGrid(view, panel.prior, trial.prior.frame, [0, 0, 0], 0.6);
-  if (shown("world")) drawWorld(view, trial);
+  context.setTransform(1, 0, 0, 1, 0, 0);
+  context.drawImage(groundOf(panel, view, frame), 0, 0);
+  context.setTransform(view.ratio, 0, 0, view.ratio, 0, 0);
   if (frame >= 0) {
     if (shown("scan")) drawScan(view, trial, frame);
-    if (shown("path")) drawPath(view, trial, frame);
+    if (shown("path")) drawPath(view, panel, frame);
     if (shown("frontiers") && decision) drawFrontiers(view, trial, decision[1]);
     if (shown("graph") && graph) drawGraph(view, graph[1]);
     drawEnds(view, trial);
+    placeLabels(view);
     drawRobot(view, trial, frame);
   }
-  drawScale(view);
   tell(panel, frame, decision, graph);
 }
 
@@ -88,14 +120,15 @@ function tell(panel, frame, decision, graph) {
   let text = "not begun";
   if (frame >= 0) {
     const [time, distance, coverage] = [trial.time[frame], trial.distance[frame], trial.coverage[frame]];
-    const ended = now > trial.time.at(-1) ? ` · ${trial.outcome || "ended"}` : "";
+    const ended = now >= trial.time.at(-1) ? ` · ended: ${(trial.outcome || "over").replaceAll("-", " ")}` : "";
     const parts = [`${time.toFixed(1)} s`, `${distance.toFixed(2)} m`];
     if (trial.deadline) parts.push(graphStatus(trial, graph?.[1], time));
     else if (mapping) parts.push(`${coverage.toFixed(1)} % covered`);
     text = `${parts.join(" · ")}${ended}`;
   }
   panel.status.textContent = text;
-  panel.canvas.setAttribute("aria-label", `${trial.name}: map, frontiers, path and robot; ${text}`);
+  // Those who hear the page are told of instants where it stands still.
+  if (!playing) panel.canvas.setAttribute("aria-label", `${trial.name}: map, frontiers, path and robot; ${text}`);
   if (panel.decision !== decision) {
     panel.decision = decision;
     panel.table.replaceChildren(...(decision ? decisionRows(trial, decision) : []));

@@ -2,26 +2,33 @@
 // --- playing ---------------------------------------------------------------------------------------------
 
 const panels = trials.map(panelOf);
-const scrub = element("scrub"), speed = element("speed");
+const speed = element("speed");
+let pending = 0;
 
 function draw() {
+  pending = 0;
   panels.forEach(drawPanel);
   drawChart();
-  scrub.value = Math.round(now * 1000);
-  const text = `${now.toFixed(1)} of ${end.toFixed(1)} s`;
-  element("clock").textContent = text;
-  scrub.setAttribute("aria-valuetext", text);
+  element("clock").textContent = `${now.toFixed(1)} of ${end.toFixed(1)} s`;
+  if (playing) return;
+  chart.setAttribute("aria-valuenow", now.toFixed(1));
+  chart.setAttribute("aria-valuetext", `${now.toFixed(1)} of ${end.toFixed(1)} s`);
+}
+
+// However much changes between two pictures of the screen, it is drawn once.
+function changed() {
+  pending ||= requestAnimationFrame(draw);
 }
 
 function seek(instant) {
   now = Math.max(0, Math.min(end, instant));
-  draw();
+  changed();
 }
 
 function play(on) {
   playing = on && end > 0;
   element("play").textContent = playing ? "❚❚ pause" : "▶ play";
-  if (!playing) return;
+  if (!playing) return changed();
   if (now >= end) now = 0;
   last = performance.now();
   requestAnimationFrame(tick);
@@ -31,7 +38,8 @@ function tick(stamp) {
   if (!playing) return;
   const passed = Math.max(0, stamp - last) / 1000;
   last = stamp;
-  seek(now + passed * Number(speed.value));
+  now = Math.max(0, Math.min(end, now + passed * Number(speed.value)));
+  draw();
   if (now >= end) play(false); else requestAnimationFrame(tick);
 }
 
@@ -47,12 +55,21 @@ element("back").addEventListener("click", () => step(instants, false));
 element("forth").addEventListener("click", () => step(instants, true));
 element("before").addEventListener("click", () => step(decisions, false));
 element("after").addEventListener("click", () => step(decisions, true));
-scrub.addEventListener("input", () => seek(scrub.value / 1000));
+// The curve is the scrubber: press or drag anywhere on it, or use the keys of a slider.
 chart.addEventListener("pointerdown", (event) => {
-  const part = (event.offsetX - inset.left) / (chart.clientWidth - inset.left - inset.right);
-  seek(part * end);
+  chart.setPointerCapture(event.pointerId);
+  seek(instantAt(event.offsetX));
 });
-for (const box of document.querySelectorAll("[data-layer]")) box.addEventListener("change", draw);
+chart.addEventListener("pointermove", (event) => {
+  if (chart.hasPointerCapture(event.pointerId)) seek(instantAt(event.offsetX));
+});
+chart.addEventListener("keydown", (event) => {
+  const far = { PageUp: end / 20, PageDown: -end / 20, ArrowUp: 1, ArrowDown: -1 }[event.key];
+  if (!far) return;
+  event.preventDefault();
+  seek(now + far);
+});
+for (const box of document.querySelectorAll("[data-layer]")) box.addEventListener("change", changed);
 
 window.addEventListener("keydown", (event) => {
   if (event.ctrlKey || event.metaKey || event.altKey || event.target.tagName === "SELECT") return;
@@ -75,12 +92,19 @@ function restyle() {
   for (const panel of panels) {
     panel.stale = true;
     paintPrior(panel);
+    fit(panel);
   }
   draw();
 }
 
-scrub.max = Math.round(end * 1000);
-element("trials").classList.toggle("one", trials.length === 1);
+function refit() {
+  panels.forEach(fit);
+  scale = null;
+  changed();
+}
+
+chart.setAttribute("aria-valuemax", end.toFixed(1));
+document.querySelector(".stage").classList.toggle("one", trials.length === 1);
 element("prior-toggle").hidden = !trials.some((trial) => trial.prior);
 element("graph-toggle").hidden = !racing;
 for (const layer of ["map", "scan", "frontiers"]) {
@@ -88,9 +112,9 @@ for (const layer of ["map", "scan", "frontiers"]) {
 }
 const charted = racing ? "vertices known" : mapping ? "coverage" : "distance travelled";
 element("chart-title").textContent = charted;
-chart.setAttribute("aria-label", `${charted[0].toUpperCase()}${charted.slice(1)} over time, of every trial`);
+chart.setAttribute("aria-label", `Instant, on the curve of ${charted}`);
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", restyle);
-window.addEventListener("resize", draw);
+window.addEventListener("resize", refit);
 window.addEventListener("hashchange", () => seek(fromAddress()));
 const fromAddress = () => Number(/t=([\d.]+)/.exec(location.hash)?.[1] ?? 0);
 now = Math.min(end, fromAddress());

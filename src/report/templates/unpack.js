@@ -36,18 +36,21 @@ function points(text, unit = 0.001) {
   return list;
 }
 
-// Writes runs of changed cells into `cells`: 0 unknown, 1 free, 2 occupied.
+// Writes runs of changed cells into `cells`: 0 unknown, 1 free, 2 occupied. Returns the first and the last one.
 function applyRuns(text, cells) {
   const values = integers(text);
-  let at = 0;
+  let at = 0, first = Infinity, last = -1;
   for (let kind = 0; kind < 3; kind++) {
     let index = 0;
     for (let left = values[at++] || 0; left > 0; left--) {
       index += values[at++];
       cells.fill(kind, index, index + values[at]);
+      first = Math.min(first, index);
       index += values[at++];
+      last = Math.max(last, index - 1);
     }
   }
+  return [first, last];
 }
 
 function unpackTrial(packed) {

@@ -5,7 +5,9 @@ use super::{
     published_share,
 };
 use crate::condition::Condition;
-use crate::figure::{Estimate, EstimateChart, Look, Panel, PanelLine, Part, ShareChart, Shares};
+use crate::figure::{
+    Estimate, EstimateChart, Look, Medium, Panel, PanelLine, Part, ShareChart, Shares,
+};
 use crate::labels::Labels;
 use crate::stats::summary::quantile;
 use crate::studies::findings::Findings;
@@ -62,7 +64,12 @@ fn lines<C, R>(
 
 impl OutcomeTable {
     /// Draws the figure of estimates, where trials have any.
-    pub(in crate::studies) fn draw(&self, title: &str, findings: &Findings<'_>) -> Option<Drawn> {
+    pub(in crate::studies) fn draw(
+        &self,
+        title: &str,
+        findings: &Findings<'_>,
+        medium: Medium,
+    ) -> Option<Drawn> {
         let chart = findings.outcome_figure(title, self);
         if chart.is_empty() {
             return None;
@@ -79,18 +86,26 @@ impl OutcomeTable {
                  diamonds under them are the paper's means.",
             )
         };
-        Some(Drawn::new((kind, title), chart.to_svg(), chart.in_words(), caption))
+        let (svg, data) = (chart.to_svg_on(medium), chart.data());
+        Some(Drawn::new((kind, title), svg, chart.in_words(), caption, data))
     }
 }
 
 impl OutcomeShares {
     /// Draws the figure of shares, where trials have ended.
-    pub(in crate::studies) fn draw(&self, title: &str, findings: &Findings<'_>) -> Option<Drawn> {
+    pub(in crate::studies) fn draw(
+        &self,
+        title: &str,
+        findings: &Findings<'_>,
+        medium: Medium,
+    ) -> Option<Drawn> {
         let chart = findings.shares_figure(title, self);
         let caption = "How trials ended, in percent of all of a condition: thick bars are ours, thin ones under them the \
                        paper's.";
-        (!chart.is_empty())
-            .then(|| Drawn::new(("Stacked bars", title), chart.to_svg(), chart.in_words(), caption))
+        (!chart.is_empty()).then(|| {
+            let (svg, data) = (chart.to_svg_on(medium), chart.data());
+            Drawn::new(("Stacked bars", title), svg, chart.in_words(), caption, data)
+        })
     }
 }
 

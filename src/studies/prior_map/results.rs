@@ -5,7 +5,7 @@ mod layout;
 use super::cell_tests::CellTests;
 use super::requests::{CoverageCurve, CoverageTable, Metric};
 use crate::condition::Condition;
-use crate::figure::{LineChart, PublishedPoint, Series};
+use crate::figure::{LineChart, Medium, PublishedPoint, Series};
 use crate::stats::compatibility::{Agreement, Ours, Printed};
 use crate::stats::summary::{Summary, median, quantile};
 use crate::studies::{Drawn, Findings, Outcome, SeriesPoint, TableRequest, coverage_tables};
@@ -43,6 +43,7 @@ impl CoverageCurve {
         title: &str,
         findings: &Findings<'_>,
         tables: &[TableRequest],
+        medium: Medium,
     ) -> Option<Drawn> {
         let tables: Vec<_> = coverage_tables(tables).into_iter().map(|(_, table)| table).collect();
         let chart = findings.coverage_figure(title, self, &tables);
@@ -52,8 +53,10 @@ impl CoverageCurve {
         } else {
             "Median of the trials with a band from the 10th to the 90th percentile."
         };
-        (!chart.is_empty())
-            .then(|| Drawn::new(("Line chart", title), chart.to_svg(), chart.in_words(), caption))
+        (!chart.is_empty()).then(|| {
+            let (svg, data) = (chart.to_svg_on(medium), chart.data());
+            Drawn::new(("Line chart", title), svg, chart.in_words(), caption, data)
+        })
     }
 }
 

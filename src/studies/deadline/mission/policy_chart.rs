@@ -8,7 +8,7 @@
 //! 4. Draw vertices and edges from the true positions.
 
 use super::Prepared;
-use crate::figure::{PolicyChart, PolicyMove, PolicyPanel, PolicyVertex};
+use crate::figure::{Medium, PolicyChart, PolicyMove, PolicyPanel, PolicyVertex};
 use crate::studies::deadline::build_cmdp::Place;
 use crate::studies::deadline::intersection::{Exit, Intersection, Opening};
 use crate::studies::deadline::planner::{Plan, PlanError, Status};
@@ -16,6 +16,7 @@ use crate::studies::deadline::toposemantic_map::{End, MapError, ToposemanticMap,
 use crate::studies::deadline::{PolicyGraph, Setup};
 use crate::studies::drawn::{NO_CONDITION, words_alone};
 use crate::studies::{CannotBegin, Drawn, Findings};
+use crate::table::Table;
 use crate::world::RegionKind;
 use crate::world::topology::{self, Topology};
 use std::collections::VecDeque;
@@ -51,15 +52,20 @@ pub(super) enum NoChart {
 
 impl PolicyGraph {
     /// Draws the policies of the first condition that it speaks of; words where there are none.
-    pub(in crate::studies) fn draw(&self, title: &str, findings: &Findings<'_>) -> Drawn {
+    pub(in crate::studies) fn draw(
+        &self,
+        title: &str,
+        findings: &Findings<'_>,
+        medium: Medium,
+    ) -> Drawn {
         let found = findings.first(&self.only).and_then(|(_, setup)| setup.of::<Setup>());
         let chart = found
             .ok_or(NoChart::NoCondition)
             .and_then(|setup| policy_chart(title, setup, &self.within_s))
             .map_err(|why| why.to_string());
-        let (svg, words) = match chart {
-            Ok(chart) => (chart.to_svg(), chart.in_words()),
-            Err(why) => (words_alone(title, &why), why),
+        let (svg, words, data) = match chart {
+            Ok(chart) => (chart.to_svg_on(medium), chart.in_words(), chart.data()),
+            Err(why) => (words_alone(title, &why), why, Table::default()),
         };
         Drawn::new(
             ("Graph", title),
@@ -67,6 +73,7 @@ impl PolicyGraph {
             words,
             "The building's whole toposemantic graph, which no robot of the study knows at first, and the policy that the \
              study's planner makes on it for one leg from the start to the goal within t_d.",
+            data,
         )
     }
 }
