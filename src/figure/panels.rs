@@ -110,7 +110,8 @@ impl Layout<'_> {
         };
         let names = self.names.iter().map(|name| text_width(name, TEXT));
         let heads = lines.iter().map(|line| text_width(&line.name, TEXT) * 1.1);
-        let left = names.chain(heads).fold(0.0, f64::max).max(40.0) + 24.0;
+        let (room, gap) = if self.medium == Medium::Screen { (24.0, GAP) } else { (16.0, 20.0) };
+        let left = names.chain(heads).fold(0.0, f64::max).max(40.0) + room;
         let beside = self.beside.0;
         // No name runs into the next, nor into what stands above the numbers beside the rows.
         let (abreast, panel, width) = match self.medium.width() {
@@ -119,13 +120,15 @@ impl Layout<'_> {
                 (abreast, panel, left + (panel + beside + GAP) * real(abreast) - GAP + 22.0)
             }
             Some(width) => {
-                let each = |n: usize| (width - 22.0 - left + GAP) / real(n) - beside - GAP;
-                let fits = |n: &usize| each(*n) >= (widest + 8.0).max(LEAST);
+                let each = |n: usize| (width - 22.0 - left + gap) / real(n) - beside - gap;
+                // Beside a name there is what stands above the numbers.
+                let named = widest + 8.0 - (beside - 14.0).max(0.0);
+                let fits = |n: &usize| each(*n) >= named.max(LEAST);
                 let abreast = (1..=abreast).rev().find(fits).unwrap_or(1);
                 (abreast, each(abreast), width)
             }
         };
-        let step = panel + beside + GAP;
+        let step = panel + beside + gap;
         let most = match self.medium {
             Medium::Screen => u32::MAX,
             // Labels of four digits stand apart.

@@ -82,6 +82,7 @@ struct View {
     bounds: Bounds,
     scale: f64,
     top: f64,
+    medium: Medium,
 }
 
 impl View {
@@ -130,7 +131,13 @@ impl PolicyChart {
             // A part is twice as large, where words still fit beside it.
             let large = MARGIN + 2.0 * bounds.width() * scale + 14.0;
             let has_room = i > 0 && large < 0.55 * WIDTH && medium == Medium::Screen;
-            let (scale, beside) = if has_room { (2.0 * scale, large) } else { (scale, 0.0) };
+            let (scale, beside) = match medium {
+                _ if has_room => (2.0 * scale, large),
+                Medium::Paper { .. } if i > 0 => {
+                    ((3.0 * scale).min(building / bounds.width().max(1.0)), 0.0)
+                }
+                _ => (scale, 0.0),
+            };
             let mut y = top + 13.0;
             let x = if has_room { beside } else { MARGIN };
             for (line, text) in [&panel.name, &panel.how, &panel.told].into_iter().enumerate() {
@@ -149,7 +156,7 @@ impl PolicyChart {
             } else {
                 top = y - 8.0;
             }
-            let view = View { bounds, scale, top };
+            let view = View { bounds, scale, top, medium };
             body.extend(self.panel(&view, panel));
             if i > 0 {
                 body.push(frame(&view));
@@ -215,8 +222,17 @@ impl PolicyChart {
             body.extend(self.step(view, panel, step));
         }
         let visited = |v: usize| panel.moves.iter().any(|step| step.from == v || step.to == v);
+        let hidden = match view.medium {
+            Medium::Screen => Vec::new(),
+            Medium::Paper { .. } => self.without_room(view, visited),
+        };
         for (v, vertex) in self.vertices.iter().enumerate().filter(|(v, _)| shown(*v)) {
-            body.extend(self.place(view.at(vertex.at), v, vertex, visited(v)));
+            let at = view.at(vertex.at);
+            if hidden.contains(&v) {
+                body.push(dot(at));
+            } else {
+                body.extend(self.place(at, v, vertex, visited(v)));
+            }
         }
         // Above everything: probabilities stand right of the middle of their arrow.
         let drawn_at_random =
@@ -240,6 +256,25 @@ impl PolicyChart {
             );
         }
         body
+    }
+
+    /// Returns the places whose names would lie over others': those of the policy are named first.
+    fn without_room(&self, view: &View, visited: impl Fn(usize) -> bool) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..self.vertices.len()).collect();
+        order.sort_by_key(|v| (!visited(*v) && *v != self.start && *v != self.goal, *v));
+        let mut named: Vec<usize> = Vec::new();
+        let mut hidden = Vec::new();
+        for v in order {
+            let (x, y) = view.at(self.vertices[v].at);
+            let hits = |other: &usize| {
+                let (u, w) = view.at(self.vertices[*other].at);
+                let wide = self.half_width(v) + self.half_width(*other) + 2.0;
+                (x - u).abs() < wide && (y - w).abs() < 2.0 * HALF + 2.0
+            };
+            let kept = if named.iter().any(hits) { &mut hidden } else { &mut named };
+            kept.push(v);
+        }
+        hidden
     }
 
     /// Returns where the arrow of `step` begins and ends, px: beside the edge where it shares it.
@@ -372,6 +407,12 @@ fn around(
         max: Point::new(around.max.x.min(whole.max.x), around.max.y.min(whole.max.y)),
     }
     .grown(0.3)
+}
+
+/// Draws a place without its name.
+fn dot((x, y): (f64, f64)) -> Element {
+    let dot = Element::new("circle").at("cx", x).at("cy", y).at("r", 2.5);
+    dot.set("fill", PAPER).set("stroke", INK).at("stroke-width", 0.8)
 }
 
 /// Draws a thin line around a part of the building.
