@@ -129,6 +129,70 @@ def copying(page):
             yield "a box of the checklist is not ticked by Space"
 
 
+def replaying(page):
+    """The curve of a replay moves its time, by mouse and keys; the map zooms; nothing is covered, and drawing is quick."""
+    curve = page.locator("[role=slider]")
+    if not curve.count():
+        return
+    now = lambda: float(curve.get_attribute("aria-valuenow"))
+    end = float(curve.get_attribute("aria-valuemax"))
+    drawn = lambda: page.evaluate("() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    curve.focus()
+    for key, expected in (("End", end), ("Home", 0)):
+        page.keyboard.press(key)
+        drawn()
+        if abs(now() - expected) > 0.1:
+            yield f"{key} on the curve leads to {now()} s, expected {expected} s"
+    box = curve.bounding_box()
+    page.mouse.move(box["x"] + box["width"] * 0.3, box["y"] + 40)
+    page.mouse.down()
+    drawn()
+    first = now()
+    page.mouse.move(box["x"] + box["width"] * 0.6, box["y"] + 40)
+    page.mouse.up()
+    drawn()
+    if not 0 < first < now() < end:
+        yield f"dragging on the curve leads from {first} s to {now()} s of {end} s"
+    whole = page.evaluate("() => lensOf(trials[0]).zoom")
+    page.locator(".zoom button").nth(1).click()
+    closer = page.evaluate("() => lensOf(trials[0]).zoom")
+    page.locator(".trial canvas").first.focus()
+    page.keyboard.press("0")
+    if not whole == 1 < closer or page.evaluate("() => lensOf(trials[0]).zoom") != 1:
+        yield f"the map zooms from {whole} to {closer} and not back"
+    for width, height in ((1280, 800), (390, 844)):
+        page.set_viewport_size({"width": width, "height": height})
+        drawn()
+        below, parts = 0, page.evaluate("""() => [".trial canvas", ".chart", ".controls"].map((name) => {
+          const { top, bottom } = document.querySelector(name).getBoundingClientRect();
+          return [name, top + scrollY, bottom + scrollY];
+        })""")
+        # Two trials do not fit on a phone beside their controls.
+        fits = width > 400 or page.locator(".trial canvas").count() == 1
+        for name, top, bottom in parts:
+            if top < below or (fits and bottom > height):
+                yield f"{width} x {height}: {name} from {top:.0f} to {bottom:.0f} is covered or off the screen"
+            below = bottom
+    page.set_viewport_size({"width": 1280, "height": 900})
+    # A quarter of this machine's speed, and still 25 pictures a second.
+    slow = page.context.new_cdp_session(page)
+    slow.send("Emulation.setCPUThrottlingRate", {"rate": 4})
+    mean = page.evaluate("""() => {
+      const began = performance.now(), count = 100;
+      for (let i = 0; i < count; i++) {
+        now = end * i / count;
+        draw();
+      }
+      // What was only asked for until now is drawn.
+      panels.forEach((panel) => panel.canvas.getContext("2d").getImageData(0, 0, 1, 1));
+      return (performance.now() - began) / count;
+    }""")
+    slow.send("Emulation.setCPUThrottlingRate", {"rate": 1})
+    print(f"      an instant is drawn in {mean:.1f} ms at a quarter of the speed")
+    if mean > 40:
+        yield f"an instant takes {mean:.1f} ms at a quarter of the speed, expected at most 40 ms"
+
+
 def violations(page):
     for found in Axe().run(page).response["violations"]:
         nodes = found["nodes"]
@@ -155,7 +219,7 @@ def browse(browser, path, shots):
     faults += [f"a link out of the page: {at}" for at in facts["fetched"]]
     faults += [f"two elements have the id {id}" for id in facts["duplicates"]]
     faults += violations(page)
-    for check in (tabbed, opening, sorting, filtering, copying):
+    for check in (tabbed, opening, sorting, filtering, copying, replaying):
         faults += check(page)
     page.reload(wait_until="load")
     for scheme in ("light", "dark"):
@@ -176,7 +240,10 @@ def browse(browser, path, shots):
     if shots:
         (shots / f"{path.stem}.pdf").write_bytes(pdf)
     faults += said
-    faults += [f"a request: {url}" for url in sorted({url for url in asked if url != address and not url.startswith("data:")})]
+    # The page of a bundle shows what lies beside it.
+    own = path.resolve().parent.as_uri() + "/results/" if path.name == "index.html" else "data:"
+    strange = {url for url in asked if url != address and not url.startswith(("data:", own))}
+    faults += [f"a request: {url}" for url in sorted(strange)]
     context.close()
     print(f"{'FAIL' if faults else 'ok  '}  {path.name}: {size / 1000:.0f} kB, loaded in {load:.0f} ms, PDF {len(pdf) / 1000:.0f} kB")
     for fault in faults:

@@ -25,9 +25,9 @@ cat "$here"/requirements-{data,citation}.txt | cmp -s - "$tools/installed.txt" |
   { echo "could not install the readers" >&2; exit 2; }
 
 source "$here/steps.sh"
-# The lines of the first block in LANGUAGE.
-example() { # LANGUAGE FILE
-  awk -v fence='```'"$1" '$0 == fence { on = 1; next } on && /^```/ { exit } on' "$2"
+# The lines of a block in LANGUAGE, by default the first.
+example() { # LANGUAGE FILE [NUMBER]
+  awk -v fence='```'"$1" -v wanted="${3:-1}" '$0 == fence { on = ++n == wanted; next } /^```/ { if (on) exit } on' "$2"
 }
 # An example must run, and print a table with a line for every group rather than nothing.
 run_example() { # FILE COMMAND...
@@ -57,6 +57,8 @@ for bundle in "$@"; do
   step "citation" "$tools/citation/bin/cffconvert" --validate --infile "$data/CITATION.cff"
   step "deposit" python3 "$here/check_deposit.py" "$data/.zenodo.json"
   example python "$data/README.md" >"$work/example.py"
+  step "question in Python" run_example "$work/example.py" "$tools/data/bin/python"
+  example python "$data/README.md" 2 >"$work/example.py"
   step "example in Python" run_example "$work/example.py" "$tools/data/bin/python"
   if [ -n "$R" ]; then
     example r "$data/README.md" >"$work/example.R"

@@ -1,19 +1,30 @@
-"""Reads a bag with the readers that others wrote and says what is in it; fails where a message cannot be decoded.
+"""Reads a bag with the readers that others wrote and says what is in it; fails where one cannot, or finds something else.
 
     read_bag.py BAG.mcap TOPIC...
 
-Every TOPIC must be there. Needs PyPI's mcap and mcap-ros2-support.
+Every TOPIC must be there. The messages are decoded by mcap-ros2-support and, a second time, by rosbags. Frames are those of REP-105,
+and the robot's description has the frames that the bag moves. evo reads the true trajectory: its length along the arcs between the
+poses is the distance that the trial's record has, within a millimetre. Beside the bag stands a layout for Foxglove that names topics of
+the bag alone. Needs PyPI's mcap, mcap-ros2-support, rosbags and evo.
 """
 
 import collections
+import json
 import math
 import sys
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
 
+import numpy as np
+from evo.core.trajectory import PoseTrajectory3D
 from mcap_ros2.reader import read_ros2_messages
+from rosbags.highlevel import AnyReader
 
+bag = Path(sys.argv[1])
 counts = collections.Counter()
 last = -1
-for message in read_ros2_messages(sys.argv[1]):
+parents, laser_z, links = {}, None, None
+for message in read_ros2_messages(str(bag)):
     assert message.log_time_ns >= last, "messages are out of order"
     last = message.log_time_ns
     topic, ros = message.channel.topic, message.ros_msg
@@ -31,7 +42,56 @@ for message in read_ros2_messages(sys.argv[1]):
         for transform in ros.transforms:
             q = transform.transform.rotation
             assert math.isclose(q.z * q.z + q.w * q.w, 1.0, rel_tol=1e-9) and q.x == q.y == 0.0
+    elif topic == "/robot_description":
+        robot = ElementTree.fromstring(ros.data)
+        links = {link.get("name") for link in robot.findall("link")}
+        laser_z = float(robot.find("joint/origin").get("xyz").split()[2])
+    if topic in ("/tf", "/tf_static"):
+        for transform in ros.transforms:
+            child, parent = transform.child_frame_id, transform.header.frame_id
+            assert parents.setdefault(child, parent) == parent, f"{child} has two parents"
+            if child == "laser":
+                height = transform.transform.translation.z
 for topic, count in sorted(counts.items()):
     print(f"{topic}: {count}")
 missing = set(sys.argv[2:]) - set(counts)
 assert not missing, f"missing: {sorted(missing)}"
+
+# REP-105: from the robot's sensor to the map, each frame with one parent; above it the truth's.
+chain, frame = [], "laser"
+while frame:
+    chain.append(frame)
+    frame = parents.get(frame)
+assert chain == ["laser", "base_link", "odom", "map", "world"], chain
+assert links == {"base_link", "laser"} and laser_z == height, (links, laser_z, height)
+
+# The same bag by readers of another family.
+again, poses, distance = collections.Counter(), [], None
+with AnyReader([bag]) as reader:
+    for connection, stamp, raw in reader.messages():
+        again[connection.topic] += 1
+        if connection.topic in ("/ground_truth/pose", "/distance_travelled"):
+            ros = reader.deserialize(raw, connection.msgtype)
+            if connection.topic == "/distance_travelled":
+                distance = ros.data
+            else:
+                at, q = ros.pose.position, ros.pose.orientation
+                poses.append((stamp / 1e9, [at.x, at.y, at.z], [q.w, q.x, q.y, q.z]))
+assert again == counts, f"rosbags counts otherwise: {again - counts}, {counts - again}"
+
+stamps, positions, turns = (np.array(part) for part in zip(*poses))
+way = PoseTrajectory3D(positions, turns, stamps)
+valid, why = way.check()
+assert valid, why
+# Between two poses the robot drives an arc; evo adds up the chords.
+chords = np.diff(way.distances)
+half = np.diff(np.unwrap(2 * np.arctan2(turns[:, 3], turns[:, 0]))) / 2
+arcs = float(np.sum(chords / np.sinc(half / np.pi)))
+print(f"way: {arcs:.4f} m along arcs, {way.path_length:.4f} m along chords, {distance:.4f} m in the record")
+assert abs(arcs - distance) < 0.001, "the trajectory is not as long as the record says"
+
+layout = json.loads(bag.with_suffix(".foxglove-layout.json").read_text())
+panels = layout["configById"]
+named = set(panels["3D!scene"]["topics"]) | {panels["3D!scene"]["layers"]["robot"]["topic"]}
+named |= {path["value"].removesuffix(".data") for panel in panels.values() for path in panel.get("paths", [])}
+assert named <= set(counts), f"the layout names {sorted(named - set(counts))}"

@@ -35,7 +35,10 @@ const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; img-src 'se
 /// Writes the page of the bundle that is called `stem`.
 pub(super) fn page(content: &BundleContent, stem: &str, digest: ResultsDigest) -> String {
     let account = &content.account;
-    let (title, description) = (escape(&content.title), escape(&content.description));
+    let title = escape(&content.title);
+    // What begins with the title has just been read.
+    let description = content.description.strip_prefix(&format!("{}. ", content.title));
+    let description = escape(description.unwrap_or(&content.description));
     let mut text = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
@@ -75,7 +78,7 @@ pub(super) fn page(content: &BundleContent, stem: &str, digest: ResultsDigest) -
             let [path, title, caption, alt] =
                 [&figure.path, &figure.title, &figure.caption, &figure.alt].map(|t| escape(t));
             text.push_str(&format!(
-                "<figure><a href=\"{path}\"><img src=\"{path}\" alt=\"{alt}\" loading=\"lazy\"></a>\n\
+                "<figure><a href=\"{path}\"><img src=\"{path}\" alt=\"{alt}\"></a>\n\
                  <figcaption><strong>{title}.</strong> {caption}</figcaption></figure>\n"
             ));
         }

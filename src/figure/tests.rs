@@ -154,7 +154,7 @@ pub(crate) fn bar_chart() -> EstimateChart {
     estimates(&names, &["deadline 680 s", "deadline 68 s"], &["start A", "start B"], false)
 }
 
-fn share_chart() -> ShareChart {
+pub(crate) fn share_chart() -> ShareChart {
     let part = |name: &str, look| Part { name: name.into(), look };
     let row =
         |ours: &[f64], published: &[f64]| Shares { ours: ours.into(), published: published.into() };
@@ -178,7 +178,7 @@ fn share_chart() -> ShareChart {
     }
 }
 
-fn policy_chart() -> PolicyChart {
+pub(crate) fn policy_chart() -> PolicyChart {
     let place = |x: f64, y: f64, label: &str, room| PolicyVertex {
         at: crate::geometry::Point::new(x, y),
         label: label.into(),
@@ -406,4 +406,45 @@ fn the_scatter_has_one_scale_and_the_identity_line() {
     assert_eq!(labels.iter().filter(|t| *t == "20").count(), 2, "both axes share their ticks");
     assert!(labels.contains(&"the last".to_owned()) && labels.contains(&"RMSE 2.1 m".to_owned()));
     assert_on_sheet(&svg);
+}
+
+#[test]
+fn on_paper_every_chart_is_as_wide_as_the_column_and_its_texts_stay_apart() {
+    for width_mm in [88.0, 180.0] {
+        let medium = Medium::Paper { width_mm };
+        let wide = medium.width().unwrap();
+        let curves = line_chart(&["no prior", "floor plan", "footprint"]);
+        for (name, svg) in [
+            ("lines", curves.to_svg_on(medium)),
+            ("bars", bar_chart().to_svg_on(medium)),
+            ("shares", share_chart().to_svg_on(medium)),
+            ("scatter", scatter().to_svg_on(medium)),
+            ("policy", policy_chart().to_svg_on(medium)),
+        ] {
+            let document = roxmltree::Document::parse(&svg).unwrap();
+            let found: f64 = document.root_element().attribute("width").unwrap().parse().unwrap();
+            assert!((found - wide).abs() < 0.01, "{name}: {found} px, expected {wide} px");
+            assert_on_sheet(&svg);
+            if name != "policy" {
+                assert_no_text_on_another(&svg);
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_drawn_can_be_drawn_again() {
+    let table = line_chart(&["no prior"]).data();
+    let count = |what: &str| table.rows.iter().filter(|row| row[1].to_string() == what).count();
+    assert_eq!((count("curve"), count("band"), count("paper")), (96, 96, 1));
+    let shares = share_chart();
+    let rows: usize = shares.lines.iter().map(|line| line.rows().count()).sum();
+    assert_eq!(shares.data().rows.len(), rows * shares.parts.len());
+    let bars = bar_chart();
+    let rows: usize = bars.lines.iter().map(|line| line.rows().count()).sum();
+    assert_eq!(bars.data().rows.len(), rows);
+    assert_eq!(scatter().data().rows.len(), scatter().points.len());
+    let policy = policy_chart();
+    let moves: usize = policy.panels.iter().map(|panel| panel.moves.len()).sum();
+    assert_eq!(policy.data().rows.len(), moves);
 }

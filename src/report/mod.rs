@@ -28,7 +28,7 @@ pub mod show;
 mod still;
 mod template;
 
-pub use bag::{Bag, BagError, bag, bag_under_banner};
+pub use bag::{Bag, BagError, bag, bag_under_banner, foxglove_layout};
 pub use banner::{drawing_under_banner, page_under_banner};
 pub use claim::{ClaimRow, ComparisonRow, NoVerdicts};
 pub use content::{

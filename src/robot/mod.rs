@@ -3,6 +3,7 @@
 //! A mind (mapping, navigation, strategies) sees [`Scan`], [`Odometry`], [`Detection`]s and [`CompassReading`]s and answers
 //! with [`Twist`]; nothing else crosses.
 
+mod as_urdf;
 mod beams;
 pub mod description;
 mod files;

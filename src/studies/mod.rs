@@ -122,6 +122,9 @@ fn reenact_into(
 ) -> (TrialRecord, recording::Recording) {
     let record = spec.setup.run(spec, Some(&mut recording), &mut ());
     record.outcome.name().clone_into(&mut recording.outcome);
+    let robot = spec.setup.robot();
+    recording.description = robot.as_urdf();
+    recording.scan_height_m = robot.lidar.as_ref().map_or(0.0, |lidar| lidar.height);
     // Who explores for its own sake has no goal, whatever the world names.
     let mut goals = spec.setup.world().goals.values().filter(|_| recording.deadline_s.is_some());
     recording.goal = goals.next().copied().filter(|_| goals.next().is_none());

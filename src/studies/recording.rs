@@ -37,6 +37,12 @@ pub struct Recording {
     /// How the trial ended: `reached`; empty where that is not known.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub outcome: String,
+    /// The robot as a URDF ([`crate::robot::Robot::as_urdf`]); empty where that is not known.
+    #[serde(skip)]
+    pub description: String,
+    /// Height of the scan plane above the floor (m).
+    #[serde(skip)]
+    pub scan_height_m: f64,
     /// Every scan that was taken, where a recording was asked for them, in order of time.
     #[serde(skip)]
     pub sensed: Option<Vec<Sensed>>,
@@ -89,6 +95,8 @@ impl Default for Recording {
             deadline_s: None,
             goal: None,
             outcome: String::new(),
+            description: String::new(),
+            scan_height_m: 0.0,
             sensed: None,
         }
     }

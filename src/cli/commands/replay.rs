@@ -9,8 +9,8 @@ use crate::cli::{checked, load};
 use crate::geometry::Pose;
 use crate::plan::Plan;
 use crate::report::{
-    GainView, Note, Shown, bag_under_banner, drawing_under_banner, gain_svg, page_under_banner,
-    replay_page, still_svg,
+    GainView, Note, Shown, bag_under_banner, drawing_under_banner, foxglove_layout, gain_svg,
+    page_under_banner, replay_page, still_svg,
 };
 use crate::studies::recording::Recording;
 use crate::studies::{self, TrialRecord, TrialSpec, prior_map};
@@ -103,7 +103,9 @@ pub(in crate::cli) fn run(args: &ReplayArgs, terminal: Terminal) -> Result<Exit,
     if let (Some(path), Some((_, recording))) = (&args.mcap, played.first()) {
         let bag = bag_under_banner(recording, args.scan_rate, banner).map_err(Failure::failed)?;
         load::write(path, &bag.bytes)?;
-        terminal.note(&format!("wrote {}", path.display()));
+        let layout = path.with_extension("foxglove-layout.json");
+        load::write(&layout, foxglove_layout(&bag).as_bytes())?;
+        terminal.note(&format!("wrote {} and {}", path.display(), layout.display()));
         for (topic, count) in &bag.counts {
             terminal.note(&format!("  {topic}: {}", counted(*count as usize, "message")));
         }

@@ -31,6 +31,7 @@ const DEFINITIONS: &[(&str, &str)] = &[
     define!("std_msgs/ColorRGBA"),
     define!("std_msgs/Float64"),
     define!("std_msgs/Header"),
+    define!("std_msgs/String"),
     define!("tf2_msgs/TFMessage"),
     define!("visualization_msgs/Marker"),
     define!("visualization_msgs/MarkerArray"),

@@ -50,6 +50,13 @@ pub(super) struct Float64 {
 
 message!(Float64, "std_msgs/Float64");
 
+#[derive(Debug, Clone, Copy, Serialize)]
+pub(super) struct Text<'a> {
+    pub(super) data: &'a str,
+}
+
+message!(Text<'_>, "std_msgs/String");
+
 #[derive(Debug, Clone, Serialize)]
 pub(super) struct Header {
     pub(super) stamp: Time,
@@ -88,6 +95,14 @@ pub(super) struct Quaternion {
 pub(super) struct Pose {
     position: Vector3,
     orientation: Quaternion,
+}
+
+impl Pose {
+    /// Returns the same pose at this height (m).
+    pub(super) fn at_height(mut self, z: f64) -> Self {
+        self.position.z = z;
+        self
+    }
 }
 
 impl From<PlanarPose> for Pose {

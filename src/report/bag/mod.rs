@@ -5,6 +5,7 @@
 //! robot knows: `/ground_truth/pose` is in it. Times are simulated, from 0.
 
 mod definitions;
+mod layout;
 mod markers;
 mod messages;
 mod writer;
@@ -14,11 +15,12 @@ use crate::grid::{GridFrame, Occupancy};
 use crate::studies::recording::{Frame, Recording, Sensed};
 use messages::{
     Clock, Float64, Header, LaserScan, Log, MapMetaData, MarkerArray, OccupancyGrid, Odometry,
-    Path, PoseStamped, TFMessage, Time, TransformStamped,
+    Path, PoseStamped, TFMessage, Text, Time, TransformStamped,
 };
 use std::collections::BTreeMap;
 use writer::BagWriter;
 
+pub use layout::foxglove_layout;
 pub use writer::BagError;
 
 /// Shortest time between two maps (s): GMapping's `map_update_interval` as the prior-knowledge study set it.
@@ -110,9 +112,14 @@ impl Writing<'_> {
         let recording = self.recording;
         let mut transforms = vec![transform(0.0, "world", "map", recording.map_pose)];
         if let Some(first) = recording.sensed.iter().flatten().next() {
-            transforms.push(transform(0.0, "base_link", "laser", first.scan.mount));
+            let mut laser = transform(0.0, "base_link", "laser", first.scan.mount);
+            laser.transform = laser.transform.at_height(recording.scan_height_m);
+            transforms.push(laser);
         }
         self.writer.write("/tf_static", 0.0, &TFMessage { transforms })?;
+        if !recording.description.is_empty() {
+            self.writer.write("/robot_description", 0.0, &Text { data: &recording.description })?;
+        }
         self.writer.write("/world", 0.0, &MarkerArray { markers: markers::world(recording) })?;
         if let Some(prior) = &recording.prior {
             let cells = prior.values().iter().map(|value| of_ros(*value)).collect();

@@ -31,6 +31,7 @@ fn sensing() -> Recording {
         }
     });
     recording.sensed = Some(sensed.collect());
+    (recording.description, recording.scan_height_m) = ("<robot name=\"r\"/>".to_owned(), 0.25);
     let vertex = |label: &str, x: f64| VertexView {
         label: label.into(),
         room: label.starts_with('R'),
@@ -80,6 +81,7 @@ fn every_topic_is_there_with_its_type_and_in_order_of_time() {
             "/odom nav_msgs/msg/Odometry 200",
             "/plan nav_msgs/msg/Path 10",
             "/prior_map nav_msgs/msg/OccupancyGrid 1",
+            "/robot_description std_msgs/msg/String 1",
             "/rosout rcl_interfaces/msg/Log 10",
             "/scan sensor_msgs/msg/LaserScan 200",
             "/tf tf2_msgs/msg/TFMessage 200",
@@ -105,7 +107,7 @@ fn what_stays_true_is_offered_to_those_who_come_late() {
     }
     let latched: Vec<&str> =
         durable.iter().filter(|(_, is)| **is).map(|(topic, _)| topic.as_str()).collect();
-    assert_eq!(latched, ["/map", "/prior_map", "/tf_static", "/world"]);
+    assert_eq!(latched, ["/map", "/prior_map", "/robot_description", "/tf_static", "/world"]);
     let last = MessageStream::new(&bag.bytes).unwrap().map(Result::unwrap).last().unwrap();
     assert_eq!(last.channel.topic, "/rosout");
     assert!(last.data.windows(21).any(|text| text == b"the trial ended: late"));
@@ -135,6 +137,22 @@ fn a_scan_is_laid_out_as_common_data_representation_has_it() {
     assert_eq!(scan.data[52..56], 5_u32.to_le_bytes());
     assert_eq!((at(56), at(60), at(64)), (1.0, 2.5, f32::INFINITY));
     assert_eq!(scan.data.len(), 56 + 5 * 4 + 4);
+}
+
+#[test]
+fn the_scanner_stands_at_its_height_and_the_robot_is_described() {
+    let bag = bag(&sensing(), None).unwrap();
+    let of = |topic: &str| {
+        let mut all = MessageStream::new(&bag.bytes).unwrap().map(Result::unwrap);
+        all.find(|message| message.channel.topic == topic).unwrap()
+    };
+    // Encapsulation 4; length with end 4 and 18 bytes.
+    let described = of("/robot_description");
+    assert_eq!(described.data[4..8], 18_u32.to_le_bytes());
+    assert_eq!(&described.data[8..26], b"<robot name=\"r\"/>\0");
+    let still = of("/tf_static");
+    let height = 0.25_f64.to_le_bytes();
+    assert_eq!(still.data.windows(8).filter(|bytes| *bytes == height).count(), 1);
 }
 
 #[test]

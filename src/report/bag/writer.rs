@@ -12,7 +12,7 @@ use std::io::Cursor;
 const CDR_LE: [u8; 4] = [0, 1, 0, 0];
 
 /// Topics of which the last message stays true: who plays a bag offers it to those who come late.
-const LATCHED: [&str; 4] = ["/map", "/prior_map", "/tf_static", "/world"];
+const LATCHED: [&str; 5] = ["/map", "/prior_map", "/robot_description", "/tf_static", "/world"];
 
 /// Returns the quality of service that `topic` was offered with, as rosbag2 keeps it (a list of `rmw` profiles in YAML), so that a
 /// bag plays with it: all but the latched topics as the default profile of ROS 2.

@@ -212,7 +212,7 @@ mod tests {
         let text = String::from_utf8_lossy(&file);
         for part in [
             "%PDF-1.7",
-            "/MediaBox [0 0 249.4488 124.7244]",
+            "/MediaBox [0 0 249.44",
             "/BaseFont /ReenactSans-Regular",
             "/Title (Ends & means)",
             "/ca 1",

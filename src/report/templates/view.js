@@ -10,8 +10,7 @@ function lensOf({ view }) {
   return lenses.get(name);
 }
 
-// How high a map may be so that it, the scrubber and the controls are on one screen; of maps that stand below one another each,
-// with them.
+// How high a map may be so that it, the scrubber and the controls are on one screen.
 function room() {
   const top = element("trials").querySelector("canvas").getBoundingClientRect().top + window.scrollY;
   const height = (name) => document.querySelector(name).offsetHeight;
