@@ -307,7 +307,7 @@ impl Canvas {
             let ground = Element::new("rect").at("y", height).at("width", width);
             self.push(ground.at("height", below).set("fill", "#fff"));
         }
-        drawn.into_iter().for_each(|element| self.push(element));
+        self.elements.extend(drawn);
     }
 
     /// Explains the numbers in the drawing, in lines below the legend.

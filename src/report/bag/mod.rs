@@ -60,6 +60,7 @@ pub fn bag_under_banner(
         writer: BagWriter::new()?,
         map: vec![-1; recording.map_frame.len()],
         map_written_s: None,
+        measured_s: None,
         map_changed: false,
         scan_period_s: scan_rate_hz.map_or(0.0, |rate| 1.0 / rate),
         scanned_s: None,
@@ -100,6 +101,7 @@ struct Writing<'a> {
     /// The robot's map as ROS has it: -1 unknown, 0 free, 100 occupied.
     map: Vec<i8>,
     map_written_s: Option<f64>,
+    measured_s: Option<f64>,
     map_changed: bool,
     scan_period_s: f64,
     scanned_s: Option<f64>,
@@ -153,13 +155,10 @@ impl Writing<'_> {
 
     fn frame(&mut self, frame: &Frame) -> Result<(), BagError> {
         let at = frame.time_s;
-        self.writer.write("/clock", at, &Clock { clock: Time::of(at) })?;
-        let pose = PoseStamped { header: header(at, "world"), pose: frame.pose.into() };
-        self.writer.write("/ground_truth/pose", at, &pose)?;
-        self.writer.write("/coverage", at, &Float64 { data: frame.coverage_percent })?;
-        self.writer.write("/distance_travelled", at, &Float64 { data: frame.distance_m })?;
-        if let Some(deadline) = self.recording.deadline_s {
-            self.writer.write("/time_left", at, &Float64 { data: deadline - at })?;
+        // Two frames of one instant differ in what happens, and in nothing that is measured.
+        if self.measured_s != Some(at) {
+            self.measured_s = Some(at);
+            self.measures(frame)?;
         }
         for (cell, value) in &frame.map_changes {
             if let Some(index) = self.recording.map_frame.index(*cell) {
@@ -183,6 +182,19 @@ impl Writing<'_> {
             self.writer.write("/graph", at, &MarkerArray { markers })?;
         }
         frame.event.as_ref().map_or(Ok(()), |event| self.log(at, event))
+    }
+
+    /// Writes what there is at every instant.
+    fn measures(&mut self, frame: &Frame) -> Result<(), BagError> {
+        let at = frame.time_s;
+        self.writer.write("/clock", at, &Clock { clock: Time::of(at) })?;
+        let pose = PoseStamped { header: header(at, "world"), pose: frame.pose.into() };
+        self.writer.write("/ground_truth/pose", at, &pose)?;
+        self.writer.write("/coverage", at, &Float64 { data: frame.coverage_percent })?;
+        self.writer.write("/distance_travelled", at, &Float64 { data: frame.distance_m })?;
+        self.recording.deadline_s.map_or(Ok(()), |deadline| {
+            self.writer.write("/time_left", at, &Float64 { data: deadline - at })
+        })
     }
 
     /// Writes a line of the log.

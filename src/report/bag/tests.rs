@@ -156,6 +156,17 @@ fn the_scanner_stands_at_its_height_and_the_robot_is_described() {
 }
 
 #[test]
+fn no_two_poses_are_of_one_instant() {
+    let mut recording = sensing();
+    let mut again = recording.frames[99].clone();
+    again.event = Some("over".to_owned());
+    recording.frames.push(again);
+    let counts = bag(&recording, None).unwrap().counts;
+    assert_eq!((counts["/ground_truth/pose"], counts["/clock"]), (100, 100));
+    assert_eq!(counts["/rosout"], bag(&sensing(), None).unwrap().counts["/rosout"] + 1);
+}
+
+#[test]
 fn thinned_scans_keep_their_rate_and_nothing_else_is_lost() {
     let all = bag(&sensing(), None).unwrap();
     let thinned = bag(&sensing(), Some(5.0)).unwrap();

@@ -81,7 +81,9 @@ mod tests {
             let drawing = Drawing::read(&for_paper(&svg, 88.0)).unwrap();
             assert!(drawing.marks.len() > 20 && !drawing.title.is_empty());
             let sizes = drawing.marks.iter().filter_map(|mark| match &mark.shape {
-                drawing::Shape::Text { size, .. } => Some(size * 88.0 * 72.0 / 25.4 / drawing.width),
+                drawing::Shape::Text { size, .. } => {
+                    Some(size * 88.0 * 72.0 / 25.4 / drawing.width)
+                }
                 drawing::Shape::Path(_) => None,
             });
             let sizes: Vec<f64> = sizes.collect();
@@ -102,7 +104,10 @@ mod tests {
         assert_eq!(names, ["figure-4.csv", "figure-4.pdf", "figure-4.svg"]);
         assert_eq!(files, printed_figures(&bundle, &plan, 180.0).unwrap());
         let csv = String::from_utf8_lossy(&files[0].1);
-        assert!(csv.starts_with("series,what,x,y,low,high,x-deviation,y-deviation\nnone,curve,"), "{csv}");
+        assert!(
+            csv.starts_with("series,what,x,y,low,high,x-deviation,y-deviation\nnone,curve,"),
+            "{csv}"
+        );
         assert!(String::from_utf8_lossy(&files[2].1).contains(" width=\"180mm\""));
         plan.experiment.figures.clear();
         assert_eq!(
