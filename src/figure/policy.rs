@@ -81,13 +81,14 @@ pub struct PolicyMove {
 struct View {
     bounds: Bounds,
     scale: f64,
+    left: f64,
     top: f64,
     medium: Medium,
 }
 
 impl View {
     fn at(&self, point: Point) -> (f64, f64) {
-        let x = MARGIN + (point.x - self.bounds.min.x) * self.scale;
+        let x = self.left + (point.x - self.bounds.min.x) * self.scale;
         (x, self.top + (self.bounds.max.y - point.y) * self.scale)
     }
 
@@ -114,9 +115,11 @@ impl PolicyChart {
         if whole.is_empty() {
             whole = Bounds { min: Point::ZERO, max: Point::new(1.0, 1.0) };
         }
+        // Small buildings leave room for the names of places at their walls.
+        let left = if medium == Medium::Screen { MARGIN } else { 2.0 * MARGIN };
         let building = match medium.width() {
             // The building is drawn with 0.3 m around it.
-            Some(width) => (width - 2.0 * MARGIN) / (1.0 + 0.6 / whole.width().max(1.0)),
+            Some(width) => (width - 2.0 * left) / (1.0 + 0.6 / whole.width().max(1.0)),
             None => WIDTH,
         };
         let scale = building / whole.width().max(1.0);
@@ -156,14 +159,14 @@ impl PolicyChart {
             } else {
                 top = y - 8.0;
             }
-            let view = View { bounds, scale, top, medium };
+            let view = View { bounds, scale, left, top, medium };
             body.extend(self.panel(&view, panel));
             if i > 0 {
                 body.push(frame(&view));
             }
             top += (bounds.height() * scale).max(if has_room { 72.0 } else { 0.0 }) + 18.0;
         }
-        let width = building + 0.6 * scale + 2.0 * MARGIN;
+        let width = building + 0.6 * scale + 2.0 * left;
         let (key, height) = key(self.items(), MARGIN, width - 4.0, top);
         sheet(width, top + height + 8.0, &self.title, body.into_iter().chain([key]))
     }
