@@ -19,37 +19,63 @@ pub(super) fn check(labels: &Labels, factors: &[Factor], faults: &mut Faults<'_>
             check_label(label, &step(&values, value), faults);
         }
     }
-    check_names(labels, factors, faults);
+    let name_of = |factor: &Factor| format!("{}/name", step("/labels", &factor.name));
+    let named = |factor: &Factor| labels.factor(&factor.name) != factor.name;
+    for (factor, label) in factors.iter().map(|factor| (factor, labels.factor(&factor.name))) {
+        if named(factor) {
+            check_label(label, &name_of(factor), faults);
+        }
+    }
+    let shown: Vec<Shown<'_>> = factors
+        .iter()
+        .map(|factor| Shown {
+            own: &factor.name,
+            label: labels.factor(&factor.name),
+            written: named(factor).then(|| name_of(factor)),
+        })
+        .collect();
+    check_apart("factor", &shown, faults);
     for (name, of_factor) in labels.iter() {
         let Some(factor) = factors.iter().find(|factor| factor.name == name) else { continue };
-        let mut shown: BTreeMap<&str, &str> = BTreeMap::new();
-        for value in &factor.values {
-            let label = labels.value(name, value);
-            if let Some(other) = shown.insert(label, value)
-                && of_factor.values.contains_key(value)
-            {
-                let pointer = step(&format!("{}/values", step("/labels", name)), value);
-                clash(&pointer, label, &format!("the value `{other}`"), faults);
-            }
-        }
+        let values = format!("{}/values", step("/labels", name));
+        let written =
+            |value: &String| of_factor.values.contains_key(value).then(|| step(&values, value));
+        let shown: Vec<Shown<'_>> = factor
+            .values
+            .iter()
+            .map(|value| Shown {
+                own: value,
+                label: labels.value(name, value),
+                written: written(value),
+            })
+            .collect();
+        check_apart("value", &shown, faults);
     }
 }
 
-/// Collects the faults of what stands for the factors themselves.
-fn check_names(labels: &Labels, factors: &[Factor], faults: &mut Faults<'_>) {
-    let mut shown: BTreeMap<&str, &str> = BTreeMap::new();
-    let own: BTreeMap<&str, &str> =
-        labels.iter().filter_map(|(name, labels)| Some((name, labels.name.as_deref()?))).collect();
-    for factor in factors {
-        let label = labels.factor(&factor.name);
-        let other = shown.insert(label, &factor.name);
-        if let Some(written) = own.get(factor.name.as_str()) {
-            let pointer = format!("{}/name", step("/labels", &factor.name));
-            check_label(written, &pointer, faults);
-            if let Some(other) = other {
-                clash(&pointer, label, &format!("the factor `{other}`"), faults);
-            }
-        }
+/// A factor or value, and what readers see.
+struct Shown<'a> {
+    own: &'a str,
+    label: &'a str,
+    /// Where the label is written, if anywhere.
+    written: Option<String>,
+}
+
+/// Collects a fault for each that is shown as one before it.
+fn check_apart(what: &str, shown: &[Shown<'_>], faults: &mut Faults<'_>) {
+    let mut known: BTreeMap<&str, &Shown<'_>> = BTreeMap::new();
+    for one in shown {
+        let Some(other) = known.insert(one.label, one) else { continue };
+        // One of the two labels is written: names themselves are distinct.
+        let (pointer, beside) = match (&one.written, &other.written) {
+            (Some(pointer), _) => (pointer, other.own),
+            (None, Some(pointer)) => (pointer, one.own),
+            (None, None) => continue,
+        };
+        let label = one.label;
+        let fault = faults.fault(pointer, format!("two things cannot both be shown as `{label}`"));
+        let fault = fault.label(format!("the {what} `{beside}` is shown so, too"));
+        faults.push(fault.help("give each its own label, so that readers can tell them apart"));
     }
 }
 
@@ -58,15 +84,8 @@ fn check_label(label: &str, pointer: &str, faults: &mut Faults<'_>) {
     let is_plain = label.trim() == label && !label.chars().any(char::is_control);
     if length == 0 || length > LONGEST || !is_plain {
         let fault = faults.fault(pointer, "this cannot be a label");
-        let expected = format!(
-            "expected one line of 1 to {LONGEST} characters without blanks around it, found {length}"
-        );
+        let expected =
+            format!("expected 1 to {LONGEST} characters on one line, and no blank at either end");
         faults.push(fault.label(expected).help("write it as it is to stand in a table's heading"));
     }
-}
-
-fn clash(pointer: &str, label: &str, other: &str, faults: &mut Faults<'_>) {
-    let message = format!("two things cannot both be called `{label}`");
-    let fault = faults.fault(pointer, message).label(format!("{other} is shown so, too"));
-    faults.push(fault.help("readers could not tell them apart: give each its own label"));
 }

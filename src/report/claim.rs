@@ -319,6 +319,7 @@ fn test_name(name: &str) -> String {
         "spearman" => "Spearman's rank correlation, permuted",
         "tost-newcombe" => "two one-sided tests, Newcombe's interval",
         "tost-welch" => "two one-sided tests, Welch's",
+        "binomial" => "exact binomial test",
         "score" => "score test",
         "count" => "every trial counted",
         "bootstrap-over-cells" => "bootstrap over cells",

@@ -89,6 +89,34 @@ fn the_state_places_and_scales_and_the_plane_cuts() {
 }
 
 #[test]
+fn a_mesh_that_is_missing_is_told_once_for_all_clones() {
+    let chair = |name: &str, scale: &str| {
+        format!(
+            "<model name='{name}'><static>1</static><link name='l'><collision name='c'><geometry><mesh>\
+             <uri>model://chair/chair.dae</uri>{scale}</mesh></geometry></collision></link></model>"
+        )
+    };
+    let clones: String = ["chair", "chair_clone", "chair_clone_0"]
+        .map(|name| chair(name, ""))
+        .into_iter()
+        .chain([chair("chair_clone_1", "<scale>2 2 2</scale>")])
+        .collect();
+    let wall = "<model name='wall'><static>1</static><link name='l'><collision name='c'><geometry><box><size>4 0.2 2</size></box>\
+                </geometry></collision></link></model>";
+    let text = format!("<sdf version='1.6'><world name='a'>{wall}{clones}</world></sdf>");
+    let world = read(&Source::new("a.world", text)).unwrap();
+    let told: Vec<&str> = world.warnings.iter().map(|w| w.split_once(": ").unwrap().1).collect();
+    assert_eq!(
+        told,
+        [
+            "4 collisions (`chair/l/c`, `chair_clone/l/c`, `chair_clone_0/l/c`, `chair_clone_1/l/c`) are a mesh \
+          `model://chair/chair.dae`, which cannot be read: 4 are missing"
+        ]
+    );
+    assert_eq!(world.missing(), 4);
+}
+
+#[test]
 fn faults_say_where() {
     let changed = |from: &str, to: &str| -> Vec<String> {
         assert!(TINY.contains(from), "{from}");
