@@ -207,7 +207,7 @@ fn a_parameter_that_changed_is_named_by_probe_and_run_and_the_bundles_are_told_a
     assert_eq!((json.stdout.lines().count(), json.code), (1, 1));
     assert_eq!(json.stderr, format!("{old}: {line}\n{new}: {line}\n"), "stdout is for programs");
     let told: serde_json::Value = serde_json::from_str(&json.stdout).unwrap();
-    assert_eq!(told["matching"], serde_json::json!({"by-key": 0, "by-number": 1}));
+    assert_eq!(told["matching"], serde_json::json!({"by_key": 0, "by_number": 1}));
     let answer = desk.run(&["diff", old, new, "--format", "html", "-o", "d.html"]);
     let says = format!("{old}: {line}\n{new}: {line}\nd.html\n");
     assert_eq!((answer.stdout, answer.code), (says, 1));

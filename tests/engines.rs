@@ -65,6 +65,7 @@ fn a_slurm_job_is_submitted_with_the_sealing_after_it() {
     };
     slurm("#!/bin/sh\necho \"$*\" >>asked\necho \"$((40 + $(wc -l <asked)));cluster\"\n");
     let answer = submit(&["--format", "json"]);
+    crate::schemas::assert_answers("submit", &answer.stdout);
     assert_eq!((answer.stderr.as_str(), answer.code), ("", 0));
     let line: Value = serde_json::from_str(&answer.stdout).unwrap();
     assert_eq!((&line["array_job"], &line["seal_job"]), (&"41".into(), &"42".into()));

@@ -1,7 +1,7 @@
 //! What editors and scripts read files and answers by: the committed JSON Schemas are those of the program, and what is shipped
 //! validates against them. The validator is another one than the program's own.
 
-use crate::sandbox::{Sandbox, repository};
+use crate::sandbox::{Sandbox, TINY, repository};
 use reenact::document::{self, Source};
 use serde_json::Value;
 use std::fs;
@@ -48,6 +48,23 @@ fn by_its_own_schema(path: &Path) -> (PathBuf, Vec<String>) {
     (of, differences)
 }
 
+/// Asserts that `stdout` is answers of the command `name`: compact lines, each as its committed schema says, of which nothing is
+/// left to guess. Returns them.
+#[track_caller]
+pub(crate) fn assert_answers(name: &str, stdout: &str) -> Vec<Value> {
+    let path = repository().join(format!("schemas/answers/{name}.schema.json"));
+    let schema = schema(&path);
+    assert_eq!(schema["$id"], format!("urn:reenact:answer:{name}:1"));
+    assert!(!stdout.is_empty(), "{name}: no answer");
+    let answers = stdout.lines().map(|line| {
+        let answer: Value = serde_json::from_str(line).unwrap_or_else(|e| panic!("{e}: {line}"));
+        let differences = differences(&schema, &answer);
+        assert!(differences.is_empty(), "{name}: {differences:#?} in {line}");
+        answer
+    });
+    answers.collect()
+}
+
 #[test]
 fn the_committed_schema_of_manifests_is_the_one_that_is_printed() {
     let printed = Sandbox::new().run(&["schema"]);
@@ -89,12 +106,124 @@ fn an_editor_is_told_of_what_is_no_manifest() {
     let text = fs::read_to_string(path).unwrap().replace("trials: 10", "trials: none\nbags: 2");
     let tree = document::read(&Source::new("manifest.yaml", text.as_str())).unwrap();
     let mut told = differences(&schema, &tree.root.to_json());
-    told.sort();
+    told.sort_by_key(|line| line.starts_with(':'));
     assert_eq!(
         told,
         [
-            ": Additional properties are not allowed ('bags' was unexpected)",
             "/trials: \"none\" is not of type \"integer\"",
+            ": Additional properties are not allowed ('bags' was unexpected)",
         ]
     );
+}
+
+#[test]
+fn every_schema_of_an_answer_is_one_and_is_printed() {
+    let sandbox = Sandbox::new();
+    let mut names = Vec::new();
+    for entry in fs::read_dir(repository().join("schemas/answers")).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_str().unwrap().to_owned();
+        let name = name.strip_suffix(".schema.json").unwrap().to_owned();
+        jsonschema::meta::validate(&schema(&path)).unwrap();
+        assert_eq!(sandbox.done(&["schema", &name]), fs::read_to_string(&path).unwrap());
+        names.push(name);
+    }
+    names.sort();
+    assert_eq!(names.len(), 14, "{names:?}");
+}
+
+fn json<'a>(words: &[&'a str]) -> Vec<&'a str> {
+    [words, &["--format", "json"]].concat()
+}
+
+#[test]
+fn a_study_is_answered_as_its_schemas_say() {
+    let place = Sandbox::new().with_study(TINY);
+    let planned = place.done(&json(&["plan", "tiny.yaml"]));
+    let planned = &assert_answers("plan", &planned)[0];
+    assert_eq!((&planned["done"], &planned["to_do"]), (&0.into(), &6.into()));
+    let power = place.done(&json(&["plan", "tiny.yaml", "--power"]));
+    assert_answers("plan-power", &power);
+    let kept = place.done(&json(&["run", "tiny.yaml", "--no-seal", "--shard", "1/2"]));
+    assert_answers("run-no-seal", &kept);
+    let run = place.done(&json(&["run", "tiny.yaml"]));
+    let run = &assert_answers("run", &run)[0];
+    let planned = place.done(&json(&["plan", "tiny.yaml"]));
+    let planned = &assert_answers("plan", &planned)[0];
+    assert_eq!((&planned["done"], &planned["to_do"]), (&6.into(), &0.into()));
+    assert_eq!(planned["trials"][0]["condition"], "none");
+
+    let digest = &run["results_digest"];
+    let lock = place.done(&json(&["lock", "tiny.yaml"]));
+    let new = &assert_answers("lock", &lock)[0];
+    assert_eq!((&new["state"], &new["results_digest"]), (&"new".into(), digest));
+    let again = place.done(&json(&["lock", "tiny.yaml"]));
+    assert_eq!(assert_answers("lock", &again)[0]["state"], "unchanged");
+    let probed = place.done(&json(&["run", "tiny.yaml", "--locked", "--probe"]));
+    assert_answers("run-probe", &probed);
+    let locked = place.done(&json(&["run", "tiny.yaml", "--locked"]));
+    let run = &assert_answers("run", &locked)[0];
+    assert_eq!((&run["drift"], &run["results_digest"]), (&Value::Null, digest));
+
+    let bundle = run["bundle"].as_str().unwrap();
+    let checked = place.done(&json(&["verify", "--level", "5", bundle]));
+    let checked = &assert_answers("verify", &checked)[0];
+    for key in ["bundle_id", "results_digest", "study_digest"] {
+        assert_eq!(checked[key], run[key], "{key}: the same in every answer");
+    }
+    let replicated = place.run(&json(&["verify", "--level", "6", bundle]));
+    assert_answers("verify", &replicated.stdout);
+    let report = place.done(&json(&["report", bundle, "-o", "page.html"]));
+    assert_eq!(&assert_answers("report", &report)[0]["results_digest"], digest);
+    for form in ["--flat", "--rocrate", "--dir", "--latex"] {
+        let exported = place.done(&json(&["export", bundle, form, "--out", "exported"]));
+        let exported = &assert_answers("export", &exported)[0];
+        assert_eq!(exported["form"], form.trim_start_matches('-'));
+        assert!(place.path(exported["path"].as_str().unwrap()).exists(), "{form}");
+    }
+
+    let other = place.done(&json(&["run", "tiny.yaml", "--set", "seed=8", "--out", "other"]));
+    let other = &assert_answers("run", &other)[0];
+    let differs = place.run(&json(&["diff", bundle, other["bundle"].as_str().unwrap()]));
+    let differs = &assert_answers("diff", &differs.stdout)[0];
+    assert_eq!((&differs["a"]["results_digest"], &differs["same"]), (digest, &false.into()));
+    assert_eq!(differs["b"]["results_digest"], other["results_digest"]);
+    let drifted = place.run(&json(&["run", "tiny.yaml", "--set", "seed=8", "--locked"]));
+    assert_eq!(assert_answers("run", &drifted.stdout)[0]["drift"]["same"], false);
+    assert_eq!(drifted.code, 1);
+
+    assert_eq!(
+        assert_answers("cache-size", &place.done(&json(&["cache", "size"])))[0]["trials"],
+        12
+    );
+    assert_answers("cache-verify", &place.done(&json(&["cache", "verify"])));
+}
+
+#[test]
+fn check_answers_with_every_fault_and_its_place() {
+    let place = Sandbox::new().with_study(TINY);
+    let checked = place.done(&["check", "tiny.yaml", "--format", "json"]);
+    let good = &assert_answers("check", &checked)[0];
+    assert_eq!((&good["ok"], &good["trials"]), (&true.into(), &6.into()));
+    place.edit("tiny.yaml", "trials: 3", "trials: many");
+    place.edit("tiny.yaml", "seed: 7", "seed: 7\nsede: 8");
+    let words = ["check", "tiny.yaml", "no-such.yaml", "--format", "json"];
+    let answer = place.run(&words);
+    let told = assert_answers("check", &answer.stdout);
+    assert_eq!((told.len(), answer.code, answer.stderr.as_str()), (2, 2, ""));
+    let faults = told[0]["faults"].as_array().unwrap();
+    let at: Vec<String> = faults
+        .iter()
+        .map(|fault| {
+            format!("{}:{}:{}: {}", fault["file"], fault["line"], fault["column"], fault["message"])
+        })
+        .collect();
+    assert_eq!(
+        at,
+        [
+            r#""tiny.yaml":8:1: "unknown key `sede`""#,
+            r#""tiny.yaml":9:9: "`trials` must be a whole number, found the text `many`""#,
+        ]
+    );
+    assert_eq!(told[1]["faults"][0]["line"], Value::Null, "a file that is not there has no line");
 }

@@ -37,7 +37,7 @@ fn verified(place: &Sandbox, bundle: &str) -> String {
     let answer = place.run(&["verify", bundle, "--format", "json"]);
     assert_eq!(answer.code, 0, "{bundle}: {answer:?}");
     let report: serde_json::Value = serde_json::from_str(&answer.stdout).unwrap();
-    report["results-digest"].as_str().unwrap().to_owned()
+    report["results_digest"].as_str().unwrap().to_owned()
 }
 
 fn keep(name: &str, zip: &[u8]) {

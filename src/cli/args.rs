@@ -2,6 +2,7 @@
 
 mod bundles;
 mod engines;
+mod examples;
 mod studies;
 
 pub(super) use bundles::{
@@ -16,7 +17,13 @@ use std::path::PathBuf;
 
 /// Re-enact published robot-exploration experiments, exactly
 #[derive(Debug, Parser)]
-#[command(name = "reenact", version, max_term_width = 100, arg_required_else_help = true)]
+#[command(
+    name = "reenact",
+    version,
+    max_term_width = 100,
+    arg_required_else_help = true,
+    after_help = examples::ALL
+)]
 pub(super) struct Arguments {
     #[command(subcommand)]
     pub(super) command: Command,
@@ -30,48 +37,70 @@ pub fn command() -> clap::Command {
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
     /// Simulate every trial of a manifest and seal a bundle
+    #[command(after_help = examples::RUN)]
     Run(RunArgs),
     /// Seal the bundles of a study's shards as the one bundle of the whole
+    #[command(after_help = examples::MERGE)]
     Merge(MergeArgs),
     /// Hand the shards of a study to Slurm or Kubernetes, and the sealing after them
+    #[command(after_help = examples::SUBMIT)]
     Submit(SubmitArgs),
     /// Parse and resolve everything, simulate nothing, report every fault
+    #[command(after_help = examples::CHECK)]
     Check(CheckArgs),
     /// List the trials that would run, or explain one
+    #[command(after_help = examples::PLAN)]
     Plan(PlanArgs),
     /// Check a bundle: safe, intact, coherent, derived, re-executed, replicated
+    #[command(after_help = examples::VERIFY)]
     Verify(VerifyArgs),
     /// Put a signature into an attestation that `verify` wrote
+    #[command(after_help = examples::ATTEST)]
     Attest(AttestArgs),
     /// Tell what changed between two bundles or locks
+    #[command(after_help = examples::DIFF)]
     Diff(DiffArgs),
     /// Write down what a manifest's run yields, so that drift is found
+    #[command(after_help = examples::LOCK)]
     Lock(LockArgs),
     /// Try a manifest's claims at the other values that its assumptions state
+    #[command(after_help = examples::VARY)]
     Vary(VaryArgs),
     /// Infer what a paper leaves unsaid from a table that it prints
+    #[command(after_help = examples::INFER)]
     Infer(InferArgs),
     /// Write a bundle as one offline HTML page
+    #[command(after_help = examples::REPORT)]
     Report(ReportArgs),
     /// Write a bundle in another form
+    #[command(after_help = examples::EXPORT)]
     Export(ExportArgs),
     /// Re-enact archived trials with full recording
+    #[command(after_help = examples::REPLAY)]
     Replay(ReplayArgs),
     /// Draw a robot, world, prior map or occupancy grid, and say what was understood
+    #[command(after_help = examples::SHOW)]
     Show(ShowArgs),
     /// Solve a constrained MDP given as JSON
+    #[command(after_help = examples::SOLVE_CMDP)]
     SolveCmdp(SolveCmdpArgs),
-    /// Print the JSON Schema of manifests or worlds
+    /// Print the JSON Schema of manifests, of worlds or of an answer
+    #[command(after_help = examples::SCHEMA)]
     Schema(SchemaArgs),
     /// Print shell completions
+    #[command(after_help = examples::COMPLETIONS)]
     Completions(CompletionsArgs),
     /// Write the manual pages
+    #[command(after_help = examples::MAN)]
     Man(ManArgs),
     /// Write a Gazebo world or a `map_server` map as world YAML
+    #[command(after_help = examples::IMPORT)]
     Import(ImportArgs),
     /// Write a working starter manifest
+    #[command(after_help = examples::INIT)]
     Init(InitArgs),
     /// Look after the store of finished trials
+    #[command(after_help = examples::CACHE)]
     Cache(CacheArgs),
 }
 
@@ -262,6 +291,34 @@ pub(super) enum SchemaOf {
     Manifest,
     /// World YAML files
     World,
+    /// Answers of `run`, `merge` and `infer` with `--format json`
+    Run,
+    /// Of `run --no-seal`
+    RunNoSeal,
+    /// Of `run --locked --probe`
+    RunProbe,
+    /// Of `check`
+    Check,
+    /// Of `plan`
+    Plan,
+    /// Of `plan --power`
+    PlanPower,
+    /// Of `verify`
+    Verify,
+    /// Of `diff`
+    Diff,
+    /// Of `lock`
+    Lock,
+    /// Of `report`
+    Report,
+    /// Of `export`
+    Export,
+    /// Of `submit`
+    Submit,
+    /// Of `cache size`
+    CacheSize,
+    /// Of `cache verify`
+    CacheVerify,
 }
 
 #[derive(Debug, Args)]
@@ -323,11 +380,11 @@ pub(super) enum CacheAction {
     /// Print where it is
     Dir,
     /// Print how many trials it holds and how large it is
-    Size,
+    Size(CacheFormatArgs),
     /// Remove what no run wrote to for some days: trials that are wanted again are simulated again
     Prune(PruneArgs),
     /// Hold every record against its digest, and records of one trial against one another
-    Verify(CacheVerifyArgs),
+    Verify(CacheFormatArgs),
     /// Put small files together, without records that are there twice and damaged ones; safe beside running processes
     Gc,
     /// Write records to one file, to move them to another store
@@ -337,7 +394,7 @@ pub(super) enum CacheAction {
 }
 
 #[derive(Debug, Clone, Args)]
-pub(super) struct CacheVerifyArgs {
+pub(super) struct CacheFormatArgs {
     /// How the answer is written
     #[arg(long, value_enum, default_value = "human")]
     pub(super) format: DataFormat,

@@ -11,6 +11,7 @@ use crate::plan::Plan;
 use crate::runner::StoreError;
 use crate::store::{self, Looked};
 use crate::studies::{StudyKind, TrialRecord};
+use serde_json::{Value, json};
 use std::path::Path;
 
 /// Trials of one condition whose records are looked at.
@@ -153,6 +154,16 @@ impl Forecast {
             "bundle: about {bundle} unpacked; memory: about {memory}; {hours:.2} core hours in all (by {} in the store)\n",
             counted(self.records, "record")
         )
+    }
+
+    /// Says it for programs; hours where records of trials say how long they take.
+    pub(super) fn to_json(&self) -> Value {
+        json!({
+            "records": self.records,
+            "bundle_bytes": self.bundle,
+            "memory_bytes": self.memory,
+            "core_hours": self.sim_s / self.pace / 3600.0,
+        })
     }
 
     /// Refuses a run whose bundle could not be sealed: by `limits`, or because `out` has no room for it.

@@ -3,7 +3,7 @@
 use super::tolerance::ToleranceError;
 use super::{Account, Change, Discrepancy, Settings, Tolerances, derived, settings, trials};
 use crate::digest::ResultsDigest;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -21,7 +21,7 @@ pub enum Extent {
 
 /// Who is compared.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[serde(rename_all = "snake_case")]
 pub struct Party {
     /// The study's short name.
     pub name: String,
@@ -29,13 +29,19 @@ pub struct Party {
     pub engine: String,
     /// Whether only part of the study was run.
     pub partial: bool,
-    /// What came out.
+    /// What came out; `sha256:` and the digits, as every command writes it.
+    #[serde(serialize_with = "named_digest")]
     pub results_digest: ResultsDigest,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde asks")]
+fn named_digest<S: Serializer>(digest: &ResultsDigest, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_str(&format_args!("sha256:{digest}"))
 }
 
 /// How trials were paired.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[serde(rename_all = "snake_case")]
 pub struct Matching {
     /// Pairs of one key: the very same trial.
     pub by_key: usize,
@@ -45,7 +51,7 @@ pub struct Matching {
 
 /// How many things were held against one another, and how many differences were admitted.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[serde(rename_all = "snake_case")]
 pub struct Tally {
     /// Input files.
     pub inputs: usize,

@@ -108,7 +108,7 @@ pub enum Discrepancy {
 
 /// How a trial differs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[serde(rename_all = "snake_case")]
 pub struct TrialDifference {
     /// The slug of its condition.
     pub condition: String,
@@ -124,7 +124,7 @@ pub struct TrialDifference {
     /// Measures that changed, by name.
     pub measures: Vec<MeasureChange>,
     /// The first instant (s of simulated time) after which the states differ, by the hash chains.
-    #[serde(rename = "diverges-after-s")]
+    #[serde(rename = "diverges_after_s")]
     pub diverges_after: Option<f64>,
 }
 

@@ -271,7 +271,7 @@ fn the_json_is_whole() {
     let mut value = comparison.to_json();
     assert_eq!(value["same"], json!(false));
     assert_eq!(value["causes"], json!(["unexplained"]));
-    assert_eq!(value["matching"], json!({"by-key": 6, "by-number": 0}));
+    assert_eq!(value["matching"], json!({"by_key": 6, "by_number": 0}));
     let trial = value["discrepancies"][0].take();
     let record = sample::record(7, "none", 1);
     let mut later = record.clone();
@@ -286,7 +286,7 @@ fn the_json_is_whole() {
             "key": {"from": record.key, "to": record.key},
             "sha256": {"from": Sha256Digest::of(record.to_line()), "to": Sha256Digest::of(later.to_line())},
             "measures": [{"name": "distance-m-at-90", "from": distance(&record), "to": distance(&later)}],
-            "diverges-after-s": 10.0,
+            "diverges_after_s": 10.0,
         })
     );
 }

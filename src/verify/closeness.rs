@@ -19,7 +19,7 @@ const TOLD: usize = 5;
 
 /// All comparisons of two runs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[serde(rename_all = "snake_case")]
 pub struct Closeness {
     /// Means and shares that could be compared.
     pub compared: usize,
@@ -31,7 +31,7 @@ pub struct Closeness {
 
 /// A mean or share that lies further from the sealed one than chance explains.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[serde(rename_all = "snake_case")]
 pub struct Apart {
     /// The values of the factors.
     pub condition: String,

@@ -44,7 +44,7 @@ pub struct Earlier {
 
 /// What was executed again of one such input.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[serde(rename_all = "snake_case")]
 pub struct EarlierAgain {
     /// What it is.
     pub made: Made,

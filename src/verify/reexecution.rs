@@ -10,7 +10,7 @@ use serde::Serialize;
 
 /// What was executed again.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[serde(rename_all = "snake_case")]
 pub struct Sample {
     /// The reviewer's seed; `None` where every trial was executed.
     pub seed: Option<u64>,

@@ -17,7 +17,7 @@ const CLAIMS: &str = "claims.json";
 
 /// What the study says when it is run again with another seed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[serde(rename_all = "snake_case")]
 pub struct Replication {
     /// The reviewer's seed, in place of the experiment's.
     pub seed: u64,
@@ -29,7 +29,7 @@ pub struct Replication {
 
 /// A claim judged twice.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[serde(rename_all = "snake_case")]
 pub struct ClaimAgain {
     /// Its id.
     pub id: String,

@@ -70,9 +70,9 @@ impl Report {
             "overrides": self.departure.as_ref().map(|departure| &departure.overrides),
             "selection": self.selection(),
             "engine": self.engine,
-            "bundle-id": self.bundle_id,
-            "results-digest": self.results_digest.map(|digest| format!("sha256:{digest}")),
-            "study-digest": self.study_digest,
+            "bundle_id": self.bundle_id.map(|id| format!("sha256:{id}")),
+            "results_digest": self.results_digest.map(|digest| format!("sha256:{digest}")),
+            "study_digest": self.study_digest.map(|digest| format!("sha256:{digest}")),
             "signed": self.signed,
             "attestation": match &self.attestation {
                 Some(Ok(attestation)) => json!(attestation),
@@ -89,10 +89,10 @@ impl Report {
         });
         if let Some(sample) = &self.sample {
             value["sample"]["bound"] = json!(sample.bound());
-            value["sample"]["in-words"] = json!(sample.in_words());
+            value["sample"]["in_words"] = json!(sample.in_words());
         }
         if let Some(replication) = &self.replication {
-            value["replication"]["in-words"] = json!(replication.in_words());
+            value["replication"]["in_words"] = json!(replication.in_words());
         }
         json::canonical(&value)
     }

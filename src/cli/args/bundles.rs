@@ -1,6 +1,6 @@
 //! What can be typed about bundles: to verify, compare, report, export and replay them.
 
-use super::Format;
+use super::{DataFormat, Format};
 use crate::bundle::Limits;
 use crate::verify::Rows;
 use clap::{Args, ValueEnum};
@@ -159,6 +159,9 @@ pub(in crate::cli) struct ReportArgs {
     /// The page to write [default: the bundle's name with .html, in this folder]
     #[arg(short, long, value_name = "FILE")]
     pub(in crate::cli) output: Option<PathBuf>,
+    /// How the answer is written
+    #[arg(long, value_enum, default_value = "human")]
+    pub(in crate::cli) format: DataFormat,
     #[command(flatten)]
     pub(in crate::cli) limits: LimitsArgs,
     /// Show a bundle that fails its check all the same, under a banner
@@ -195,6 +198,9 @@ pub(in crate::cli) struct ExportArgs {
     /// Where to write it [default: this folder]
     #[arg(short, long, value_name = "DIR", default_value = ".")]
     pub(in crate::cli) out: PathBuf,
+    /// How the answer is written
+    #[arg(long, value_enum, default_value = "human")]
+    pub(in crate::cli) format: DataFormat,
     #[command(flatten)]
     pub(in crate::cli) limits: LimitsArgs,
     /// Write a bundle that fails its check all the same

@@ -71,6 +71,9 @@ pub(in crate::cli) struct CheckArgs {
     /// Manifests to check
     #[arg(required = true)]
     pub(in crate::cli) manifests: Vec<PathBuf>,
+    /// How the answer is written
+    #[arg(long, value_enum, default_value = "human")]
+    pub(in crate::cli) format: DataFormat,
     /// Replace a value of the manifest (repeatable)
     #[arg(long, value_name = "PATH=VALUE")]
     pub(in crate::cli) set: Vec<String>,
@@ -98,8 +101,8 @@ pub(in crate::cli) struct PlanArgs {
     /// Say how likely the planned trials, and other numbers of them, are to decide each claim
     #[arg(long, conflicts_with = "explain")]
     pub(in crate::cli) power: bool,
-    /// How `--power` is written
-    #[arg(long, value_enum, default_value = "human", requires = "power")]
+    /// How the answer is written
+    #[arg(long, value_enum, default_value = "human", conflicts_with = "explain")]
     pub(in crate::cli) format: DataFormat,
 }
 
@@ -108,6 +111,9 @@ pub(in crate::cli) struct LockArgs {
     /// Manifests to lock, one after another
     #[arg(required = true)]
     pub(in crate::cli) manifests: Vec<PathBuf>,
+    /// How the answer is written
+    #[arg(long, value_enum, default_value = "human")]
+    pub(in crate::cli) format: DataFormat,
     /// Threads [default: all processors]
     #[arg(short, long, value_name = "N")]
     pub(in crate::cli) jobs: Option<usize>,

@@ -28,9 +28,14 @@ pub(in crate::cli) fn run(
     let store = DirectoryStore::new(root);
     match &args.action {
         CacheAction::Dir => terminal.result(&root.display().to_string()),
-        CacheAction::Size => {
+        CacheAction::Size(args) => {
             let (trials, bytes) = store.size().map_err(Failure::failed)?;
-            terminal.result(&format!("{}, {bytes} bytes", counted(trials, "trial")));
+            terminal.result(&match args.format {
+                DataFormat::Human => format!("{}, {bytes} bytes", counted(trials, "trial")),
+                DataFormat::Json => {
+                    json!({"store": root, "trials": trials, "bytes": bytes}).to_string()
+                }
+            });
         }
         CacheAction::Prune(PruneArgs { older_than, .. }) => {
             let days = Duration::from_secs(86_400) * older_than.unwrap_or(0);

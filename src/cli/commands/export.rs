@@ -1,13 +1,15 @@
 //! `reenact export`: the same content in the forms that importers want.
 
 use crate::bundle::{Files, Form, archive, in_bag};
-use crate::cli::args::ExportArgs;
+use crate::cli::args::{DataFormat, ExportArgs};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::terminal::Terminal;
 use crate::cli::{checked, load};
 use crate::report::{self, NoFigures};
 use crate::verify::{path_in_bag, plan_of};
+use serde_json::json;
 use std::io;
+use std::path::Path;
 
 /// A column of most papers in two columns (mm).
 const COLUMN_MM: f64 = 88.0;
@@ -16,6 +18,16 @@ const COLUMN_MM: f64 = 88.0;
 pub(in crate::cli) fn run(args: &ExportArgs, terminal: Terminal) -> Result<Exit, Failure> {
     let checked::Checked { bundle, words, .. } =
         checked::bundle(&args.bundle, args.unchecked, args.limits)?;
+    let told = |path: &Path, form: &str| match args.format {
+        DataFormat::Human => format!("{words}\n{}", path.display()),
+        DataFormat::Json => json!({
+            "path": path,
+            "form": form,
+            "results_digest": format!("sha256:{}", bundle.results_digest()),
+            "checked": words,
+        })
+        .to_string(),
+    };
     let stem = format!("{}-{}", bundle.name(), bundle.results_digest().short());
     if args.latex {
         let (plan, selection) = plan_of(&bundle).map_err(Failure::not_understood)?;
@@ -25,7 +37,7 @@ pub(in crate::cli) fn run(args: &ExportArgs, terminal: Terminal) -> Result<Exit,
         for (name, text) in report::latex(&content) {
             load::write(&folder.join(name), text.as_bytes())?;
         }
-        terminal.result(&format!("{words}\n{}", folder.display()));
+        terminal.result(&told(&folder, "latex"));
         return Ok(Exit::Yes);
     }
     if let Some(folder) = &args.figures {
@@ -62,17 +74,17 @@ pub(in crate::cli) fn run(args: &ExportArgs, terminal: Terminal) -> Result<Exit,
                 io::copy(&mut file.reader(), &mut out).map(drop)
             })?;
         }
-        terminal.result(&format!("{words}\n{}", folder.display()));
+        terminal.result(&told(&folder, "dir"));
         return Ok(Exit::Yes);
     }
-    let (form, name) = match (args.flat, args.rocrate) {
-        (true, _) => (Form::Flat, format!("{stem}.flat.zip")),
-        (_, true) => (Form::Crate, format!("{stem}.crate.zip")),
-        _ => (Form::Bag, format!("{stem}.zip")),
+    let (form, called, name) = match (args.flat, args.rocrate) {
+        (true, _) => (Form::Flat, "flat", format!("{stem}.flat.zip")),
+        (_, true) => (Form::Crate, "rocrate", format!("{stem}.crate.zip")),
+        _ => (Form::Bag, "bag", format!("{stem}.zip")),
     };
     let path = args.out.join(name);
     let files = Files { tree: &tree, large: &large };
     load::write_with(&path, |out| archive::write_to(files, &stem, form, out))?;
-    terminal.result(&format!("{words}\n{}", path.display()));
+    terminal.result(&told(&path, called));
     Ok(Exit::Yes)
 }

@@ -3,7 +3,7 @@
 use super::execution::{Execution, Times, jobs};
 use super::locked::{account_of, path_of, read};
 use crate::bundle::{Circumstance, Moment, assemble, seal};
-use crate::cli::args::LockArgs;
+use crate::cli::args::{DataFormat, LockArgs};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::terminal::{Terminal, counted};
 use crate::cli::{interrupt, load};
@@ -11,6 +11,7 @@ use crate::compare::{Account, Extent, Lock, LockError, Tolerances, compare};
 use crate::document::Source;
 use crate::plan::{Plan, Selection};
 use crate::provenance::Environment;
+use serde_json::json;
 use std::path::Path;
 
 /// Locks every manifest in turn.
@@ -56,6 +57,25 @@ fn lock_one(
     })?;
     let text = lock.to_text();
     let name = path.display();
+    if args.format == DataFormat::Json {
+        let state = match &old {
+            None => "new",
+            Some(old) if *old.text == *text => "unchanged",
+            Some(_) => "changed",
+        };
+        if state != "unchanged" {
+            load::write(&path, text.as_bytes())?;
+        }
+        return Ok(json!({
+            "manifest": manifest.display().to_string(),
+            "lock": name.to_string(),
+            "state": state,
+            "trials": records.len(),
+            "conditions": account.conditions.len(),
+            "results_digest": format!("sha256:{}", account.results_digest),
+        })
+        .to_string());
+    }
     let Some(old) = old else {
         load::write(&path, text.as_bytes())?;
         return Ok(format!(

@@ -2,7 +2,7 @@
 
 mod power;
 
-use crate::cli::args::PlanArgs;
+use crate::cli::args::{DataFormat, PlanArgs};
 use crate::cli::calibrate::Calibrator;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::forecast::Forecast;
@@ -10,6 +10,7 @@ use crate::cli::load;
 use crate::cli::terminal::{Terminal, counted};
 use crate::provenance::{Environment, processors};
 use crate::store::DirectoryStore;
+use serde_json::{Value, json};
 use std::cell::RefCell;
 
 /// Lists the trials and estimates the rest, explains one of them, or says how likely they are to decide each claim.
@@ -42,12 +43,22 @@ pub(in crate::cli) fn run(
         None => Some(store.look().map_err(Failure::failed)?),
     };
     let mut text = String::new();
+    let mut lines: Vec<Value> = Vec::new();
     let mut done = 0;
     for spec in &plan.trials {
         let record = match &store {
             Some(store) => store.get(&spec.key).map_err(Failure::failed)?,
             None => None,
         };
+        if args.format == DataFormat::Json {
+            lines.push(json!({
+                "key": missing.is_none().then(|| spec.key.hex()),
+                "condition": spec.condition.slug(),
+                "trial": spec.trial,
+                "done": record.is_some(),
+                "outcome": record.as_ref().map(|record| record.outcome.name()),
+            }));
+        }
         let state = match &record {
             Some(record) => {
                 done += 1;
@@ -74,7 +85,18 @@ pub(in crate::cli) fn run(
         counted(plan.trials.len(), "trial"),
         forecast.in_words()
     ));
-    terminal.result(&text);
+    terminal.result(&match args.format {
+        DataFormat::Human => text,
+        DataFormat::Json => json!({
+            "name": plan.experiment.name,
+            "trials": lines,
+            "done": done,
+            "to_do": left,
+            "partial": plan.partial,
+            "forecast": forecast.to_json(),
+        })
+        .to_string(),
+    });
     if let Some(missing) = missing {
         terminal.note(&format!("note: keys depend on what the calibration measures; {missing}"));
     }

@@ -1,11 +1,12 @@
 //! `reenact report`: one page of a bundle.
 
-use crate::cli::args::ReportArgs;
+use crate::cli::args::{DataFormat, ReportArgs};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::terminal::Terminal;
 use crate::cli::{checked, load};
 use crate::report;
 use crate::verify::plan_of;
+use serde_json::json;
 use std::path::PathBuf;
 
 /// Writes the page.
@@ -25,6 +26,14 @@ pub(in crate::cli) fn run(args: &ReportArgs, terminal: Terminal) -> Result<Exit,
         page = report::page_under_banner(&page, banner);
     }
     load::write(&output, page.as_bytes())?;
-    terminal.result(&format!("{words}\n{}", output.display()));
+    terminal.result(&match args.format {
+        DataFormat::Human => format!("{words}\n{}", output.display()),
+        DataFormat::Json => json!({
+            "path": output,
+            "results_digest": format!("sha256:{}", bundle.results_digest()),
+            "checked": words,
+        })
+        .to_string(),
+    });
     Ok(Exit::Yes)
 }

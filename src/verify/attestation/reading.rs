@@ -11,7 +11,7 @@ use serde::Serialize;
 
 /// What somebody whom the reader trusts attests of the bundle at hand.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[serde(rename_all = "snake_case")]
 pub struct Attestation {
     /// Who, one or more.
     pub signed: Vec<Signed>,
