@@ -64,7 +64,7 @@ fn claims_about_the_machine_are_circumstances() {
     let told = "\
 Claims of the paper
   claim  we find           paper's table
-  P1     cannot-be-tested  supports
+  P1     cannot be tested  supports
          (prior=floor-plan) has 1 runs to compare, fewer than the minimum of 10
 reproduction: 0 of 1 claims of the paper supported, 0 contradicted, 0
 inconclusive, 1 cannot be tested
@@ -95,7 +95,7 @@ Claims of the paper about the machine (not among the results)
 
     // From the store nothing is measured, and what was not measured is not passed over.
     let stored = desk.done(&words);
-    let unmeasured = "  P21    cannot-be-tested  silent
+    let unmeasured = "  P21    cannot be tested  silent
          2 of 2 runs of (all trials) never reached wall-time-s-per-selection;
          say with `censored` whether those that did are compared (reached-only)
          or the others rank last (worst)
@@ -105,7 +105,7 @@ Claims of the paper about the machine (not among the results)
     // Pinned neither, and the results are the same; a lock, whatever it blesses, changes no score.
     desk.write("demo/demo.lock", "verdicts: {P1: supported}\n");
     let pinned = done_pinned(&desk, &words);
-    let unmeasured = "  P21    cannot-be-tested  silent
+    let unmeasured = "  P21    cannot be tested  silent
          wall times are not measured where SOURCE_DATE_EPOCH is set
 ";
     assert!(pinned.contains(unmeasured), "{pinned}");

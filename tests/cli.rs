@@ -53,6 +53,10 @@ fn a_run_prints_the_table_the_digest_and_the_bundle() {
     let short = &last[1][15..23];
     assert_eq!(last[0], format!("artifacts/demo-{short}.zip"));
     assert!(desk.path(last[0]).exists());
+    let path = last[0];
+    let next = format!("next: reenact report {path}\n      reenact verify --level 4 {path}\n");
+    assert_eq!(answer.next, next);
+    assert!(answer.stdout.lines().count() + answer.next.lines().count() <= 40);
 }
 
 #[test]

@@ -68,6 +68,8 @@ pub(crate) struct Sandbox {
 pub(crate) struct Answer {
     pub(crate) stdout: String,
     pub(crate) stderr: String,
+    /// The commands that are worth typing next, which stand on stderr too.
+    pub(crate) next: String,
     pub(crate) code: i32,
     pub(crate) seconds: f64,
 }
@@ -81,7 +83,14 @@ impl Answer {
         let seconds = began.elapsed().as_secs_f64();
         let Some(code) = output.status.code() else { panic!("{command:?}: {output:?}") };
         let text = |bytes| String::from_utf8(bytes).unwrap();
-        Self { stdout: text(output.stdout), stderr: text(output.stderr), code, seconds }
+        let (mut stderr, mut next) = (String::new(), String::new());
+        for line in text(output.stderr).split_inclusive('\n') {
+            let is_next = ["next: reenact ", "      reenact verify --level 4 "];
+            let stream =
+                if is_next.iter().any(|s| line.starts_with(s)) { &mut next } else { &mut stderr };
+            stream.push_str(line);
+        }
+        Self { stdout: text(output.stdout), stderr, next, code, seconds }
     }
 
     /// Returns the last line of stdout.
@@ -191,7 +200,7 @@ impl Sandbox {
         Answer::of(&mut self.command(words))
     }
 
-    /// Runs the program, which must succeed and have nothing to say on stderr, and gives its stdout.
+    /// Runs the program, which must succeed and have nothing to say on stderr but what to type next, and gives its stdout.
     #[track_caller]
     pub(crate) fn done(&self, words: &[&str]) -> String {
         let answer = self.run(words);

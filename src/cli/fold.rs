@@ -51,6 +51,16 @@ pub(super) fn aligned(table: &Table, keys: usize, left: &[usize], width: usize) 
     blocks.join("\n")
 }
 
+/// Returns whether `table` has room in lines of `width` characters without blocks below one another.
+pub(super) fn fits(table: &Table, width: usize) -> bool {
+    let widest = |(i, name): (usize, &String)| {
+        let cells = table.rows.iter().map(|row| length(&row[i].to_string()));
+        pieces(name).iter().map(|piece| length(piece)).chain(cells).max().unwrap_or(0)
+    };
+    let widths: Vec<usize> = table.columns.iter().enumerate().map(widest).collect();
+    total(&widths) <= width
+}
+
 fn block(
     headers: &[Vec<String>],
     cells: &[Vec<String>],

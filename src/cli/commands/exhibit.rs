@@ -1,28 +1,152 @@
 //! A study's tables in as many columns as the terminal has, 80 in a pipe.
 
-use crate::cli::fold::{aligned, wrapped};
+use crate::cli::fold::{aligned, fits, wrapped};
 use crate::studies::{Exhibit, Lines};
+use crate::table::{Table, Value};
+
+/// What marks a number of ours that lies apart from the paper's.
+const APART: char = '\u{2260}';
 
 /// Returns the table, ours beside the paper's, in `width` characters.
 pub(super) fn in_lines(exhibit: &Exhibit, width: usize) -> String {
-    let note = |text: &str| wrapped(text, 2, width);
-    let mut title = wrapped(&exhibit.title, 0, width);
-    if let Some(answer) = &exhibit.answer {
-        title.push_str(&note(answer));
-    }
-    let (table, keys, left) = match &exhibit.set.lines {
-        Lines::All { table, keys, left } => (table, *keys, left),
-        Lines::Elsewhere { cells, by } => {
-            return title + &note(&format!("{cells} cells, by {by}, in {}.csv", exhibit.id));
-        }
-    };
-    let mut text = title + &aligned(table, keys, left, width);
+    let mut text = head(exhibit, width);
+    let Lines::All { table, keys, left } = &exhibit.set.lines else { return text };
+    text += &body(table, *keys, left, width);
     if exhibit.set.more > 0 {
-        text.push_str(&note(&format!("{} more in {}.csv", exhibit.set.more, exhibit.id)));
+        text += &note(&format!("{} more in {}.csv", exhibit.set.more, exhibit.id), width);
     }
+    if let Some(legend) = legend_of(exhibit) {
+        text += &note(&format!("({legend})"), width);
+    }
+    text
+}
+
+/// Returns how the lines of a table are to be read; `None` where they say it themselves.
+pub(super) fn legend_of(exhibit: &Exhibit) -> Option<String> {
+    let is_shown = matches!(exhibit.set.lines, Lines::All { .. });
     let legend: Vec<String> = exhibit.set.legend.iter().cloned().chain(exhibit.rules()).collect();
-    if !legend.is_empty() {
-        text.push_str(&note(&format!("({})", legend.join("; "))));
+    (is_shown && !legend.is_empty()).then(|| legend.join("; "))
+}
+
+/// As much of a table as there is room for, without its legend.
+pub(super) struct Shown {
+    pub(super) text: String,
+    /// How many of its lines are shown.
+    pub(super) rows: usize,
+    /// Whether those are all.
+    pub(super) is_whole: bool,
+}
+
+impl Shown {
+    /// Shows the table in at most `lines` lines of `width` characters: all of it, or the lines in which ours and the paper's lie
+    /// apart before others; `None` where not one line has room.
+    pub(super) fn within(exhibit: &Exhibit, width: usize, lines: usize) -> Option<Self> {
+        let head = head(exhibit, width);
+        let Lines::All { table, keys, left } = &exhibit.set.lines else {
+            let fits = head.lines().count() <= lines;
+            return fits.then_some(Self { text: head, rows: 0, is_whole: true });
+        };
+        let all = table.rows.len();
+        let mut telling: Vec<usize> = (0..all).collect();
+        let apart = |row: &usize| {
+            let cells = table.rows[*row].iter();
+            cells.map(|cell| cell.to_string().matches(APART).count()).sum::<usize>()
+        };
+        // Stable: alike lines stay in the order of the table.
+        telling.sort_by_key(|row| std::cmp::Reverse(apart(row)));
+        for rows in (1..=all.min(lines)).rev() {
+            let mut chosen = telling[..rows].to_vec();
+            chosen.sort_unstable();
+            let mut text = head.clone() + &body(&part(table, &chosen), *keys, left, width);
+            let more = exhibit.set.more + all - rows;
+            if more > 0 {
+                text += &note(&format!("{more} more in {}.csv", exhibit.id), width);
+            }
+            if text.lines().count() <= lines {
+                return Some(Self { text, rows, is_whole: rows == all });
+            }
+        }
+        None
+    }
+}
+
+/// Returns the title, and what stands before any line.
+fn head(exhibit: &Exhibit, width: usize) -> String {
+    let mut text = wrapped(&exhibit.title, 0, width);
+    if let Some(answer) = &exhibit.answer {
+        text += &note(answer, width);
+    }
+    if let Lines::Elsewhere { cells, by } = &exhibit.set.lines {
+        text += &note(&format!("{cells} cells, by {by}, in {}.csv", exhibit.id), width);
+    }
+    text
+}
+
+fn note(text: &str, width: usize) -> String {
+    wrapped(text, 2, width)
+}
+
+/// Returns these rows of `table`; what a line leaves to the line above it in the first column is said where that is not there.
+fn part(table: &Table, rows: &[usize]) -> Table {
+    let mut first = Vec::new();
+    let mut last = String::new();
+    for row in &table.rows {
+        let own = row.first().map(ToString::to_string).unwrap_or_default();
+        if !own.is_empty() {
+            last = own;
+        }
+        first.push(last.clone());
+    }
+    let mut part = Table::new(table.columns.iter().cloned());
+    let mut above: Option<&String> = None;
+    for &row in rows {
+        let mut cells = table.rows[row].clone();
+        let is_left_out = cells.first().is_some_and(|cell| cell.to_string().is_empty());
+        if is_left_out && above != Some(&first[row]) {
+            cells[0] = first[row].as_str().into();
+        }
+        above = Some(&first[row]);
+        part.push(cells);
+    }
+    part
+}
+
+/// Returns the lines. Where they are too wide, what the names in the second column have in common heads its lines, so that ours and
+/// the paper's stay in one line.
+fn body(table: &Table, keys: usize, left: &[usize], width: usize) -> String {
+    let is_named = keys == 2 && left.contains(&1);
+    if fits(table, width) || !is_named {
+        return aligned(table, keys, left, width);
+    }
+    let split = |name: &str| {
+        let (group, own) = name.rsplit_once(", ").unwrap_or(("", name));
+        (group.to_owned(), own.to_owned())
+    };
+    let mut heads = table.columns.clone();
+    heads[1] = split(&heads[1]).1;
+    let mut narrow = Table::new(heads);
+    let mut groups = Vec::new();
+    for row in &table.rows {
+        let (group, own) = split(&row[1].to_string());
+        groups.push(group);
+        let mut row = row.clone();
+        row[1] = Value::from(own);
+        narrow.push(row);
+    }
+    let text = aligned(&narrow, keys, left, width);
+    let lines: Vec<&str> = text.lines().collect();
+    if !fits(&narrow, width) || lines.len() < groups.len() {
+        return aligned(table, keys, left, width);
+    }
+    let (heads, rows) = lines.split_at(lines.len() - groups.len());
+    let mut text: String = heads.iter().map(|line| format!("{line}\n")).collect();
+    let mut last = "";
+    for (group, row) in groups.iter().zip(rows) {
+        if group != last {
+            text += &note(group, width);
+            last = group;
+        }
+        text += &format!("{row}\n");
     }
     text
 }

@@ -81,7 +81,10 @@ pub(in crate::cli) fn run(
         merged: Some(of),
     };
     match args.format {
-        DataFormat::Human => done.tell(terminal),
+        DataFormat::Human => {
+            done.tell(terminal);
+            done.suggest(terminal);
+        }
         DataFormat::Json => terminal.result(&done.to_json()),
     }
     Ok(if done.failed() > 0 { Exit::Failed } else { Exit::Yes })

@@ -22,6 +22,7 @@ pub(super) mod replay;
 pub(super) mod report;
 pub(super) mod run;
 pub(super) mod schema;
+mod screen;
 pub(super) mod show;
 pub(super) mod solve_cmdp;
 pub(super) mod submit;

@@ -3,21 +3,24 @@
 use super::execution::{Account, Execution, Times, jobs};
 use super::kept::Kept;
 use super::locked::{self, Held};
-use super::{exhibit, probe, verdicts};
+use super::probe;
+use super::screen::Screen;
 use crate::bundle::assemble::{self, Asked};
 use crate::bundle::wall_time;
-use crate::bundle::{Additions, Form, Gathered, Gathering, Sealed, capsule, format, seal_with};
+use crate::bundle::{
+    Additions, Form, Gathered, Gathering, Sealed, capsule, format, seal_with, shell_word,
+};
 use crate::claims::{ClaimVerdict, Judgement};
 use crate::cli::args::{Format, RunArgs};
 use crate::cli::exit::{Exit, Failure};
-use crate::cli::fold::{narrowed, wrapped};
+use crate::cli::fold::wrapped;
 use crate::cli::junit::{self, Came, Case, RUN, Suite};
 use crate::cli::terminal::{Terminal, counted};
 use crate::cli::{interrupt, load};
 use crate::compare::Lock;
 use crate::plan::Plan;
 use crate::provenance::{Environment, RunClock};
-use crate::studies::{Entry, Group, Ledger, Outcome};
+use crate::studies::{Entry, Exhibit, Group, Ledger, Outcome};
 use serde_json::{Map, Value, json};
 use std::path::{Path, PathBuf};
 
@@ -148,6 +151,9 @@ fn run_one(
         Format::Junit => {}
     }
     let drifted = done.held.as_ref().is_some_and(|held| held.told(terminal));
+    if args.format == Format::Human {
+        done.suggest(terminal);
+    }
     let exit = if done.failed() > 0 {
         Exit::Failed
     } else if drifted {
@@ -187,38 +193,50 @@ impl Done {
     }
 
     pub(super) fn tell(&self, terminal: Terminal) {
-        let mut text = wrapped(&self.plan.experiment.title, 0, terminal.columns());
+        let columns = terminal.columns();
+        let mut head = wrapped(&self.plan.experiment.title, 0, columns);
         if self.plan.partial {
             let partial = "PARTIAL: part of the study only; no claim is judged";
-            text.push_str(&wrapped(partial, 0, terminal.columns()));
+            head.push_str(&wrapped(partial, 0, columns));
         }
-        text.push('\n');
         let findings = assemble::findings(&self.plan, &self.ledger);
         let tables = &self.plan.experiment.tables;
-        for request in tables {
-            let exhibit = request.exhibit(&findings, tables);
-            text.push_str(&exhibit::in_lines(&exhibit, terminal.columns()));
-            text.push('\n');
-        }
-        let verdicts = verdicts::in_words(&self.verdicts, &self.machine_verdicts);
-        text.push_str(&narrowed(&verdicts, terminal.columns()));
-        text.push_str(&wrapped(&self.summary(), 0, terminal.columns()));
+        let exhibits: Vec<Exhibit> =
+            tables.iter().map(|request| request.exhibit(&findings, tables)).collect();
+        let mut tail = wrapped(&self.summary(), 0, columns);
         if self.twice {
-            text.push_str("every trial was executed twice and gave the same bytes\n");
+            tail.push_str("every trial was executed twice and gave the same bytes\n");
         }
         if let Some(held) = &self.held {
-            text.push_str(&held.in_words());
+            tail.push_str(&held.in_words());
         }
         for trial in self.ledger.entries().filter(|t| t.outcome() == Outcome::PANICKED) {
             let name = format!("{}/{}", trial.condition().slug(), trial.trial());
             terminal.error(&format!("trial {name} failed: {}", trial.cause()));
         }
-        text.push_str(&format!(
+        tail.push_str(&format!(
             "results sha256:{}\n{}\n",
             self.sealed.results_digest,
             self.path.display()
         ));
-        terminal.result(&text);
+        let screen = Screen {
+            head,
+            exhibits: &exhibits,
+            verdicts: &self.verdicts,
+            machine: &self.machine_verdicts,
+            tail,
+            columns,
+        };
+        terminal.result(&screen.to_text());
+    }
+
+    /// Says on stderr what is worth typing next: scripts read digest and path in the last two lines of stdout.
+    pub(super) fn suggest(&self, terminal: Terminal) {
+        if let Some(path) = shell_word(&self.path.display().to_string()) {
+            terminal.note(&format!(
+                "next: reenact report {path}\n      reenact verify --level 4 {path}"
+            ));
+        }
     }
 
     fn summary(&self) -> String {

@@ -1,7 +1,8 @@
 //! Verdicts in print: what the paper's table shows beside what we find, and the reproduction score.
 
 use crate::claims::verdict::{EffectSize, agreement_in_words};
-use crate::claims::{ClaimVerdict, Judgement, Score};
+use crate::claims::{ClaimVerdict, Judgement, PaperTable, Score};
+use crate::cli::fold::wrapped;
 
 /// Lists the verdicts on a study's claims with their score, and those on the machine, which count for nothing; empty
 /// where nothing is claimed. A function of the verdicts alone: no lock changes what is printed.
@@ -25,6 +26,51 @@ pub(super) fn in_words(verdicts: &[ClaimVerdict], machine: &[ClaimVerdict]) -> S
     text
 }
 
+/// Says how many claims came out in which way, which ones, and where the paper's own table says otherwise: for a screen that has no
+/// room for a line a claim. Empty where nothing is claimed.
+pub(super) fn in_short(
+    verdicts: &[ClaimVerdict],
+    machine: &[ClaimVerdict],
+    columns: usize,
+) -> String {
+    let (papers, ours): (Vec<&ClaimVerdict>, Vec<&ClaimVerdict>) =
+        verdicts.iter().partition(|verdict| verdict.says.is_some());
+    let lists = [
+        ("Claims of the paper", papers),
+        ("Checks of our own", ours),
+        ("About the machine (not among the results)", machine.iter().collect()),
+    ];
+    let mut text = String::new();
+    for (title, verdicts) in lists.into_iter().filter(|(_, verdicts)| !verdicts.is_empty()) {
+        text.push_str(&wrapped(&format!("{title}: {}", verdicts.len()), 0, columns));
+        for judgement in Judgement::ALL {
+            let of = verdicts.iter().filter(|verdict| verdict.judgement == judgement);
+            let ids: Vec<&str> = of.map(|verdict| verdict.id.as_str()).collect();
+            if !ids.is_empty() {
+                let words = judgement.to_string().replace('-', " ");
+                let line = format!("{} {words}: {}", ids.len(), ids.join(", "));
+                text.push_str(&wrapped(&line, 2, columns));
+            }
+        }
+        let differs = verdicts.iter().filter(|verdict| {
+            matches!(
+                (verdict.judgement, verdict.paper_table),
+                (Judgement::Supported, PaperTable::Contradicts)
+                    | (Judgement::Contradicted, PaperTable::Supports)
+            )
+        });
+        let ids: Vec<&str> = differs.map(|verdict| verdict.id.as_str()).collect();
+        if !ids.is_empty() {
+            let line = format!("the paper's own table says the opposite of: {}", ids.join(", "));
+            text.push_str(&wrapped(&line, 2, columns));
+        }
+    }
+    if !text.is_empty() {
+        text.push('\n');
+    }
+    text
+}
+
 /// Lists what the paper says, and apart from it what we check besides; empty lists are left out.
 fn lists(titles: [&str; 2], verdicts: &[ClaimVerdict]) -> String {
     let (papers, ours): (Vec<&ClaimVerdict>, Vec<&ClaimVerdict>) =
@@ -43,7 +89,7 @@ fn list(title: &str, verdicts: &[&ClaimVerdict]) -> String {
         text.push_str(&format!(
             "  {:id$}  {:16}  {}\n",
             verdict.id,
-            verdict.judgement.to_string(),
+            verdict.judgement.to_string().replace('-', " "),
             verdict.paper_table
         ));
         if verdict.judgement == Judgement::CannotBeTested {
