@@ -327,6 +327,36 @@ fn a_bundle_is_exported_for_latex() {
 }
 
 #[test]
+fn figures_are_exported_for_the_width_of_a_column() {
+    let desk = Sandbox::new();
+    let bundle = repository().join("artifacts/quickstart-published.zip");
+    let bundle = bundle.to_str().unwrap();
+    // How far the bundle holds is told elsewhere.
+    let words = ["export", bundle, "--figures", "figures", "--width", "180mm", "--unchecked"];
+    let answer = desk.run(&words);
+    assert_eq!((answer.code, answer.last_line()), (0, "figures"), "{answer:?}");
+    let file = |name: &str| fs::read(desk.path("figures").join(name)).unwrap();
+    let svg = String::from_utf8(file("figure-4.svg")).unwrap();
+    assert!(svg.contains(" width=\"180mm\""), "{svg}");
+    let pdf = file("figure-4.pdf");
+    assert!(pdf.starts_with(b"%PDF-") && pdf.ends_with(b"%%EOF"));
+    assert!(file("figure-4.csv").starts_with(b"series,what,x,y,"));
+    let refused = |words: &[&str]| {
+        let answer = desk.run(words);
+        assert_eq!((answer.stdout.as_str(), answer.code), ("", 2));
+        answer.stderr.lines().next().unwrap_or_default().to_owned()
+    };
+    assert_eq!(
+        refused(&["export", bundle, "--figures", "figures", "--width", "3.5in"]),
+        "error: invalid value '3.5in' for '--width <MM>': expected a width in millimetres from 60mm to 300mm, such as 88mm"
+    );
+    assert_eq!(
+        refused(&["export", bundle, "--width", "88mm"]),
+        "error: the following required arguments were not provided:"
+    );
+}
+
+#[test]
 fn what_could_not_be_sealed_is_refused_before_it_is_run() {
     let desk = desk();
     let answer = desk.run(&["run", "demo/demo.yaml", "--max-size", "10K"]);
