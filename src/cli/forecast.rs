@@ -157,7 +157,7 @@ impl Forecast {
     }
 
     /// Says it for programs; hours where records of trials say how long they take.
-    pub(super) fn to_json(&self) -> Value {
+    pub(super) fn to_json(self) -> Value {
         json!({
             "records": self.records,
             "bundle_bytes": self.bundle,

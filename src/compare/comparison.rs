@@ -34,7 +34,6 @@ pub struct Party {
     pub results_digest: ResultsDigest,
 }
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde asks")]
 fn named_digest<S: Serializer>(digest: &ResultsDigest, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_str(&format_args!("sha256:{digest}"))
 }

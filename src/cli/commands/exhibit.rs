@@ -139,7 +139,10 @@ fn body(table: &Table, keys: usize, left: &[usize], width: usize) -> String {
         return aligned(table, keys, left, width);
     }
     let (heads, rows) = lines.split_at(lines.len() - groups.len());
-    let mut text: String = heads.iter().map(|line| format!("{line}\n")).collect();
+    let mut text = String::new();
+    for line in heads {
+        text += &format!("{line}\n");
+    }
     let mut last = "";
     for (group, row) in groups.iter().zip(rows) {
         if group != last {

@@ -118,7 +118,7 @@ mod tests {
         let verdict = |i: usize| {
             json!({
                 "id": format!("D{i}"), "says": "it is so", "verdict": names[i % 4],
-                "paper-table": if i % 8 == 0 { "contradicts" } else { "silent" },
+                "paper-table": if i.is_multiple_of(8) { "contradicts" } else { "silent" },
             })
         };
         (0..n).map(|i| serde_json::from_value(verdict(i)).unwrap()).collect()
