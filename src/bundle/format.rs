@@ -7,17 +7,17 @@ use super::Fault;
 /// figure or a description raises it.
 pub const FORMAT: u64 = IN_PARTS;
 
-/// The version of bundles of which each condition's records are one file. What fits is written so, and stays what it was.
-pub const WHOLE: u64 = 2;
+/// The version of bundles of which each condition's records are one file. What fits is written so.
+pub const WHOLE: u64 = 4;
 
 /// The version of bundles of which some condition's records go on in further files ([`records_part`]), and which have no table of
 /// the curves that are in them. Everything else is as in [`WHOLE`].
-pub const IN_PARTS: u64 = 3;
+pub const IN_PARTS: u64 = 5;
 
 /// Most bytes of a file of records, unless one record alone has more: what a person's tools still open.
 pub const PART: u64 = 16 << 20;
 
-/// The oldest that this program reads: up to level 2, as it derives nothing the way that was done then.
+/// The oldest that this program reads: up to level 2, as it derives nothing the way that was done before [`WHOLE`].
 pub const OLDEST: u64 = 1;
 
 /// Version of this program.

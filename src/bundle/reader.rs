@@ -470,12 +470,12 @@ mod tests {
     fn a_newer_format_is_not_mistaken_for_damage() {
         let mut archive = archive::read(sample::zip(), &Limits::default()).unwrap();
         let info = String::from_utf8(archive.tree["bag-info.txt"].clone()).unwrap();
-        let info = info.replace("Bundle-Format: 2", "Bundle-Format: 4");
+        let info = info.replace("Bundle-Format: 4", "Bundle-Format: 6");
         archive.tree.insert("bag-info.txt".into(), info.into_bytes());
         let error = Bundle::open(archive).unwrap_err();
         assert!(matches!(error, OpenError::Newer(_)));
         assert!(error.to_string().starts_with(
-            "bag-info.txt: expected bundle format 3 or older, found bundle format 4 (this is reenact "
+            "bag-info.txt: expected bundle format 5 or older, found bundle format 6 (this is reenact "
         ));
     }
 

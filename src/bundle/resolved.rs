@@ -156,8 +156,8 @@ mod tests {
         assert_eq!(
             fault.to_string(),
             format!(
-                "data/study.resolved.json: expected bundle format 3 or older, found bundle format 7 (this is reenact {}, \
-                 which reads formats 1 to 3; install the version named after `Bag-Software-Agent` in bag-info.txt (or \
+                "data/study.resolved.json: expected bundle format 5 or older, found bundle format 7 (this is reenact {}, \
+                 which reads formats 1 to 5; install the version named after `Bag-Software-Agent` in bag-info.txt (or \
                  any newer one) to read format 7)",
                 format::VERSION
             )

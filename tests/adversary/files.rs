@@ -240,7 +240,7 @@ pub(crate) fn formats() -> Vec<Case> {
     };
     vec![
         format("a newer format, says the bag", 1, 2, |tree| {
-            replace(tree, INFO, "Bundle-Format: 2", "Bundle-Format: 4");
+            replace(tree, INFO, "Bundle-Format: 4", "Bundle-Format: 6");
         }),
         format("a newer format, says the resolved study", 1, 2, |tree| {
             set_json(tree, RESOLVED, |resolved| {
@@ -249,13 +249,13 @@ pub(crate) fn formats() -> Vec<Case> {
             });
         }),
         format("format 0, says the bag", 2, 1, |tree| {
-            replace(tree, INFO, "Bundle-Format: 2", "Bundle-Format: 0");
+            replace(tree, INFO, "Bundle-Format: 4", "Bundle-Format: 0");
         }),
         format("format 0, says the resolved study", 2, 1, |tree| {
             set_json(tree, RESOLVED, |resolved| resolved["bundle-format"] = 0.into());
         }),
         format("no format in the bag", 2, 1, |tree| {
-            replace(tree, INFO, "Bundle-Format: 2\n", "");
+            replace(tree, INFO, "Bundle-Format: 4\n", "");
         }),
         format("no format in the resolved study", 2, 1, |tree| {
             set_json(tree, RESOLVED, |resolved| {

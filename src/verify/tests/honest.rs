@@ -24,12 +24,12 @@ fn an_honest_bundle_reaches_every_level_it_is_asked_for() {
 #[test]
 fn what_cannot_be_judged_is_no_damage() {
     let mut tree = sample::sealed().tree;
-    edit(&mut tree, "bag-info.txt", |text| text.replace("Bundle-Format: 2", "Bundle-Format: 4"));
+    edit(&mut tree, "bag-info.txt", |text| text.replace("Bundle-Format: 4", "Bundle-Format: 6"));
     let report = climb_to(Level::Derived, tree);
     assert_eq!(report.verdict(), Verdict::Unanswered);
     assert_eq!(report.reached, Some(Level::Safe));
     assert!(report.findings[0].to_string().starts_with(
-        "obstacle at level 1: bag-info.txt: expected bundle format 3 or older, found bundle format 4 (this is reenact "
+        "obstacle at level 1: bag-info.txt: expected bundle format 5 or older, found bundle format 6 (this is reenact "
     ));
 
     let opened = archive::read(sample::zip(), &Limits::default());
@@ -44,7 +44,7 @@ fn an_older_format_is_judged_to_level_2() {
     let mut tree = sample::sealed().tree;
     for path in ["data/study.resolved.json", "bag-info.txt"] {
         let (from, to) = match path {
-            "bag-info.txt" => ("Bundle-Format: 2", "Bundle-Format: 1"),
+            "bag-info.txt" => ("Bundle-Format: 4", "Bundle-Format: 1"),
             _ => ("\"bundle-format\": 2", "\"bundle-format\": 1"),
         };
         edit(&mut tree, path, |text| text.replace(from, to));
@@ -55,7 +55,7 @@ fn an_older_format_is_judged_to_level_2() {
     assert_eq!(
         told,
         [
-            "obstacle at level 3: data/study.resolved.json: expected bundle format 2 or 3, found bundle format 1 (levels 0 to 2 can be \
+            "obstacle at level 3: data/study.resolved.json: expected bundle format 4 or 5, found bundle format 1 (levels 0 to 2 can be \
           judged here; tables and descriptions followed from the records in another way then, so the rest is for the program \
           that sealed the bundle, or run its study.yaml again)"
         ]

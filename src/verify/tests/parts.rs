@@ -29,7 +29,7 @@ fn records_of_many_trials_go_on_in_further_files() {
     let info = String::from_utf8_lossy(&sealed.tree["bag-info.txt"]).into_owned();
     assert!(info.contains("\nBundle-Format: 3\n"), "{info}");
     let whole = String::from_utf8_lossy(&sample::sealed().tree["bag-info.txt"]).into_owned();
-    assert!(whole.contains("\nBundle-Format: 2\n"), "{whole}");
+    assert!(whole.contains("\nBundle-Format: 4\n"), "{whole}");
 
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("bundle.zip");
