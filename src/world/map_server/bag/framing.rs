@@ -38,8 +38,8 @@ fn parts(kind: u8) -> &'static [Part] {
         7 => &[Bytes(2), Short],
         // Chunk index: times and place, places of message indices, their length, compression.
         8 => &[Bytes(32), Short, Bytes(8), Short],
-        // Attachment: times, name, type, data.
-        9 => &[Bytes(16), Short, Short, Long],
+        // Attachment: times, name, type, data, checksum.
+        9 => &[Bytes(16), Short, Short, Long, Bytes(4)],
         // Attachment index: place, times, size, name, type.
         10 => &[Bytes(40), Short, Short],
         // Statistics: counts, times, messages of each channel.
@@ -175,5 +175,9 @@ mod tests {
         assert!(!is_sound(&bag(&[record(4, &nested)])));
         let attached = [&[0; 16][..], &text(0, ""), &text(0, ""), &u64::MAX.to_le_bytes()].concat();
         assert!(!is_sound(&bag(&[record(9, &attached)])));
+        // Nor is one whose checksum is not there.
+        let attached = [&[0; 16][..], &text(0, ""), &text(0, ""), &[0; 8]].concat();
+        assert!(!is_sound(&bag(&[record(9, &attached)])));
+        assert!(is_sound(&bag(&[record(9, &[attached, vec![0; 4]].concat())])));
     }
 }
