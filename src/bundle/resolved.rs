@@ -139,7 +139,7 @@ mod tests {
     fn older_and_missing_formats_are_refused_with_help() {
         assert_eq!(
             Resolved::read(br#"{"bundle-format": 0}"#).unwrap_err().to_string(),
-            "data/study.resolved.json: expected bundle format 1 to 3, found bundle format 0 (no release wrote that format: ask the \
+            "data/study.resolved.json: expected bundle format 1 to 5, found bundle format 0 (no release wrote that format: ask the \
              author for the bundle as `reenact run` sealed it, or run its study.yaml again)"
         );
         assert_eq!(

@@ -45,7 +45,7 @@ fn an_older_format_is_judged_to_level_2() {
     for path in ["data/study.resolved.json", "bag-info.txt"] {
         let (from, to) = match path {
             "bag-info.txt" => ("Bundle-Format: 4", "Bundle-Format: 1"),
-            _ => ("\"bundle-format\": 2", "\"bundle-format\": 1"),
+            _ => ("\"bundle-format\": 4", "\"bundle-format\": 1"),
         };
         edit(&mut tree, path, |text| text.replace(from, to));
     }

@@ -27,7 +27,7 @@ fn records_of_many_trials_go_on_in_further_files() {
     assert_eq!((lines("data/trials/none.jsonl"), lines(SECOND)), (4, 2));
     assert!(sealed.tree["data/trials/none.jsonl"].len() as u64 <= format::PART);
     let info = String::from_utf8_lossy(&sealed.tree["bag-info.txt"]).into_owned();
-    assert!(info.contains("\nBundle-Format: 3\n"), "{info}");
+    assert!(info.contains("\nBundle-Format: 5\n"), "{info}");
     let whole = String::from_utf8_lossy(&sample::sealed().tree["bag-info.txt"]).into_owned();
     assert!(whole.contains("\nBundle-Format: 4\n"), "{whole}");
 
