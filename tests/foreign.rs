@@ -69,6 +69,8 @@ fn a_map_is_a_world_and_the_map_made_in_it_a_prior() {
         "  floor-plan: {floor-plan-of: world}\n",
         "  made: {map: ../made.yaml}\n  bagged: {map: ../made.mcap, frame: start}\n",
     );
+    let labels = "  prior: {values: {none: no prior, floor-plan: floor plan}}\n";
+    desk.edit("two/two.yaml", labels, "  prior: {values: {bagged: from a bag}}\n");
     desk.edit("two/two.yaml", "by: prior, baseline: none", "by: prior");
     desk.edit("two/two.yaml", "where: {prior: none}", "where: {prior: made}");
     desk.edit("two/two.yaml", "where: {prior: floor-plan}", "where: {prior: bagged}");
@@ -147,7 +149,7 @@ fn a_run_speaks_to_ci() {
         .collect();
     assert_eq!(
         cases,
-        ["1 trial of none: passed", "1 trial of floor-plan: passed", "manifest: error"]
+        ["1 trial of no prior: passed", "1 trial of floor plan: passed", "manifest: error"]
     );
     let power = desk.run(&["plan", "demo/demo.yaml", "--power", "--format", "junit"]);
     assert!(

@@ -244,7 +244,7 @@ pub(crate) fn formats() -> Vec<Case> {
         }),
         format("a newer format, says the resolved study", 1, 2, |tree| {
             set_json(tree, RESOLVED, |resolved| {
-                resolved["bundle-format"] = 4.into();
+                resolved["bundle-format"] = 6.into();
                 resolved["unheard-of"] = true.into();
             });
         }),

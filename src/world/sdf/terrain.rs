@@ -35,6 +35,7 @@ pub(super) fn surface(bytes: &[u8], extent: Extent) -> Result<Mesh, String> {
     let brightest = greys.iter().copied().fold(1.0, f64::max);
     let Extent { size, middle } = extent;
     let corner = |row: usize, column: usize| {
+        #[expect(clippy::cast_precision_loss, reason = "at most 512")]
         let share = |n: usize| n as f64 / cells as f64;
         [
             middle[0] + size[0] * (share(column) - 0.5),
