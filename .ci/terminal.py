@@ -53,6 +53,8 @@ class Screen:
 
     def __init__(self, columns):
         self.columns, self.lines, self.x, self.y, self.wraps = columns, [""], 0, 0, []
+        # The row on which the line under way began.
+        self.began = 0
 
     def write(self, text):
         for token in re.findall(r"\x1b\[[0-9;?]*[A-Za-z]|.", text, re.S):
@@ -63,6 +65,7 @@ class Screen:
             self.x = 0
         elif token == "\n":
             self.y += 1
+            self.began = self.y
             if self.y == len(self.lines):
                 self.lines.append("")
         elif token.startswith("\x1b["):
@@ -80,7 +83,7 @@ class Screen:
                 assert token.endswith("m") or token in ("\x1b[J", "\x1b[0J"), f"unexpected {token!r}"
         else:
             if self.x >= self.columns:
-                self.wraps.append(self.lines[self.y] + token)
+                self.wraps.append(self.lines[self.began])
                 self.x = 0
                 self.y += 1
                 if self.y == len(self.lines):
@@ -106,8 +109,9 @@ def main():
         assert COLOR.search(written), "a terminal has colours"
         assert "real time" in written or columns < 80, "the bar tells the rate"
         screen = seen(written, columns)
-        # Addresses of bundles and digests cannot be folded.
-        wraps = [line for line in screen.wraps if "sha256:" not in line and not line.startswith("/")]
+        # Addresses of bundles and digests cannot be folded, nor a command that somebody is to copy.
+        is_whole = lambda line: "sha256:" in line or line.startswith("/") or re.match(r"(next:| {5}) reenact ", line)
+        wraps = [line for line in screen.wraps if not is_whole(line)]
         assert not wraps, f"wraps at {columns} columns: {wraps[:3]}"
         left = [line for line in screen.lines if "━" in line or " left" in line or "real time" in line]
         assert not left, f"left of the bar: {left}"
