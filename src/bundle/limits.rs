@@ -227,7 +227,7 @@ mod tests {
         let half: Vec<TrialRecord> = records.iter().filter(|r| none(r)).cloned().collect();
         assert_eq!(half.len(), 10);
         let alt = drawn(&half).unwrap().alt;
-        assert!(alt.contains("none ends at") && !alt.contains("floor-plan ends at"), "{alt}");
+        assert!(alt.contains("no prior ends at") && !alt.contains("floor plan ends at"), "{alt}");
         assert_eq!(drawn(&[]), None);
     }
 
@@ -241,7 +241,7 @@ mod tests {
         selection.only = [("prior".to_owned(), vec!["none".to_owned()])].into();
         assert_eq!(
             partial(&plan, &selection).unwrap(),
-            "3 trials per condition instead of 10; only prior none; only shard 1 of 4; no claim is judged."
+            "3 trials per condition instead of 10; only prior knowledge no prior; only shard 1 of 4; no claim is judged."
         );
     }
 

@@ -105,7 +105,7 @@ mod tests {
         assert_eq!(files, printed_figures(&bundle, &plan, 180.0).unwrap());
         let csv = String::from_utf8_lossy(&files[0].1);
         assert!(
-            csv.starts_with("series,what,x,y,low,high,x-deviation,y-deviation\nnone,curve,"),
+            csv.starts_with("series,what,x,y,low,high,x-deviation,y-deviation\nno prior,curve,"),
             "{csv}"
         );
         assert!(String::from_utf8_lossy(&files[2].1).contains(" width=\"180mm\""));

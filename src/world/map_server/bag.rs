@@ -67,12 +67,10 @@ pub fn is_bag(bytes: &[u8]) -> bool {
 /// Where there is no such grid.
 pub fn read_bag(bytes: &[u8], topic: Option<&str>) -> Result<OccupancyGrid, BagError> {
     let unreadable = |error: mcap::McapError| BagError::Unreadable(error.to_string());
-    if !framing::is_sound(bytes) {
-        return Err(BagError::Unreadable("a record says that it is longer than it is".to_owned()));
-    }
+    let messages = framing::messages(bytes).map_err(BagError::Unreadable)?;
     let mut topics: BTreeMap<String, bool> = BTreeMap::new();
     let mut last: BTreeMap<String, (String, Vec<u8>)> = BTreeMap::new();
-    for message in mcap::MessageStream::new(bytes).map_err(unreadable)? {
+    for message in mcap::MessageStream::new(&messages).map_err(unreadable)? {
         let message = message.map_err(unreadable)?;
         let channel = &message.channel;
         let is_grid =

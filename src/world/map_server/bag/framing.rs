@@ -1,183 +1,179 @@
-//! Whether the lengths in an MCAP file are true, looked at before anybody asks for so much memory or adds them up: records, and the
-//! texts and lists in them (MCAP specification, "Records"). What the records mean is for others to say.
+//! The messages of an MCAP file and what says how they are read, without the rest: indices, attachments, statistics. Every length is
+//! held against what is there, before anybody asks for so much memory (MCAP specification, "Records"); what the records mean is for
+//! others to say.
 
 use super::MAGIC;
+use crate::document::quoted;
 
-/// Length of the magic bytes, and of a record's head: its kind and its length.
+/// Length of the magic bytes at both ends, and of a record's head: its kind and its length.
 const MAGIC_LENGTH: usize = 8;
 const HEAD: usize = 9;
-/// The kind of a chunk, which holds records itself.
+
+/// Kinds of records.
+const FOOTER: u8 = 2;
+const SCHEMA: u8 = 3;
+const CHANNEL: u8 = 4;
+const MESSAGE: u8 = 5;
 const CHUNK: u8 = 6;
+const DATA_END: u8 = 15;
 
-/// Part of a record.
-#[derive(Clone, Copy)]
-enum Part {
-    /// So many bytes.
-    Bytes(usize),
-    /// Bytes behind their number, of 32 bits.
-    Short,
-    /// Pairs of texts behind the number of all their bytes, of 32 bits.
-    Pairs,
-    /// Bytes behind their number, of 64 bits.
-    Long,
+/// What stands in a chunk before its compression: times, size, checksum.
+const CHUNK_HEAD: usize = 28;
+
+const LONGER: &str = "a record says that it is longer than it is";
+
+/// Returns the file that holds the messages of `bytes` with their channels and schemas, chunks taken apart.
+///
+/// # Errors
+/// What is wrong with it.
+pub(super) fn messages(bytes: &[u8]) -> Result<Vec<u8>, String> {
+    let (magic, records) = bytes.split_at_checked(MAGIC_LENGTH).ok_or(LONGER)?;
+    let mut kept = magic.to_vec();
+    keep(records, &mut kept, Within::File)?;
+    kept.extend_from_slice(magic);
+    Ok(kept)
 }
 
-/// Returns the parts of a record of this kind as far as lengths are in them.
-fn parts(kind: u8) -> &'static [Part] {
-    use Part::{Bytes, Long, Pairs, Short};
-    match kind {
-        // Header: profile, library.
-        1 => &[Short, Short],
-        // Schema: id, name, encoding, data.
-        3 => &[Bytes(2), Short, Short, Short],
-        // Channel: id, schema's id, topic, encoding, metadata.
-        4 => &[Bytes(4), Short, Short, Pairs],
-        // Chunk: times, size, checksum, compression, records.
-        CHUNK => &[Bytes(28), Short, Long],
-        // Message index: channel, places.
-        7 => &[Bytes(2), Short],
-        // Chunk index: times and place, places of message indices, their length, compression.
-        8 => &[Bytes(32), Short, Bytes(8), Short],
-        // Attachment: times, name, type, data, checksum.
-        9 => &[Bytes(16), Short, Short, Long, Bytes(4)],
-        // Attachment index: place, times, size, name, type.
-        10 => &[Bytes(40), Short, Short],
-        // Statistics: counts, times, messages of each channel.
-        11 => &[Bytes(42), Short],
-        // Metadata: name, metadata.
-        12 => &[Short, Pairs],
-        // Metadata index: place, name.
-        13 => &[Bytes(16), Short],
-        // Footer, message, summary offset, end of data, and what comes after this version.
-        _ => &[],
-    }
+/// What records are in.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Within {
+    File,
+    Chunk,
 }
 
-/// Returns whether every length in the MCAP file `bytes` is one of bytes that are there.
-pub(super) fn is_sound(bytes: &[u8]) -> bool {
-    bytes.get(MAGIC_LENGTH..).is_some_and(are_sound)
-}
-
-fn are_sound(mut records: &[u8]) -> bool {
-    while let Some((head, rest)) = records.split_first_chunk::<HEAD>() {
-        if records.starts_with(MAGIC) {
-            return true;
+fn keep(mut records: &[u8], kept: &mut Vec<u8>, within: Within) -> Result<(), String> {
+    loop {
+        if match within {
+            Within::File => records.starts_with(MAGIC),
+            Within::Chunk => records.is_empty(),
+        } {
+            return Ok(());
         }
+        let (head, rest) = records.split_first_chunk::<HEAD>().ok_or("it ends within a record")?;
         let [kind, length @ ..] = *head;
-        let length = usize::try_from(u64::from_le_bytes(length));
-        let Some((content, rest)) = length.ok().and_then(|n| rest.split_at_checked(n)) else {
-            return false;
+        let (content, rest) = counted(u64::from_le_bytes(length), rest).ok_or(LONGER)?;
+        let is_kept = match kind {
+            CHUNK if within == Within::Chunk => return Err("a chunk lies in a chunk".to_owned()),
+            CHUNK => {
+                let (compression, records) = chunk(content).ok_or(LONGER)?;
+                if !compression.is_empty() {
+                    let name = String::from_utf8_lossy(compression);
+                    return Err(format!("a chunk is compressed as `{}`", quoted(&name)));
+                }
+                keep(records, kept, Within::Chunk)?;
+                false
+            }
+            SCHEMA => schema(content).map(|()| true).ok_or(LONGER)?,
+            CHANNEL => channel(content).map(|()| true).ok_or(LONGER)?,
+            MESSAGE | DATA_END | FOOTER => true,
+            _ => false,
         };
-        if !is_record(kind, content) {
-            return false;
+        if is_kept {
+            kept.extend_from_slice(head);
+            kept.extend_from_slice(content);
         }
         records = rest;
     }
-    true
 }
 
-fn is_record(kind: u8, mut content: &[u8]) -> bool {
-    let mut is_compressed = false;
-    for part in parts(kind) {
-        let (taken, rest) = match part {
-            Part::Bytes(count) => {
-                let Some(split) = content.split_at_checked(*count) else { return false };
-                split
-            }
-            Part::Short | Part::Pairs => {
-                let Some(split) = short(content) else { return false };
-                split
-            }
-            Part::Long => {
-                let Some(split) = long(content) else { return false };
-                split
-            }
-        };
-        let is_sound = match part {
-            Part::Pairs => are_pairs(taken),
-            Part::Long if kind == CHUNK && !is_compressed => are_sound(taken),
-            _ => true,
-        };
-        if !is_sound {
-            return false;
-        }
-        is_compressed = matches!(part, Part::Short) && !taken.is_empty();
-        content = rest;
+/// Returns so many bytes, and what comes behind them.
+fn counted(length: u64, bytes: &[u8]) -> Option<(&[u8], &[u8])> {
+    bytes.split_at_checked(usize::try_from(length).ok()?)
+}
+
+/// Returns bytes whose number of 32 bits stands before them, and what comes behind.
+fn short(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
+    let (length, rest) = bytes.split_first_chunk()?;
+    counted(u32::from_le_bytes(*length).into(), rest)
+}
+
+/// Returns how a chunk is compressed, and its records.
+fn chunk(content: &[u8]) -> Option<(&[u8], &[u8])> {
+    let (compression, rest) = short(content.get(CHUNK_HEAD..)?)?;
+    let (length, rest) = rest.split_first_chunk()?;
+    let (records, _) = counted(u64::from_le_bytes(*length), rest)?;
+    Some((compression, records))
+}
+
+/// Looks at the lengths in a schema: behind its number its name, encoding and text.
+fn schema(content: &[u8]) -> Option<()> {
+    let mut rest = content.get(2..)?;
+    for _ in 0..3 {
+        (_, rest) = short(rest)?;
     }
-    true
+    Some(())
 }
 
-/// Returns bytes whose number stands before them, and what comes behind.
-fn short(content: &[u8]) -> Option<(&[u8], &[u8])> {
-    let (length, rest) = content.split_first_chunk()?;
-    rest.split_at_checked(usize::try_from(u32::from_le_bytes(*length)).ok()?)
-}
-
-fn long(content: &[u8]) -> Option<(&[u8], &[u8])> {
-    let (length, rest) = content.split_first_chunk()?;
-    rest.split_at_checked(usize::try_from(u64::from_le_bytes(*length)).ok()?)
-}
-
-fn are_pairs(mut content: &[u8]) -> bool {
-    while !content.is_empty() {
-        let Some((_, rest)) = short(content) else { return false };
-        content = rest;
+/// Looks at the lengths in a channel: behind two numbers its topic, encoding, and names and values of its metadata.
+fn channel(content: &[u8]) -> Option<()> {
+    let (_, rest) = short(content.get(4..)?)?;
+    let (_, rest) = short(rest)?;
+    let (mut metadata, _) = short(rest)?;
+    while !metadata.is_empty() {
+        let (_, value) = short(metadata)?;
+        (_, metadata) = short(value)?;
     }
-    true
+    Some(())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    const ENDS: &[u8] = b"\x89MCAP0\r\n";
+
     fn record(kind: u8, content: &[u8]) -> Vec<u8> {
-        let mut record = vec![kind];
-        record.extend((content.len() as u64).to_le_bytes());
-        record.extend(content);
-        record
+        [&[kind][..], &(content.len() as u64).to_le_bytes(), content].concat()
     }
 
     fn bag(records: &[Vec<u8>]) -> Vec<u8> {
-        [b"\x89MCAP0\r\n".to_vec(), records.concat(), b"\x89MCAP0\r\n".to_vec()].concat()
+        [ENDS, &records.concat(), ENDS].concat()
     }
 
-    fn text(length: u32, text: &str) -> Vec<u8> {
-        [&length.to_le_bytes()[..], text.as_bytes()].concat()
+    fn text(text: &[u8]) -> Vec<u8> {
+        [&u32::try_from(text.len()).unwrap().to_le_bytes()[..], text].concat()
     }
 
-    fn chunk(compression: &str, records: &[u8]) -> Vec<u8> {
-        let compression = text(u32::try_from(compression.len()).unwrap(), compression);
+    fn chunk_of(compression: &[u8], records: &[u8]) -> Vec<u8> {
         let length = (records.len() as u64).to_le_bytes();
-        record(CHUNK, &[&[0; 28][..], &compression, &length, records].concat())
+        record(CHUNK, &[&[0; CHUNK_HEAD][..], &text(compression), &length, records].concat())
+    }
+
+    fn channel_of(metadata: &[u8]) -> Vec<u8> {
+        let parts = [&[0; 4][..], &text(b"/map"), &text(b"cdr"), &text(metadata)];
+        record(CHANNEL, &parts.concat())
     }
 
     #[test]
-    fn lengths_of_bytes_that_are_there_are_sound() {
-        let header = record(1, &[text(4, "ros2"), text(0, "")].concat());
-        let metadata = [text(1, "k"), text(1, "v")].concat();
-        let pairs = text(u32::try_from(metadata.len()).unwrap(), "");
-        let channel = [&[0; 4][..], &text(4, "/map"), &text(3, "cdr"), &pairs, &metadata].concat();
-        let channel = record(4, &channel);
-        let whole = bag(&[header, channel.clone(), chunk("", &channel), record(0xfe, b"new")]);
-        assert!(is_sound(&whole));
-        // What is compressed says nothing before it is unpacked.
-        assert!(is_sound(&bag(&[chunk("zstd", b"\x04\xff\xff\xff\xff\xff\xff\xff\xff")])));
-        assert!(!is_sound(b"\x89MCAP0"));
+    fn messages_are_kept_with_what_says_how_they_are_read() {
+        let schema = record(SCHEMA, &[&[0; 2][..], &text(b"a"), &text(b"b"), &text(b"c")].concat());
+        let channel = channel_of(&[text(b"k"), text(b"v")].concat());
+        let message = record(MESSAGE, &[7; 30]);
+        let header = record(1, &[text(b"ros2"), text(b"")].concat());
+        // What nobody needs may say what it likes.
+        let index = record(8, &[0xff; 90]);
+        let end = [record(DATA_END, &[0; 4]), index, record(FOOTER, &[0; 20])].concat();
+        let inner = [channel.clone(), message.clone()].concat();
+        let whole = bag(&[header, schema.clone(), chunk_of(b"", &inner), end]);
+        let kept = [schema, inner, record(DATA_END, &[0; 4]), record(FOOTER, &[0; 20])];
+        assert_eq!(messages(&whole), Ok(bag(&kept)));
     }
 
     #[test]
-    fn lengths_beyond_their_record_are_not() {
+    fn what_is_longer_than_it_is_or_packed_is_refused() {
+        let why = |records: &[Vec<u8>]| messages(&bag(records)).unwrap_err();
         let longer = |kind: u8| [&[kind][..], &u64::MAX.to_le_bytes(), b"..."].concat();
-        assert!(!is_sound(&bag(&[longer(0xfe)])));
-        assert!(!is_sound(&bag(&[chunk("", &longer(5))])));
-        assert!(!is_sound(&bag(&[record(1, &text(0xfc00_0700, ""))])));
-        let nested = [&[0; 4][..], &text(0, ""), &text(0, ""), &text(4, ""), &text(9, "")].concat();
-        assert!(!is_sound(&bag(&[record(4, &nested)])));
-        let attached = [&[0; 16][..], &text(0, ""), &text(0, ""), &u64::MAX.to_le_bytes()].concat();
-        assert!(!is_sound(&bag(&[record(9, &attached)])));
-        // Nor is one whose checksum is not there.
-        let attached = [&[0; 16][..], &text(0, ""), &text(0, ""), &[0; 8]].concat();
-        assert!(!is_sound(&bag(&[record(9, &attached)])));
-        assert!(is_sound(&bag(&[record(9, &[attached, vec![0; 4]].concat())])));
+        assert_eq!(why(&[longer(0xfe)]), LONGER);
+        assert_eq!(why(&[chunk_of(b"", &longer(MESSAGE))]), LONGER);
+        assert_eq!(why(&[record(CHANNEL, &[0xff; 40])]), LONGER);
+        assert_eq!(why(&[record(SCHEMA, &[0; 13])]), LONGER);
+        // A name without a value.
+        assert_eq!(why(&[channel_of(&text(b"k"))]), LONGER);
+        let nested = chunk_of(b"", &chunk_of(b"", b""));
+        assert_eq!(why(&[nested]), "a chunk lies in a chunk");
+        assert_eq!(why(&[chunk_of(b"zstd", b"...")]), "a chunk is compressed as `zstd`");
+        let cut = [ENDS, &record(MESSAGE, &[0; 30])].concat();
+        assert_eq!(messages(&cut).unwrap_err(), "it ends within a record");
+        assert_eq!(messages(b"\x89MCAP").unwrap_err(), LONGER);
     }
 }
