@@ -252,9 +252,8 @@ fn wrap_values(schema: &mut Map<String, Value>, name: &str, values: &mut Map<Str
             wrap_values(object, &name, values);
             continue;
         }
-        // What is told of the plain value is told of the parameter: a fault of it names what it is.
-        let told = Value::Object(object.clone());
-        let description = object.remove("description").unwrap_or_default();
+        // What is told of the parameter is told of each of its values: a fault of one names what it is.
+        let description = object.get("description").cloned().unwrap_or_default();
         let plain = Value::Object(object.clone());
         let why = json!({ "type": "string", "description": "Why this value was chosen." });
         let range = json!({
@@ -291,7 +290,7 @@ fn wrap_values(schema: &mut Map<String, Value>, name: &str, values: &mut Map<Str
             "additionalProperties": false,
         });
         *property = json!({ "description": description, "$ref": this["$ref"] });
-        values.insert(name, json!({ "anyOf": [told, valued, of_a_factor, by_a_factor] }));
+        values.insert(name, json!({ "anyOf": [plain, valued, of_a_factor, by_a_factor] }));
     }
 }
 
