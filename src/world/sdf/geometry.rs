@@ -109,14 +109,8 @@ fn primitive(shape: Node<'_, '_>, kind: &str, faults: &mut Faults<'_>) -> Option
             Shape::Ellipsoid(radii)
         }
         "plane" => {
-            let normal = match xml::child(shape, "normal") {
-                Some(normal) => faults.numbers(normal)?,
-                None => [0.0, 0.0, 1.0],
-            };
-            let size = match xml::child(shape, "size") {
-                Some(size) => faults.numbers(size)?,
-                None => [1.0, 1.0],
-            };
+            let normal = given(shape, "normal", [0.0, 0.0, 1.0], faults)?;
+            let size = given(shape, "size", [1.0; 2], faults)?;
             Shape::Plane { normal, size }
         }
         "polyline" => polyline(shape, faults)?,
@@ -142,6 +136,16 @@ fn required<const N: usize>(
         return None;
     };
     faults.numbers(found)
+}
+
+/// Returns the numbers of the child `name`, or these where there is none.
+fn given<const N: usize>(
+    shape: Node<'_, '_>,
+    name: &str,
+    otherwise: [f64; N],
+    faults: &mut Faults<'_>,
+) -> Option<[f64; N]> {
+    xml::child(shape, name).map_or(Some(otherwise), |found| faults.numbers(found))
 }
 
 /// Checks `lengths`; returns `None` where one of them is no length, and collects that as a fault.
@@ -183,15 +187,9 @@ fn heightmap(
     faults: &mut Faults<'_>,
 ) -> Option<Shape> {
     let uri = xml::child(shape, "uri").map_or("", xml::text);
-    let size = match xml::child(shape, "size") {
-        Some(size) => faults.numbers(size)?,
-        None => [1.0; 3],
-    };
+    let size = given(shape, "size", [1.0; 3], faults)?;
     check(shape, &size, faults)?;
-    let middle = match xml::child(shape, "pos") {
-        Some(middle) => faults.numbers(middle)?,
-        None => [0.0; 3],
-    };
+    let middle = given(shape, "pos", [0.0; 3], faults)?;
     Some(match reader.heightmap(uri, file.path, Extent { size, middle }) {
         Ok(mesh) => Shape::Mesh { mesh, scale: [1.0; 3] },
         Err(why) => Shape::Lack(Kind::Heightmap { uri: uri.to_owned(), why }),

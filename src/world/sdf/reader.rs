@@ -4,13 +4,13 @@ use super::files::{FilePath, Folders, Models};
 use super::include::{self, Loaded};
 use super::model::{self, Model};
 use super::notes::{Kind, Notes, Place};
-use super::terrain::{self, Extent};
+use super::terrain::{Extent, Heights};
 use super::{MAX_BYTES, check_macros, known_version};
 use crate::document::sdf;
 use crate::document::xml::{self, Faults};
 use crate::document::{Diagnostic, FaultList, Source, quoted};
 use crate::world::Solid;
-use crate::world::mesh::{self, Mesh, MeshFile, UpAxis};
+use crate::world::mesh::{self, MAX_TRIANGLES, Mesh, MeshFile, UpAxis};
 use roxmltree::Node;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -55,6 +55,10 @@ pub(super) struct Reader<'m> {
     open: Vec<FilePath>,
     files: BTreeMap<FilePath, Option<Arc<MeshFile>>>,
     meshes: BTreeMap<(FilePath, Submesh), Option<Mesh>>,
+    /// Heightmaps by their file, or why they are none.
+    heights: BTreeMap<FilePath, Result<Heights, String>>,
+    /// Triangles of all surfaces of heightmaps: each stands where it stands, and shares none with another.
+    drawn: usize,
 }
 
 impl<'m> Reader<'m> {
@@ -69,6 +73,8 @@ impl<'m> Reader<'m> {
             open: Vec::new(),
             files: BTreeMap::new(),
             meshes: BTreeMap::new(),
+            heights: BTreeMap::new(),
+            drawn: 0,
         }
     }
 
@@ -268,13 +274,25 @@ impl<'m> Reader<'m> {
             self.folders.places(uri, beside, self.models).map_err(|why| why.to_string())?;
         let mut why = Vec::new();
         for path in &places {
-            match self.models.read(path) {
-                Ok(bytes) => {
-                    let surface = terrain::surface(&bytes, extent);
-                    return surface.map_err(|problem| format!("`{}`: {problem}", self.name(path)));
+            if !self.heights.contains_key(path) {
+                match self.models.read(path) {
+                    Ok(bytes) => drop(self.heights.insert(path.clone(), Heights::read(&bytes))),
+                    Err(problem) => {
+                        why.push((path, problem));
+                        continue;
+                    }
                 }
-                Err(problem) => why.push((path, problem)),
             }
+            let heights = self.heights[path].as_ref();
+            let heights = heights.map_err(|problem| format!("`{}`: {problem}", self.name(path)))?;
+            if self.drawn + heights.triangles() > MAX_TRIANGLES {
+                return Err(format!(
+                    "the heightmaps of the world have more than {MAX_TRIANGLES} triangles with it"
+                ));
+            }
+            let surface = heights.surface(extent);
+            self.drawn += surface.triangles().len();
+            return Ok(surface);
         }
         Err(self.absence(&why))
     }

@@ -207,6 +207,31 @@ fn a_heightmap_is_floor_where_it_is_flat_and_a_wall_where_it_rises() {
     assert!(near(bounds.min.y, 1.0) && near(bounds.max.y, 3.0), "{bounds:?}");
 }
 
+/// A file of some kilobytes would otherwise cost as much memory as it names heightmaps.
+#[test]
+fn heightmaps_are_read_once_and_of_all_together_only_so_much_is_drawn() {
+    let fields: String = (0..5)
+        .map(|i| {
+            let place = format!("<uri>model://f/f.pgm</uri><size>9 9 9</size><pos>{i} 0 0</pos>");
+            let name = format!("field{i}");
+            model(&name, "0 0 0 0 0 0", &format!("<heightmap>{place}</heightmap>"))
+        })
+        .collect();
+    let mut image = b"P5 513 513 255\n".to_vec();
+    image.extend((0..513 * 513).map(|i| if i % 7 == 0 { 255 } else { 200 }));
+    let mut shelf = Shelf { files: [("m/f/f.pgm".to_owned(), image)].into(), ..Shelf::default() };
+    let world = read_models(&fields, &mut shelf);
+    assert_eq!((world.solids.len(), world.missing()), (2, 3), "two of half a million triangles");
+    let told: Vec<&str> = world.warnings.iter().map(|w| w.splitn(4, ':').last().unwrap()).collect();
+    assert_eq!(
+        told,
+        [
+            " 3 collisions (`field2/l/c`, `field3/l/c`, `field4/l/c`) are a heightmap `model://f/f.pgm`; the heightmaps of the world \
+          have more than 1048576 triangles with it: 3 are missing"
+        ]
+    );
+}
+
 #[test]
 fn formats_and_versions_that_are_not_read_are_named() {
     let told = |text: &str| read(&Source::new("t.sdf", text)).unwrap_err()[0].render(false);
