@@ -197,8 +197,8 @@ fn a_plan_is_shown_before_its_calibration_has_run() {
         processors.contains(" processor")
             && foretold.starts_with("bundle: at least ")
             && foretold.ends_with(
-                " kB unpacked; memory: at least 31 MB; some 0.00 core hours in all (by the manifest: no record of this plan is in \
-                 the store; `reenact run --trials 1` puts one of each condition there)\n"
+                " kB unpacked; memory: at least 31 MB; less than 0.01 core hours in all (by the manifest: no record of this \
+                 plan is in the store; `reenact run --trials 1` puts one of each condition there)\n"
             ),
         "{}",
         answer.stdout

@@ -10,6 +10,7 @@ use crate::bundle::{Limits, format};
 use crate::plan::Plan;
 use crate::runner::StoreError;
 use crate::store::{self, Looked};
+use crate::studies::inference::InferenceSetup;
 use crate::studies::{StudyKind, TrialRecord};
 use serde_json::{Value, json};
 use std::path::Path;
@@ -75,8 +76,9 @@ pub(super) struct Forecast {
     memory: u64,
     /// Simulated time of all trials (s).
     sim_s: f64,
-    /// Simulated seconds for a second of one processor.
-    pace: f64,
+    /// Simulated seconds for a second of one processor; `None` where trials are proposals of an inference, whose time is not that of
+    /// what they simulate.
+    pace: Option<f64>,
 }
 
 impl Forecast {
@@ -120,49 +122,61 @@ impl Forecast {
             plan.experiment.inputs.iter().map(|input| input.bytes.len() as u64).sum::<u64>();
         forecast.memory += forecast.trials * TRIAL + whole(measures * real(MEASURE));
         forecast.records = all.records;
+        if plan.trials.iter().any(|spec| spec.setup.of::<InferenceSetup>().is_some()) {
+            forecast.pace = None;
+        }
         Ok(forecast)
     }
 
     fn nothing(kind: StudyKind) -> Self {
-        let (bundle, memory, pace) = (REST, PROGRAM, kind.pace());
+        let (bundle, memory, pace) = (REST, PROGRAM, Some(kind.pace()));
         Self { trials: 0, records: 0, bundle, files: 30, memory, sim_s: 0.0, pace }
     }
 
-    /// Says how long so many of the trials take on so many processors: `about 40 s on 2 processors`.
-    pub(super) fn time_of(&self, trials: usize, processors: usize) -> String {
+    /// Returns how long all trials take one processor (h), where that can be said.
+    fn core_hours(&self) -> Option<f64> {
+        self.pace.map(|pace| self.sim_s / pace / 3600.0)
+    }
+
+    /// Says how long so many of the trials take on so many processors, where that can be said: `about 40 s on 2 processors`.
+    pub(super) fn time_of(&self, trials: usize, processors: usize) -> Option<String> {
         let share = real(trials as u64) / real(self.trials.max(1));
-        let seconds = self.sim_s * share / (self.pace * real(processors.max(1) as u64));
+        let seconds = self.core_hours()? * 3600.0 * share / real(processors.max(1) as u64);
         let time = match seconds {
             ..=90.0 => format!("{} s", seconds.ceil()),
             ..=5400.0 => format!("{:.0} min", seconds / 60.0),
             _ => format!("{:.1} h", seconds / 3600.0),
         };
-        format!("about {time} on {}", counted(processors, "processor"))
+        Some(format!("about {time} on {}", counted(processors, "processor")))
     }
 
     /// Says it in a line.
     pub(super) fn in_words(&self) -> String {
         let (bundle, memory) = (in_bytes(self.bundle), in_bytes(self.memory));
-        let hours = self.sim_s / self.pace / 3600.0;
+        let time = match self.core_hours() {
+            None => "how long an inference takes is not foretold".to_owned(),
+            Some(hours) if hours < 0.01 => "less than 0.01 core hours in all".to_owned(),
+            Some(hours) => format!("some {hours:.2} core hours in all"),
+        };
         if self.records == 0 {
             return format!(
-                "bundle: at least {bundle} unpacked; memory: at least {memory}; some {hours:.2} core hours in all (by the manifest: no \
-                 record of this plan is in the store; `reenact run --trials 1` puts one of each condition there)\n"
+                "bundle: at least {bundle} unpacked; memory: at least {memory}; {time} (by the manifest: no record of this plan is in \
+                 the store; `reenact run --trials 1` puts one of each condition there)\n"
             );
         }
         format!(
-            "bundle: about {bundle} unpacked; memory: about {memory}; {hours:.2} core hours in all (by {} in the store)\n",
+            "bundle: about {bundle} unpacked; memory: about {memory}; {time} (by {} in the store)\n",
             counted(self.records, "record")
         )
     }
 
-    /// Says it for programs; hours where records of trials say how long they take.
+    /// Says it for programs: sizes in bytes, time in hours of one processor.
     pub(super) fn to_json(self) -> Value {
         json!({
             "records": self.records,
             "bundle_bytes": self.bundle,
             "memory_bytes": self.memory,
-            "core_hours": self.sim_s / self.pace / 3600.0,
+            "core_hours": self.core_hours(),
         })
     }
 
@@ -290,16 +304,22 @@ mod tests {
         );
         assert_eq!(
             Forecast { records: 6, ..large(1_000_000) }.in_words(),
-            "bundle: about 410 MB unpacked; memory: about 31 MB; 0.08 core hours in all (by 6 records in the store)\n"
+            "bundle: about 410 MB unpacked; memory: about 31 MB; some 0.08 core hours in all (by 6 records in the store)\n"
         );
     }
 
     #[test]
     fn times_are_those_of_the_trials_and_processors_at_hand() {
         let forecast = large(1_000_000);
-        assert_eq!(forecast.time_of(1_000_000, 2), "about 2 min on 2 processors");
-        assert_eq!(forecast.time_of(1000, 1), "about 1 s on 1 processor");
-        let hours = Forecast { pace: 400.0, ..large(10_000_000) };
-        assert_eq!(hours.time_of(10_000_000, 4), "about 2.6 h on 4 processors");
+        let told =
+            |forecast: Forecast, trials, processors| forecast.time_of(trials, processors).unwrap();
+        assert_eq!(told(forecast, 1_000_000, 2), "about 2 min on 2 processors");
+        assert_eq!(told(forecast, 1000, 1), "about 1 s on 1 processor");
+        let slow = Forecast { pace: Some(400.0), ..large(10_000_000) };
+        assert_eq!(told(slow, 10_000_000, 4), "about 2.6 h on 4 processors");
+        let proposals = Forecast { pace: None, records: 1, ..large(81) };
+        assert_eq!(proposals.time_of(81, 2), None);
+        let words = "; how long an inference takes is not foretold (by 1 record in the store)\n";
+        assert!(proposals.in_words().ends_with(words), "{}", proposals.in_words());
     }
 }

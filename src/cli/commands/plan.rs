@@ -75,11 +75,8 @@ pub(in crate::cli) fn run(
     }
     let left = plan.trials.len() - done;
     let forecast = Forecast::of(&plan, store.as_ref()).map_err(Failure::failed)?;
-    let time = if left == 0 {
-        String::new()
-    } else {
-        format!(", {}", forecast.time_of(left, processors()))
-    };
+    let time = forecast.time_of(left, processors()).filter(|_| left > 0);
+    let time = time.map_or_else(String::new, |time| format!(", {time}"));
     text.push_str(&format!(
         "{}: {done} done, {left} to do{time}\n{}",
         counted(plan.trials.len(), "trial"),
