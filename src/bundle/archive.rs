@@ -21,8 +21,8 @@ use super::file::SourceReader;
 use super::path::PAYLOAD;
 use super::scratch::{HELD, Passing};
 use super::{
-    BundlePath, Content, Fault, FileRef, Files, LargeFile, LargeFiles, Source, Tree, format,
-    in_payload, names,
+    BundlePath, Content, Edition, Fault, FileRef, Files, LargeFile, LargeFiles, Source, Tree,
+    format, in_edition, in_payload, names,
 };
 use std::cell::RefCell;
 use std::collections::BTreeSet;
@@ -483,6 +483,13 @@ fn locate(files: Vec<(String, Content)>) -> Result<Archive, Fault> {
             Content::Held(bytes) => drop(tree.insert(path, bytes)),
             Content::Large(file) => drop(large.insert(path, file)),
         }
+    }
+    // A crate in the newer edition is what it was sealed as, in other words.
+    if form == Form::Crate
+        && let Some(metadata) = tree.get_mut(&*BundlePath::payload(format::METADATA))
+        && let Some(own) = in_edition(metadata, Edition::default())
+    {
+        *metadata = own;
     }
     Ok(Archive { form, tree, large })
 }

@@ -4,6 +4,7 @@
 //! What the validator wants beyond the specifications: `+00:00` rather than `Z`, `actionStatus` as a string, no
 //! one-element arrays, every file reachable by `hasPart`, every key in the context (`sha256` is not in that of 1.1).
 
+use super::crate_edition::{Edition, written};
 use super::crate_entities::Entity;
 use super::crate_people::People;
 use super::readme::license_address;
@@ -12,7 +13,6 @@ use crate::digest::{ResultsDigest, Sha256Digest, StudyDigest};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
 
-const TERMS: &str = "https://w3id.org/ro/terms/workflow-run#";
 const BIOSCHEMAS: &str = "https://bioschemas.org/profiles/ComputationalWorkflow/1.0-RELEASE";
 const PROFILES: [(&str, &str, &str); 4] = [
     ("https://w3id.org/ro/wfrun/process/0.5", "Process Run Crate", "0.5"),
@@ -42,16 +42,7 @@ pub(super) fn document(
         .chain(graph.files())
         .map(Entity::into_value)
         .collect();
-    let context = json!([
-        "https://w3id.org/ro/crate/1.1/context",
-        {
-            "Profile": "http://www.w3.org/ns/dx/prof/Profile",
-            "environment": format!("{TERMS}environment"),
-            "sha256": format!("{TERMS}sha256"),
-        }
-    ]);
-    let document = json!({"@context": context, "@graph": entities});
-    format!("{document:#}\n").into_bytes()
+    written(&json!({"@context": Edition::default().context(), "@graph": entities}))
 }
 
 /// Everything the graph is made of.

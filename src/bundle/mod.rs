@@ -16,6 +16,7 @@ mod citation;
 mod class;
 mod content;
 mod crate_actions;
+mod crate_edition;
 mod crate_entities;
 mod crate_metadata;
 mod crate_people;
@@ -50,6 +51,7 @@ pub use class::{Class, class_of, is_tag_file, table_in_markdown};
 pub use content::{
     BundleContent, Circumstance, Person, Publication, SealedCondition, SealedInput, seal_inputs,
 };
+pub use crate_edition::{Edition, in_edition};
 pub use departure::{Departure, shell_word};
 pub use fault::{Fault, visible};
 pub use file::{Content, FileRef, Files, LargeFile, LargeFiles, Lines};

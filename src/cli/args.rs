@@ -6,13 +6,15 @@ mod examples;
 mod studies;
 
 pub(super) use bundles::{
-    AttestArgs, DiffArgs, DiffFormat, ExportArgs, LimitsArgs, ReplayArgs, ReportArgs, VerifyArgs,
+    AttestArgs, CrateEdition, DiffArgs, DiffFormat, ExportArgs, LimitsArgs, ReplayArgs, ReportArgs,
+    VerifyArgs,
 };
 pub(super) use engines::{Engine, SubmitArgs};
 pub(super) use studies::{CheckArgs, InferArgs, LockArgs, MergeArgs, PlanArgs, RunArgs, VaryArgs};
 
 use super::load::Given;
 use clap::{Args, CommandFactory as _, Parser, Subcommand, ValueEnum};
+use std::ffi::OsString;
 use std::path::PathBuf;
 
 /// Re-enact published robot-exploration experiments, exactly
@@ -27,6 +29,32 @@ use std::path::PathBuf;
 pub(super) struct Arguments {
     #[command(subcommand)]
     pub(super) command: Command,
+}
+
+impl Arguments {
+    /// Reads what was typed, the first word being the program's name.
+    pub(super) fn read(words: impl IntoIterator<Item = OsString>) -> Result<Self, clap::Error> {
+        Self::try_parse_from(with_its_edition(words))
+    }
+}
+
+/// Joins `--rocrate` and the edition after it to one word. Its value may be left out, and a bundle may follow: clap would take that
+/// for the value.
+fn with_its_edition(words: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
+    let mut out: Vec<OsString> = Vec::new();
+    for word in words {
+        let edition = word.to_str().filter(|word| {
+            word.contains('.') && word.bytes().all(|b| b.is_ascii_digit() || b == b'.')
+        });
+        match (out.last_mut(), edition) {
+            (Some(last), Some(edition)) if last == "--rocrate" => {
+                last.push("=");
+                last.push(edition);
+            }
+            _ => out.push(word),
+        }
+    }
+    out
 }
 
 /// Returns the clap command, for completions and for the test that holds it together.

@@ -22,7 +22,6 @@ pub use exit::Exit;
 
 use crate::provenance::Environment;
 use args::{Arguments, Command};
-use clap::Parser as _;
 use exit::Failure;
 use std::ffi::OsString;
 use std::panic::catch_unwind;
@@ -30,7 +29,7 @@ use terminal::Terminal;
 
 /// Runs the command that `words` (the first being the program's name) ask for.
 pub fn run(words: impl IntoIterator<Item = OsString>) -> Exit {
-    let arguments = match Arguments::try_parse_from(words) {
+    let arguments = match Arguments::read(words) {
         Ok(arguments) => arguments,
         Err(error) => {
             // clap sends help and version to stdout and mistakes to stderr.

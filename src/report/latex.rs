@@ -126,7 +126,7 @@ fn plain(text: &str) -> String {
 }
 
 /// Returns `text` as LaTeX sets it.
-fn escaped(text: &str) -> String {
+pub(super) fn escaped(text: &str) -> String {
     let mut out = String::new();
     for c in text.chars() {
         match c {
@@ -145,7 +145,7 @@ fn escaped(text: &str) -> String {
     out
 }
 
-fn one_line(text: &str) -> String {
+pub(super) fn one_line(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }
 

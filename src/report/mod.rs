@@ -3,6 +3,7 @@
 //! Everything here is a pure function of its arguments: no clock, no file, no network. Pages carry their
 //! style and script inside and forbid everything else by their own content security policy.
 
+mod appendix;
 mod assumptions;
 pub mod bag;
 mod banner;
@@ -28,6 +29,7 @@ pub mod show;
 mod still;
 mod template;
 
+pub use appendix::{Packed, appendix};
 pub use bag::{Bag, BagError, bag, bag_under_banner, foxglove_layout};
 pub use banner::{drawing_under_banner, page_under_banner};
 pub use claim::{ClaimRow, ComparisonRow, NoVerdicts};

@@ -4,6 +4,9 @@ use crate::bundle::Bundle;
 use crate::plan::Plan;
 use serde::Serialize;
 
+/// The fact that names the program and its version.
+pub(super) const SEALED_BY: &str = "sealed by";
+
 /// Where the numbers come from.
 #[derive(Debug, Clone, Default, Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -56,7 +59,7 @@ fn facts(bundle: &Bundle, plan: &Plan) -> Vec<(String, String)> {
         ("study digest", format!("sha256:{}", bundle.study_digest().hex())),
     ];
     if let Some(told) = bundle.circumstance() {
-        facts.push(("sealed by", format!("reenact {}", told.version)));
+        facts.push((SEALED_BY, format!("reenact {}", told.version)));
         if told.environment.is_empty() {
             let text = "not recorded, so that the same study gives the same bundle everywhere (SOURCE_DATE_EPOCH)";
             facts.push(("time and machine of the run", text.to_owned()));

@@ -169,6 +169,17 @@ pub(in crate::cli) struct ReportArgs {
     pub(in crate::cli) unchecked: bool,
 }
 
+/// Which RO-Crate specification, and with it which edition of the profiles, a crate keeps to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(in crate::cli) enum CrateEdition {
+    /// RO-Crate 1.1, Workflow RO-Crate 1.0, Run Crate profiles 0.5
+    #[value(name = "1.1")]
+    V1_1,
+    /// RO-Crate 1.3, Workflow RO-Crate 1.1, Run Crate profiles 0.6
+    #[value(name = "1.3")]
+    V1_3,
+}
+
 #[derive(Debug, Args)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
 pub(in crate::cli) struct ExportArgs {
@@ -177,15 +188,20 @@ pub(in crate::cli) struct ExportArgs {
     /// A zip without a top folder, as some importers want it
     #[arg(long, group = "form")]
     pub(in crate::cli) flat: bool,
-    /// A zip of the RO-Crate alone
-    #[arg(long, group = "form")]
-    pub(in crate::cli) rocrate: bool,
+    /// A zip of the RO-Crate alone: 1.1 with the Run Crate profiles 0.5, or 1.3 with the profiles 0.6 [default: 1.1]
+    #[arg(long, group = "form", value_enum, value_name = "EDITION", num_args = 0..=1, require_equals = true,
+          default_missing_value = "1.1", hide_possible_values = true)]
+    pub(in crate::cli) rocrate: Option<CrateEdition>,
     /// A folder
     #[arg(long, group = "form")]
     pub(in crate::cli) dir: bool,
     /// A folder of LaTeX: every table with booktabs beside the paper's numbers, every number by its name in `numbers.tex`
     #[arg(long, group = "form", conflicts_with = "signature")]
     pub(in crate::cli) latex: bool,
+    /// The appendix that artifact committees ask for, as Markdown and as LaTeX: what it is, how to check it for each badge and how
+    /// long that takes, what is to come out
+    #[arg(long, group = "form", conflicts_with = "signature")]
+    pub(in crate::cli) appendix: bool,
     /// Its figures for print, laid out for the width: of each an SVG, a PDF, and a CSV of what is drawn, into this folder
     #[arg(long, group = "form", value_name = "DIR", conflicts_with_all = ["signature", "out"])]
     pub(in crate::cli) figures: Option<PathBuf>,

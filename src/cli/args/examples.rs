@@ -74,7 +74,8 @@ pub(super) const EXPORT: &str = "\
 Examples:
   reenact export study.zip --dir
   reenact export study.zip --rocrate --out deposit
-  reenact export study.zip --latex";
+  reenact export study.zip --latex
+  reenact export study.zip --appendix";
 
 pub(super) const REPLAY: &str = "\
 Examples:
@@ -126,7 +127,7 @@ Examples:
 #[cfg(test)]
 mod tests {
     use super::super::Arguments;
-    use clap::{CommandFactory as _, Parser as _};
+    use clap::CommandFactory as _;
 
     #[test]
     fn every_command_has_examples_and_every_example_can_be_typed() {
@@ -144,7 +145,8 @@ mod tests {
                 let typed = typed.split(" > ").next().unwrap_or_default();
                 let words: Vec<&str> = typed.split(' ').collect();
                 assert!(name == "reenact" || words[1] == name, "{name}: {line}");
-                Arguments::try_parse_from(&words).unwrap_or_else(|e| panic!("{line}: {e}"));
+                Arguments::read(words.iter().map(Into::into))
+                    .unwrap_or_else(|e| panic!("{line}: {e}"));
                 parsed += 1;
             }
         }

@@ -1,11 +1,11 @@
 //! `reenact export`: the same content in the forms that importers want.
 
-use crate::bundle::{Files, Form, archive, in_bag};
-use crate::cli::args::{DataFormat, ExportArgs};
+use crate::bundle::{BundlePath, Edition, Files, Form, Tree, archive, format, in_bag, in_edition};
+use crate::cli::args::{CrateEdition, DataFormat, ExportArgs};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::terminal::Terminal;
 use crate::cli::{checked, load};
-use crate::report::{self, NoFigures};
+use crate::report::{self, NoFigures, Packed};
 use crate::verify::{path_in_bag, plan_of};
 use serde_json::json;
 use std::io;
@@ -38,6 +38,19 @@ pub(in crate::cli) fn run(args: &ExportArgs, terminal: Terminal) -> Result<Exit,
             load::write(&folder.join(name), text.as_bytes())?;
         }
         terminal.result(&told(&folder, "latex"));
+        return Ok(Exit::Yes);
+    }
+    if args.appendix {
+        let (plan, selection) = plan_of(&bundle).map_err(Failure::not_understood)?;
+        let content = report::content_of(&bundle, &plan, &selection)
+            .map_err(|error| Failure { exit: Exit::No, message: error.to_string() })?;
+        let folder = args.out.join(format!("{stem}-appendix"));
+        let file = format!("{stem}.zip");
+        let bytes = bundle.files().iter().map(|(_, file)| file.size()).sum();
+        for (name, text) in report::appendix(&content, Packed { file: &file, bytes }) {
+            load::write(&folder.join(name), text.as_bytes())?;
+        }
+        terminal.result(&told(&folder, "appendix"));
         return Ok(Exit::Yes);
     }
     if let Some(folder) = &args.figures {
@@ -79,7 +92,10 @@ pub(in crate::cli) fn run(args: &ExportArgs, terminal: Terminal) -> Result<Exit,
     }
     let (form, called, name) = match (args.flat, args.rocrate) {
         (true, _) => (Form::Flat, "flat", format!("{stem}.flat.zip")),
-        (_, true) => (Form::Crate, "rocrate", format!("{stem}.crate.zip")),
+        (_, Some(edition)) => {
+            restate(&mut tree, edition)?;
+            (Form::Crate, "rocrate", format!("{stem}.crate.zip"))
+        }
         _ => (Form::Bag, "bag", format!("{stem}.zip")),
     };
     let path = args.out.join(name);
@@ -87,4 +103,24 @@ pub(in crate::cli) fn run(args: &ExportArgs, terminal: Terminal) -> Result<Exit,
     load::write_with(&path, |out| archive::write_to(files, &stem, form, out))?;
     terminal.result(&told(&path, called));
     Ok(Exit::Yes)
+}
+
+/// Puts the crate's metadata into the words of `edition`.
+fn restate(tree: &mut Tree, edition: CrateEdition) -> Result<(), Failure> {
+    let edition = match edition {
+        CrateEdition::V1_1 => return Ok(()),
+        CrateEdition::V1_3 => Edition::V1_3,
+    };
+    let path = BundlePath::payload(format::METADATA);
+    let metadata = tree.get_mut(&*path).and_then(|metadata| {
+        *metadata = in_edition(metadata, edition)?;
+        Some(())
+    });
+    metadata.ok_or_else(|| Failure {
+        exit: Exit::No,
+        message: format!(
+            "`{path}`: expected a crate's metadata as this program writes them, found others\nhelp: `--rocrate` without 1.3 writes \
+             the crate as it is"
+        ),
+    })
 }
