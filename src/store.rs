@@ -45,6 +45,14 @@ pub fn discard(folder: &Path) {
     let _ = fs::remove_dir_all(folder);
 }
 
+/// Returns whether `folder` is a folder in which nothing lies.
+///
+/// # Errors
+/// Where it cannot be read, or is none.
+pub fn holds_nothing(folder: &Path) -> io::Result<bool> {
+    Ok(fs::read_dir(folder)?.next().is_none())
+}
+
 /// Publishes what `write` writes as `directory/name`: written beside it, made durable, renamed. A reader sees the old file or the
 /// new one, never a part.
 ///

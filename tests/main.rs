@@ -23,6 +23,7 @@ mod manifests;
 mod multiverse;
 mod original_worlds;
 mod own_worlds;
+mod page;
 mod robots;
 mod sandbox;
 mod schemas;

@@ -4,10 +4,9 @@
 use super::args::LimitsArgs;
 use super::exit::{Exit, Failure};
 use super::load;
-use super::terminal::counted;
 use crate::bundle::{Bundle, shell_word, visible};
 use crate::verify::{
-    Finding, Level, Options, Reenactment, Report, Reviewer, Severity, Verdict, climb_and_keep,
+    Level, Options, Reenactment, Report, Reviewer, Severity, Verdict, climb_and_keep,
 };
 use std::path::Path;
 
@@ -55,50 +54,12 @@ pub(super) fn to_level(
     let opened = load::archive(path, limits).map_err(unread)?;
     let (report, bundle) = climb_and_keep(&Reviewer::anonymous(), opened, &options, &pipeline);
     let Some(bundle) = bundle else { return Err(unread(refused(path, &report, None))) };
-    let reached = report.reached.map_or("no level".to_owned(), |level| format!("level {level}"));
-    let (words, is_good) = match report.verdict() {
-        Verdict::Holds => (format!("checked to {reached}: the bundle is what it says"), true),
-        Verdict::Unanswered => {
-            (format!("checked to {reached}: {}", why_not_further(&report)), false)
-        }
-        _ if unchecked => {
-            let faults = counted(of(&report, Severity::Error).count(), "fault");
-            (
-                format!("NOT WHAT IT SAYS: {faults}, reached {reached} of level {}", report.asked),
-                false,
-            )
-        }
-        _ => {
-            let failure = refused(path, &report, Some("; `--unchecked` goes on all the same"));
-            return Err(Refused { failure, is_read: true });
-        }
-    };
-    let words = match &report.unchecked[..] {
-        [] => words,
-        parts => format!("{words}; {}", one_line(&parts.join(", "))),
-    };
-    let banner = (!is_good).then(|| words.clone());
-    Ok(Checked { bundle, words, banner })
-}
-
-fn of(report: &Report, severity: Severity) -> impl Iterator<Item = &Finding> {
-    report.findings.iter().filter(move |finding| finding.severity == severity)
-}
-
-/// Says why this program could not judge the bundle to the end.
-fn why_not_further(report: &Report) -> String {
-    let obstacle = of(report, Severity::Obstacle).next();
-    let engine = report.engine.as_deref().map(one_line).unwrap_or_default();
-    match obstacle {
-        Some(finding) if finding.found == format!("engine {engine}") => {
-            format!("this program cannot derive the results of engine {engine}")
-        }
-        Some(finding) => {
-            let (expected, found) = (one_line(&finding.expected), one_line(&finding.found));
-            format!("this program cannot judge further (expected {expected}, found {found})")
-        }
-        None => "this program cannot judge further".to_owned(),
+    let brief = report.in_brief();
+    if brief.is_refused && !unchecked {
+        let failure = refused(path, &report, Some("; `--unchecked` goes on all the same"));
+        return Err(Refused { failure, is_read: true });
     }
+    Ok(Checked { bundle, words: brief.words, banner: brief.banner })
 }
 
 /// Creates the refusal, with the first faults and what to do.
@@ -108,8 +69,8 @@ fn refused(path: &Path, report: &Report, way_out: Option<&str>) -> Failure {
         Verdict::Broken => Severity::Error,
         _ => Severity::Obstacle,
     };
-    let faults: Vec<_> = of(report, severity).collect();
-    let reached = report.reached.map_or("no level".to_owned(), |level| format!("level {level}"));
+    let faults: Vec<_> = report.of(severity).collect();
+    let reached = report.reached_in_words();
     let (exit, answer) = match severity {
         Severity::Error => (Exit::No, "the bundle is not what it says"),
         _ if report.verdict() == Verdict::Failed => (Exit::Failed, "this program failed"),
@@ -129,8 +90,4 @@ fn refused(path: &Path, report: &Report, way_out: Option<&str>) -> Failure {
     let way_out = way_out.unwrap_or_default();
     message.push_str(&format!("`reenact verify {word}` tells everything{way_out}\n"));
     Failure { exit, message }
-}
-
-fn one_line(text: &str) -> String {
-    visible(text).replace('\n', " ")
 }

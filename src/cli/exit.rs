@@ -1,5 +1,7 @@
 //! How a command ends.
 
+use crate::verify::Verdict;
+
 /// Exit codes, the same for every command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Exit {
@@ -21,6 +23,17 @@ impl Exit {
             Self::No => 1,
             Self::NotUnderstood => 2,
             Self::Failed => 3,
+        }
+    }
+}
+
+impl From<Verdict> for Exit {
+    fn from(verdict: Verdict) -> Self {
+        match verdict.exit_code() {
+            0 => Self::Yes,
+            1 => Self::No,
+            2 => Self::NotUnderstood,
+            _ => Self::Failed,
         }
     }
 }

@@ -22,10 +22,12 @@ mod multiverse;
 mod origin;
 mod pack;
 pub mod page;
+mod played;
 mod print;
 mod recorded;
 pub mod replay;
 pub mod show;
+mod site;
 mod still;
 mod template;
 
@@ -44,9 +46,24 @@ pub use gather::{UnreadBundle, content_of};
 pub use latex::latex;
 pub use origin::{InputRow, Provenance};
 pub use page::page;
+pub use played::{Played, Sensing, play};
 pub use print::{NoFigures, Unprintable, printed_figures};
 pub use replay::{Note, replay_page};
+pub use site::{Site, site_page};
 pub use still::{Shown, still_svg};
+pub use template::script_source;
+
+/// How the page that checks bundles says what wrote it; its version and engine follow.
+pub const PAGE_GENERATOR: &str = "Reenact verify.html";
+
+/// The style that all pages share.
+pub const STYLE: &str = include_str!("templates/style.css");
+
+/// Returns what lets the scripts of reports and replays run under the content security policy of a page that frames them: what it
+/// does not allow itself, its frames may not.
+pub fn framed_script_sources() -> [String; 2] {
+    [script_source(page::SCRIPT), script_source(replay::SCRIPT)]
+}
 
 #[cfg(test)]
 mod fixtures;

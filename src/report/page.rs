@@ -181,7 +181,7 @@ fn most_runs(table: &ReportTable) -> u64 {
     cells.filter_map(|cell| cell.ours?.n).max().unwrap_or(0)
 }
 
-const SCRIPT: &str =
+pub(super) const SCRIPT: &str =
     concat!(include_str!("templates/page.js"), include_str!("templates/report/report.js"));
 
 /// The page's own parts, by the name under which it includes them.
@@ -198,7 +198,7 @@ const PARTS: [(&str, &str); 5] = [
 pub fn page(content: &ReportContent) -> String {
     let view = view(content);
     let page = Template { page: include_str!("templates/report/page.html"), parts: &PARTS };
-    let style = [include_str!("templates/style.css"), include_str!("templates/report/report.css")];
+    let style = [super::STYLE, include_str!("templates/report/report.css")];
     render_in(page, &style, SCRIPT, &view)
 }
 

@@ -6,7 +6,7 @@ use crate::json;
 use crate::studies::recording::Recording;
 use serde::Serialize;
 
-const SCRIPT: &str = concat!(
+pub(super) const SCRIPT: &str = concat!(
     "\n",
     include_str!("templates/unpack.js"),
     include_str!("templates/draw.js"),

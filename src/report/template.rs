@@ -19,7 +19,7 @@ pub(super) struct Template<'a> {
 /// Renders `template` with `context`, in the style that all pages share.
 pub(super) fn render<C: Serialize>(template: &'static str, script: &str, context: &C) -> String {
     let template = Template { page: template, parts: &[] };
-    render_in(template, &[include_str!("templates/style.css")], script, context)
+    render_in(template, &[super::STYLE], script, context)
 }
 
 /// Renders `template` with `context` and the style sheets `style`, one after the other. Every template escapes for HTML;
@@ -52,11 +52,16 @@ pub(super) fn render_in<C: Serialize>(
 
 /// Returns a content security policy under which nothing is fetched and no script runs but this page's own.
 fn policy(script: &str) -> String {
-    let hash = base64(&Sha256Digest::of(script).0);
+    let source = script_source(script);
     format!(
-        "default-src 'none'; style-src 'unsafe-inline'; script-src 'sha256-{hash}'; \
+        "default-src 'none'; style-src 'unsafe-inline'; script-src {source}; \
          img-src data:; base-uri 'none'; form-action 'none'"
     )
+}
+
+/// Returns what lets `script` run under a content security policy.
+pub fn script_source(script: &str) -> String {
+    format!("'sha256-{}'", base64(&Sha256Digest::of(script).0))
 }
 
 /// Writes `value` with `decimals` decimals and a true minus sign.

@@ -69,7 +69,8 @@ pub enum RunError {
 /// A pool of its own, so that neither the environment nor other users of the thread pool matter.
 #[derive(Debug)]
 pub struct Scheduler {
-    pool: rayon::ThreadPool,
+    /// `None` where there are no threads, in WebAssembly: trials are then executed one after the other.
+    pool: Option<rayon::ThreadPool>,
     /// The seed that draws the records of a store to be checked.
     doubt: Option<u64>,
 }
@@ -88,11 +89,16 @@ impl Scheduler {
     /// Where the system does not provide them.
     pub fn new(jobs: usize) -> Result<Self, RunError> {
         let jobs = jobs.max(1);
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(jobs)
-            .thread_name(|i| format!("trial-{i}"))
-            .build()
-            .map_err(|e| RunError::Threads { jobs, problem: e.to_string() })?;
+        let pool = if cfg!(target_family = "wasm") {
+            None
+        } else {
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(jobs)
+                .thread_name(|i| format!("trial-{i}"))
+                .build()
+                .map_err(|e| RunError::Threads { jobs, problem: e.to_string() })?;
+            Some(pool)
+        };
         Ok(Self { pool, doubt: None })
     }
 
@@ -105,7 +111,15 @@ impl Scheduler {
 
     /// Returns the number of threads at work.
     pub fn jobs(&self) -> usize {
-        self.pool.current_num_threads()
+        self.pool.as_ref().map_or(1, rayon::ThreadPool::current_num_threads)
+    }
+
+    /// Does `work` on the threads of this scheduler. Where there are none, the thread pool falls back to the one there is.
+    fn install<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+        match &self.pool {
+            Some(pool) => pool.install(work),
+            None => work(),
+        }
     }
 
     /// Runs `plan` and returns the record of every trial in its order, whatever the order in which they finish.
@@ -152,8 +166,7 @@ impl Scheduler {
         } else {
             let is_known =
                 |spec: &TrialSpec| store.map_or(Ok(false), |s| Ok(recall(s, spec)?.is_some()));
-            self.pool
-                .install(|| plan.par_iter().map(is_known).collect::<Result<_, StoreError>>())?
+            self.install(|| plan.par_iter().map(is_known).collect::<Result<_, StoreError>>())?
         };
         // 2. Some of them again.
         let doubted = self.doubted(&known);
@@ -185,7 +198,7 @@ impl Scheduler {
         store: Option<&dyn TrialStore>,
     ) -> Result<Vec<Option<TrialRecord>>, StoreError> {
         let Some(store) = store else { return Ok(vec![None; plan.len()]) };
-        self.pool.install(|| plan.par_iter().map(|spec| recall(store, spec)).collect())
+        self.install(|| plan.par_iter().map(|spec| recall(store, spec)).collect())
     }
 
     /// Executes the trials at the places `doubted` again, and refuses a store whose records are not what they give.
@@ -204,7 +217,6 @@ impl Scheduler {
             Ok((fresh.to_line() != stored.to_line()).then_some((stored, fresh)))
         };
         let wrong: Vec<Option<(TrialRecord, TrialRecord)>> = self
-            .pool
             .install(|| doubted.par_iter().with_max_len(1).map(again).collect::<Result<_, _>>())?;
         let wrong: Vec<_> = wrong.into_iter().flatten().collect();
         match wrong.first() {
@@ -223,7 +235,7 @@ impl Scheduler {
         store: Option<&dyn TrialStore>,
         observer: &dyn Observer,
     ) -> Result<Vec<TrialRecord>, RunError> {
-        self.pool.install(|| {
+        self.install(|| {
             let finished = cached.into_par_iter().enumerate().with_max_len(1).map(|(i, cached)| {
                 let is_cached = cached.is_some();
                 let record = cached.unwrap_or_else(|| attempt(executor, &part[i]));

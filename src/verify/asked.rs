@@ -1,7 +1,7 @@
 //! What a reviewer asks of a climb, and what they bring along.
 
-use super::Level;
 use super::signature::Vouching;
+use super::{Level, Report};
 use crate::bundle::Moment;
 
 /// How far to climb.
@@ -34,13 +34,15 @@ pub struct Reviewer<'a> {
     pub vouching: Vouching<'a>,
     /// Seconds since some instant, to tell how long each level took.
     pub clock: &'a dyn Fn() -> f64,
+    /// Is shown the report as it stands whenever a level has been judged: what that says of higher levels is not final.
+    pub judged: &'a dyn Fn(&Report),
 }
 
 impl Reviewer<'_> {
     /// Creates a reviewer who asks for no signature and has no clock.
     pub fn anonymous() -> Self {
         let vouching = Vouching { trust: None, signature: None, now: Moment(0) };
-        Self { vouching, clock: &|| 0.0 }
+        Self { vouching, clock: &|| 0.0, judged: &|_| () }
     }
 }
 

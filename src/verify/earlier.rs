@@ -99,13 +99,8 @@ impl Earlier {
         self.made.table().map(|table| format!("the {table} is the author's word"))
     }
 
-    /// Executes at `level` what it takes of this, from `replanned`.
-    pub(super) fn again(
-        &self,
-        replanned: &dyn Replanned,
-        level: Level,
-        options: &Options,
-    ) -> Again {
+    /// Returns the units that `level` executes again.
+    pub(super) fn drawn(&self, level: Level, options: &Options) -> Vec<usize> {
         let of = self.units.len();
         let count = match (self.made.table(), level, options.rows) {
             (None, Level::Full, _) | (Some(_), _, Some(Rows::All)) => of,
@@ -121,7 +116,17 @@ impl Earlier {
             Made::Robustness => "verify-robustness",
             Made::Multiverse => "verify-multiverse",
         };
-        let drawn = Seeds::new(options.seed, Vec::new()).stream(label).places(count, of);
+        Seeds::new(options.seed, Vec::new()).stream(label).places(count, of)
+    }
+
+    /// Executes at `level` what it takes of this, from `replanned`.
+    pub(super) fn again(
+        &self,
+        replanned: &dyn Replanned,
+        level: Level,
+        options: &Options,
+    ) -> Again {
+        let (of, drawn) = (self.units.len(), self.drawn(level, options));
         if drawn.is_empty() {
             return Again { on_trust: self.on_trust(), ..Again::default() };
         }

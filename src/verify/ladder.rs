@@ -28,6 +28,18 @@ pub enum Verdict {
     Failed,
 }
 
+impl Verdict {
+    /// Returns the exit code of a command that answers this.
+    pub fn exit_code(self) -> u8 {
+        match self {
+            Self::Holds => 0,
+            Self::Broken | Self::NotReplicated | Self::NotAttested => 1,
+            Self::Unanswered => 2,
+            Self::Failed => 3,
+        }
+    }
+}
+
 /// What verification found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Report {
@@ -176,7 +188,8 @@ pub fn climb_and_keep(
         seconds: Vec::new(),
     };
     let began = (reviewer.clock)();
-    let mut climb = Climb { report, options, pipeline, clock: reviewer.clock, began };
+    let Reviewer { clock, judged, .. } = *reviewer;
+    let mut climb = Climb { report, options, pipeline, clock, judged, began };
     let bundle = climb.lower(opened, &reviewer.vouching);
     (climb.report.finish(), bundle)
 }
@@ -187,6 +200,7 @@ struct Climb<'a> {
     options: &'a Options,
     pipeline: &'a dyn Pipeline,
     clock: &'a dyn Fn() -> f64,
+    judged: &'a dyn Fn(&Report),
     /// When the level at hand began.
     began: f64,
 }
@@ -196,11 +210,12 @@ impl Climb<'_> {
         self.options.level >= level
     }
 
-    /// Notes how long `level` took.
+    /// Notes how long `level` took, and shows the report as it stands.
     fn took(&mut self, level: Level) {
         let now = (self.clock)();
         self.report.seconds.push((level, now - self.began));
         self.began = now;
+        (self.judged)(&self.report.clone().finish());
     }
 
     /// Climbs levels 0 to 2, and further where they leave a bundle to read.
@@ -331,12 +346,8 @@ impl Climb<'_> {
             return;
         }
         let of = replanned.trials().len();
-        let (level, indices, seed) = if self.wants(Level::Full) {
-            (Level::Full, (0..of).collect(), None)
-        } else {
-            let drawn = reexecution::draw(options.seed, options.sample, of);
-            (Level::Sampled, drawn, Some(options.seed))
-        };
+        let (level, indices) = reexecution::chosen(options, of);
+        let seed = (level == Level::Sampled).then_some(options.seed);
         if level == Level::Full {
             // All trials are a sample, too.
             self.report.judged.push(Level::Sampled);

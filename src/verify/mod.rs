@@ -5,6 +5,7 @@
 
 mod asked;
 mod attestation;
+mod brief;
 mod closeness;
 mod coherent;
 mod derived;
@@ -26,6 +27,7 @@ mod tests;
 
 pub use asked::{Options, Reviewer, Rows};
 pub use attestation::{AttestError, Attestation, Envelope, LONGEST as LONGEST_ATTESTATION};
+pub use brief::Brief;
 pub use closeness::{Apart, Closeness};
 pub use earlier::{Earlier, EarlierAgain, Made};
 pub use finding::{Finding, Level, Severity};
@@ -34,7 +36,7 @@ pub use pipeline::{
     ContentError, MakeAgainError, Pipeline, PlannedTrial, ReplanError, Replanned, ReplicateError,
 };
 pub use reexecution::Sample;
-pub use replan::{Reenactment, plan_of};
+pub use replan::{Errand, Executed, Reenactment, plan_of};
 pub use replication::{ClaimAgain, Replication, VerdictStanding};
 #[cfg(feature = "shell")]
 pub(crate) use report::printable;

@@ -1,6 +1,7 @@
 //! Levels 4 and 5: trials executed again, by whoever doubts.
 
-use super::{PlannedTrial, Replanned, difference};
+use super::asked::Options;
+use super::{Level, PlannedTrial, Replanned, difference};
 use crate::bundle::{Bundle, BundlePath, Fault, format};
 use crate::digest::Sha256Digest;
 use crate::math;
@@ -57,8 +58,17 @@ impl Sample {
     }
 }
 
+/// Returns the level at which trials of a plan of `of` are executed again, and their places in it: all of them from level 5 on.
+pub(super) fn chosen(options: &Options, of: usize) -> (Level, Vec<usize>) {
+    if options.level >= Level::Full {
+        (Level::Full, (0..of).collect())
+    } else {
+        (Level::Sampled, draw(options.seed, options.sample, of))
+    }
+}
+
 /// Draws `count` different places out of `of`, in order, by the reviewer's seed alone.
-pub(super) fn draw(seed: u64, count: usize, of: usize) -> Vec<usize> {
+fn draw(seed: u64, count: usize, of: usize) -> Vec<usize> {
     Seeds::new(seed, Vec::new()).stream("verify-sample").places(count, of)
 }
 

@@ -1,6 +1,9 @@
 //! The pipeline that `run` goes, gone again from a bundle: manifest, plan, trials, results.
 
+mod errand;
 mod varied;
+
+pub use errand::{Errand, Executed};
 
 use super::pipeline::{ContentError, MakeAgainError, ReplanError, ReplicateError};
 use super::{Earlier, Made, Pipeline, PlannedTrial, Replanned};
@@ -12,7 +15,7 @@ use crate::document::Source;
 use crate::manifest::{self, CalibrationTrials, Experiment, InputError, Inputs, WrittenIn};
 use crate::plan::{ENGINE_VERSION, Plan, Selection, engine_version};
 use crate::rng::Seeds;
-use crate::runner::{Observer, RunError, Scheduler, Silent};
+use crate::runner::{Observer, RunError, Scheduler, Silent, TrialStore};
 use crate::studies::{self, TrialRecord, TrialSpec, planned_calibration};
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -21,6 +24,8 @@ use std::sync::Arc;
 pub struct Reenactment<'o> {
     scheduler: Scheduler,
     observer: &'o dyn Observer,
+    /// Records that others executed for this very climb.
+    executed: Option<&'o Executed>,
 }
 
 impl Reenactment<'static> {
@@ -29,14 +34,14 @@ impl Reenactment<'static> {
     /// # Errors
     /// Where the system does not give them.
     pub fn new(jobs: usize) -> Result<Self, RunError> {
-        Ok(Self { scheduler: Scheduler::new(jobs)?, observer: &Silent })
+        Ok(Self { scheduler: Scheduler::new(jobs)?, observer: &Silent, executed: None })
     }
 }
 
 impl Reenactment<'_> {
     /// Returns the same pipeline with an `observer`, which is notified of the trials that are executed again.
     pub fn observed_by(self, observer: &dyn Observer) -> Reenactment<'_> {
-        Reenactment { scheduler: self.scheduler, observer }
+        Reenactment { scheduler: self.scheduler, observer, executed: None }
     }
 }
 
@@ -55,6 +60,7 @@ impl Pipeline for Reenactment<'_> {
             selection,
             scheduler: &self.scheduler,
             observer: self.observer,
+            executed: self.executed,
         }))
     }
 }
@@ -231,12 +237,14 @@ struct Study<'a> {
     selection: Selection,
     scheduler: &'a Scheduler,
     observer: &'a dyn Observer,
+    executed: Option<&'a Executed>,
 }
 
 impl Study<'_> {
-    /// Executes `trials` and returns their records, never from a store.
+    /// Executes `trials` and returns their records, never from a store; those that others executed for this climb are taken.
     fn run(&self, trials: &[TrialSpec]) -> Result<Vec<TrialRecord>, RunError> {
-        self.scheduler.run(trials, &studies::execute, None, self.observer)
+        let executed = self.executed.map(|executed| executed as &dyn TrialStore);
+        self.scheduler.run(trials, &studies::execute, executed, self.observer)
     }
 
     /// Drives the passages at `indices` again.

@@ -47,7 +47,7 @@ impl Report {
         if !self.circumstances.is_empty() {
             text.push_str(&format!("not checked: {}\n", self.circumstances.join("; ")));
         }
-        let reached = self.reached.map_or("no level".to_owned(), |level| format!("level {level}"));
+        let reached = self.reached_in_words();
         let answer = self.answer_with_limits();
         text.push_str(&format!("reached {reached} of level {}: {answer}\n", self.asked));
         text
@@ -235,7 +235,7 @@ impl Report {
     }
 
     /// Lists every level asked for with what became of it, as programs read it.
-    pub(super) fn states(&self) -> Vec<Value> {
+    pub fn states(&self) -> Vec<Value> {
         let state = |level: Level| json!({"level": level, "name": level.name(), "state": self.state(level)});
         self.levels().into_iter().map(state).collect()
     }

@@ -3,6 +3,8 @@
 use super::study::HONEST;
 use crate::sandbox::{MOST_SECONDS, Sandbox};
 use reenact::bundle::{Form, Tree, archive};
+use reenact::digest::Sha256Digest;
+use serde_json::{Value, json};
 use std::fs;
 use std::path::Path;
 
@@ -72,6 +74,34 @@ pub(crate) fn run_all(cases: &[Case]) -> String {
         );
     }
     said
+}
+
+/// Writes every attack that is a file into `folder`, and returns what the program says of each: what whoever else checks bundles
+/// must say of it too.
+pub(crate) fn written(cases: &[Case], folder: &Path) -> Vec<Value> {
+    let told = cases.iter().filter_map(|case| {
+        let bytes = match &case.made {
+            Made::File(bytes) => bytes.clone(),
+            Made::Bag(tree) | Made::Both(tree) => zip(tree),
+            Made::Folder(_) => return None,
+        };
+        let file = format!("{}.zip", Sha256Digest::of(case.name).short());
+        fs::write(folder.join(&file), &bytes).unwrap();
+        let sandbox = Sandbox::new();
+        sandbox.write("bundle", &bytes);
+        let level = case.level.to_string();
+        let answer =
+            sandbox.run_reading(&["verify", "bundle", "--level", &level, "--sample-seed", "1"]);
+        assert_eq!(answer.code, case.exit, "{}: {answer:?}", case.name);
+        Some(json!({
+            "name": case.name,
+            "file": file,
+            "level": case.level,
+            "exit": case.exit,
+            "said": answer.stdout,
+        }))
+    });
+    told.collect()
 }
 
 fn zip(tree: &Tree) -> Vec<u8> {

@@ -208,6 +208,12 @@ pub(in crate::cli) struct ExportArgs {
     /// How wide a figure stands in print, 60mm to 300mm: a column of IEEE's is 88mm, a page 180mm [default: 88mm]
     #[arg(long, value_name = "MM", requires = "figures", value_parser = print_width)]
     pub(in crate::cli) width: Option<f64>,
+    /// A site for any host of files, into this folder: the bundle, the page that checks it in a browser, its report, and an index
+    #[arg(long, group = "form", value_name = "DIR", requires = "page", conflicts_with = "out")]
+    pub(in crate::cli) site: Option<PathBuf>,
+    /// The page that checks bundles, as `.ci/page` in the source builds it
+    #[arg(long, value_name = "FILE", requires = "site")]
+    pub(in crate::cli) page: Option<PathBuf>,
     /// Put this signature of its `tagmanifest-sha256.txt` into it
     #[arg(long, value_name = "FILE", conflicts_with = "rocrate")]
     pub(in crate::cli) signature: Option<PathBuf>,

@@ -75,7 +75,8 @@ Examples:
   reenact export study.zip --dir
   reenact export study.zip --rocrate --out deposit
   reenact export study.zip --latex
-  reenact export study.zip --appendix";
+  reenact export study.zip --appendix
+  reenact export study.zip --site site --page target/page/verify.html";
 
 pub(super) const REPLAY: &str = "\
 Examples:

@@ -1,5 +1,6 @@
 //! `reenact export`: the same content in the forms that importers want.
 
+use super::site;
 use crate::bundle::{BundlePath, Edition, Files, Form, Tree, archive, format, in_bag, in_edition};
 use crate::cli::args::{CrateEdition, DataFormat, ExportArgs};
 use crate::cli::exit::{Exit, Failure};
@@ -16,7 +17,14 @@ const COLUMN_MM: f64 = 88.0;
 
 /// Writes a bundle again.
 pub(in crate::cli) fn run(args: &ExportArgs, terminal: Terminal) -> Result<Exit, Failure> {
-    let checked::Checked { bundle, words, .. } =
+    let site = match (&args.site, &args.page) {
+        (Some(folder), Some(page)) => {
+            site::is_free(folder)?;
+            Some((folder, site::checker(page)?))
+        }
+        _ => None,
+    };
+    let checked::Checked { bundle, words, banner } =
         checked::bundle(&args.bundle, args.unchecked, args.limits)?;
     let told = |path: &Path, form: &str| match args.format {
         DataFormat::Human => format!("{words}\n{}", path.display()),
@@ -98,9 +106,14 @@ pub(in crate::cli) fn run(args: &ExportArgs, terminal: Terminal) -> Result<Exit,
         }
         _ => (Form::Bag, "bag", format!("{stem}.zip")),
     };
-    let path = args.out.join(name);
+    let path = site.as_ref().map_or(args.out.as_path(), |(folder, _)| folder).join(&name);
     let files = Files { tree: &tree, large: &large };
     load::write_with(&path, |out| archive::write_to(files, &stem, form, out))?;
+    if let Some((folder, checker)) = &site {
+        let exit = site::write(folder, &name, &bundle, (&words, banner.as_deref()), checker)?;
+        terminal.result(&told(folder, "site"));
+        return Ok(exit);
+    }
     terminal.result(&told(&path, called));
     Ok(Exit::Yes)
 }

@@ -24,6 +24,7 @@ pub(super) mod run;
 pub(super) mod schema;
 mod screen;
 pub(super) mod show;
+mod site;
 pub(super) mod solve_cmdp;
 pub(super) mod submit;
 pub(super) mod vary;

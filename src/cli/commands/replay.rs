@@ -1,6 +1,5 @@
 //! `reenact replay`: any archived trial again, with full recording.
 
-use crate::bundle::{Bundle, Fault};
 use crate::cli::args::ReplayArgs;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::progress::Working;
@@ -9,36 +8,14 @@ use crate::cli::{checked, load};
 use crate::geometry::Pose;
 use crate::plan::Plan;
 use crate::report::{
-    GainView, Note, Shown, bag_under_banner, drawing_under_banner, foxglove_layout, gain_svg,
-    page_under_banner, replay_page, still_svg,
+    GainView, Played, Sensing, Shown, bag_under_banner, drawing_under_banner, foxglove_layout,
+    gain_svg, page_under_banner, play, replay_page, still_svg,
 };
+use crate::studies::prior_map;
 use crate::studies::recording::Recording;
-use crate::studies::{self, TrialRecord, TrialSpec, prior_map};
 use crate::verify::plan_of;
 use crate::world::map_server;
 use std::path::Path;
-
-/// Returns the line of the record of `spec` in `bundle`, in its canonical form.
-fn archived(bundle: &Bundle, spec: &TrialSpec) -> Result<Option<String>, Failure> {
-    let mut found = Ok(None);
-    for condition in bundle.conditions() {
-        bundle.record_lines(&condition.slug, |line| {
-            match TrialRecord::from_line(line.text) {
-                Ok(record) if record.key == spec.key => found = Ok(Some(record.to_line())),
-                Ok(_) => return true,
-                Err(problem) => {
-                    let fault = Fault::new(line.place(), "a trial record", problem.to_string());
-                    found = Err(Failure { exit: Exit::No, message: fault.to_string() });
-                }
-            }
-            false
-        });
-        if !matches!(found, Ok(None)) {
-            break;
-        }
-    }
-    found
-}
 
 /// Re-enacts one trial or two.
 pub(in crate::cli) fn run(args: &ReplayArgs, terminal: Terminal) -> Result<Exit, Failure> {
@@ -59,22 +36,20 @@ pub(in crate::cli) fn run(args: &ReplayArgs, terminal: Terminal) -> Result<Exit,
     for wanted in &args.trials {
         let spec = plan.find(wanted).map_err(Failure::not_understood)?;
         let name = format!("{}/{}", spec.condition.slug(), spec.trial);
-        let working = Working::at(&format!("re-enacting {name}"), terminal);
-        let (record, recording) = match args.mcap {
-            Some(_) if played.is_empty() => studies::reenact_sensing(spec),
-            _ => studies::reenact(spec),
+        let sensing = match args.mcap {
+            Some(_) if played.is_empty() => Sensing::EveryScan,
+            _ => Sensing::Shown,
         };
+        let working = Working::at(&format!("re-enacting {name}"), terminal);
+        let again = play(&bundle, &plan, spec, sensing);
         drop(working);
-        let same = archived(&bundle, spec)?.is_some_and(|line| line == record.to_line());
-        if !same {
+        let Played { title, recording, note } =
+            again.map_err(|fault| Failure { exit: Exit::No, message: fault.to_string() })?;
+        if !note.good {
             exit = Exit::No;
         }
-        let found = if same { "equals" } else { "DIFFERS from" };
-        let text = format!("{name}: the re-enacted record {found} the archived one");
-        notes.push(Note { text, good: same });
-        // Readers of the page see labels; whoever asks for the trial again needs its name.
-        let title = plan.experiment.labels.title(&spec.condition, spec.trial);
-        played.push((title.unwrap_or(name), recording));
+        notes.push(note);
+        played.push((title, recording));
     }
     if let Some(path) = &args.html {
         let trials: Vec<(String, &Recording)> =

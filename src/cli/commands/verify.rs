@@ -54,7 +54,7 @@ pub(in crate::cli) fn run(
     let pipeline = Reenactment::new(jobs).map_err(Failure::failed)?.observed_by(&progress);
     let seed = args.sample_seed.unwrap_or_else(unforeseen_seed);
     let options = Options { level, sample: args.sample, rows: args.robustness, seed };
-    let reviewer = Reviewer { vouching, clock: &|| clock.elapsed_seconds() };
+    let reviewer = Reviewer { vouching, clock: &|| clock.elapsed_seconds(), judged: &|_| () };
     let mut report =
         climb_for(&reviewer, load::archive(&args.bundle, args.limits)?, &options, &pipeline);
     progress.finish();
@@ -95,9 +95,6 @@ fn trust(path: &Path) -> Result<Trust, Failure> {
 fn exit(report: &Report, attest: bool) -> Exit {
     match report.verdict() {
         Verdict::Holds if attest && report.bundle_id.is_none() => Exit::NotUnderstood,
-        Verdict::Holds => Exit::Yes,
-        Verdict::Broken | Verdict::NotReplicated | Verdict::NotAttested => Exit::No,
-        Verdict::Unanswered => Exit::NotUnderstood,
-        Verdict::Failed => Exit::Failed,
+        verdict => verdict.into(),
     }
 }

@@ -41,7 +41,7 @@ impl Study<'_> {
     }
 
     /// Makes the plan of a run of the robustness table.
-    fn varied_plan(&self, run: &Run) -> Result<Plan, ReplanError> {
+    pub(super) fn varied_plan(&self, run: &Run) -> Result<Plan, ReplanError> {
         let value_of = |path: &str, tried: &str| {
             let assumptions = &self.plan.experiment.assumptions;
             let of_it = assumptions.iter().filter(|assumption| assumption.path == path);
@@ -97,7 +97,7 @@ impl Study<'_> {
     }
 
     /// Plans the study with further `overrides` after its own.
-    fn plan_with_values(&self, further: Vec<String>) -> Result<Plan, ReplanError> {
+    pub(super) fn plan_with_values(&self, further: Vec<String>) -> Result<Plan, ReplanError> {
         let (source, mut overrides) = written(self.bundle)?;
         overrides.extend(further);
         Ok(Plan::of(resolve(&source, &overrides, &Sealed(self.bundle))?))

@@ -22,7 +22,7 @@ fn nothing_is_read_of_a_bundle_for_which_nobody_vouches() {
     let trust = Trust::read(&Source::new("signers", SIGNERS)).unwrap();
     let signature = Some(("it.sig", SIGNATURE.as_bytes()));
     let vouching = Vouching { trust: Some(&trust), signature, now: Moment(0) };
-    let reviewer = Reviewer { vouching, clock: &|| 0.0 };
+    let reviewer = Reviewer { vouching, ..Reviewer::anonymous() };
     let options = Options { level: Level::Derived, sample: 0, rows: None, seed: 0 };
     let mut tree = sample::sealed().tree;
     let archive = Archive::of(Form::Bag, tree.clone());
@@ -224,7 +224,7 @@ fn junit_has_the_shape_that_viewers_expect() {
         now.get()
     };
     let vouching = Vouching { trust: None, signature: None, now: Moment(0) };
-    let reviewer = Reviewer { vouching, clock: &clock };
+    let reviewer = Reviewer { vouching, clock: &clock, judged: &|_| () };
     let options = Options { level: Level::Full, sample: 0, rows: None, seed: 1 };
     let mut tree = forged();
     tree.insert("tagmanifest-sha256.txt.sig".into(), SIGNATURE.into());
