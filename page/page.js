@@ -362,9 +362,10 @@ class Check {
     }
     try {
       const report = await this.main.ask({ do: "report", unchecked });
-      byId("report").srcdoc = new TextDecoder().decode(report.bytes);
+      // Shown first: a page that is not shown has no size, and draws nothing.
       byId("report").hidden = false;
-      byId("report-told").textContent = `The page that \`reenact report\` makes. ${report.told.words}.`;
+      byId("report").srcdoc = new TextDecoder().decode(report.bytes);
+      byId("report-told").textContent = `${report.told.words[0].toUpperCase()}${report.told.words.slice(1)}. The page that reenact report makes:`;
       const { told } = await this.main.ask({ do: "trials" });
       this.unchecked = unchecked;
       this.offer(told);
@@ -411,8 +412,8 @@ class Check {
     byId("played").textContent = `executing ${trials.join(" and ")} again`;
     try {
       const { told, bytes } = await this.main.ask({ do: "replay", trials, unchecked: this.unchecked });
-      byId("replay").srcdoc = new TextDecoder().decode(bytes);
       byId("replay").hidden = false;
+      byId("replay").srcdoc = new TextDecoder().decode(bytes);
       byId("played").textContent = told.notes.map(([text, good]) => `${good ? "✓" : "✗"} ${text}`).join("; ");
     } catch (error) {
       if (!(error instanceof Cancelled)) byId("played").textContent = error.message;

@@ -110,6 +110,7 @@ fn a_site_that_cannot_be_made_says_why() {
     desk.write("study.zip", &HONEST.zip);
     desk.write("report.html", "<!doctype html>\n<p>Another page</p>\n");
     desk.write("old.html", page_of("0.0.9, engine 1"));
+    fs::create_dir(desk.path("full")).unwrap();
     desk.write("full/CNAME", "example.org\n");
     let refused = |words: &[&str]| {
         let answer = desk.run(words);
