@@ -260,6 +260,8 @@ class Check {
       this.lower = lower;
       showStates(lower.report.levels, undefined, lower.seconds);
       this.shown = this.show(lower);
+      // Whoever awaits it tells of its faults; where the climb is cancelled before that, nobody does.
+      this.shown.catch(() => {});
       if (lower.exit === 0 && top > 3) await this.upper(top);
       else if (top > 3) this.tell(await this.climb(top), top);
       else this.tell(lower, 3);

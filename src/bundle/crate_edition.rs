@@ -135,8 +135,11 @@ fn rename(entity: &mut Map<String, Value>, from: Edition, to: Edition) {
             .map(|(ids, versions)| (ids, versions))
     };
     if let Some((ids, versions)) = entity.get("@id").and_then(renamed) {
-        let version = entity.get_mut("version").filter(|old| **old == versions[from.place()]);
-        version.into_iter().for_each(|version| *version = json!(versions[to.place()]));
+        if let Some(version) =
+            entity.get_mut("version").filter(|old| **old == versions[from.place()])
+        {
+            *version = json!(versions[to.place()]);
+        }
         entity.insert("@id".into(), json!(ids[to.place()]));
     }
     let references = entity.values_mut().flat_map(|value| match value {

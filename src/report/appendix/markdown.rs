@@ -19,7 +19,9 @@ fn write(block: &Block, text: &mut String) {
     match block {
         Block::Text(words) => text.push_str(&format!("{}\n", one_line(words))),
         Block::List(items) => {
-            items.iter().for_each(|item| text.push_str(&format!("- {}\n", one_line(item))));
+            for item in items {
+                text.push_str(&format!("- {}\n", one_line(item)));
+            }
         }
         Block::Facts(facts) => {
             for (name, words) in facts {

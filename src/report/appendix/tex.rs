@@ -12,7 +12,9 @@ pub(super) fn written(title: &str, parts: &[Part]) -> String {
     );
     for part in parts {
         text.push_str(&format!("\n\\subsection{{{}}}\n", escaped(part.title)));
-        part.blocks.iter().for_each(|block| write(block, &mut text));
+        for block in &part.blocks {
+            write(block, &mut text);
+        }
     }
     text
 }
@@ -48,7 +50,9 @@ fn write(block: &Block, text: &mut String) {
 
 fn list(kind: &str, items: impl Iterator<Item = String>, text: &mut String) {
     text.push_str(&format!("\\begin{{{kind}}}\n"));
-    items.for_each(|item| text.push_str(&format!("\\item {item}\n")));
+    for item in items {
+        text.push_str(&format!("\\item {item}\n"));
+    }
     text.push_str(&format!("\\end{{{kind}}}\n"));
 }
 

@@ -69,6 +69,8 @@ function chartGround(width, height, ratio) {
 }
 
 function drawChart() {
+  // In a frame that has no room yet there is nothing to see.
+  if (!chart.clientWidth || !chart.clientHeight) return;
   const ratio = Math.min(window.devicePixelRatio || 1, 2), width = chart.clientWidth, height = chart.clientHeight;
   if (!scale || scale.width !== width || scale.ratio !== ratio || scale.look !== colour.ink) {
     [chart.width, chart.height] = [Math.round(width * ratio), Math.round(height * ratio)];

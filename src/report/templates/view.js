@@ -24,7 +24,8 @@ function fit(panel) {
   const ratio = Math.min(window.devicePixelRatio || 1, 2), width = canvas.clientWidth;
   const height = Math.round(Math.max(170, Math.min(width * (y1 - y0) / (x1 - x0), room())));
   canvas.style.height = height + "px";
-  canvas.width = Math.round(width * ratio);
+  // In a frame that has no room yet there is nothing to see, and a canvas of no width cannot be drawn.
+  canvas.width = Math.max(1, Math.round(width * ratio));
   canvas.height = Math.round(height * ratio);
   panel.size = { width, height, ratio, scale: Math.min(width / (x1 - x0), height / (y1 - y0)) };
   panel.ground = panel.drawn = null;
