@@ -1,9 +1,9 @@
 """Seed roc-validator's HTTP cache, so that it judges a crate without any network.
 
-usage: seed_roc_cache.py CACHE WHEEL
+usage: seed_roc_cache.py CACHE WHEEL-1.1 WHEEL-1.3
 
-The validator resolves the JSON-LD context https://w3id.org/ro/crate/1.1/context. The wheel rocrate 0.13.0
-(Apache-2.0) ships that very document; this puts it into the cache that `rocrate-validator validate --offline
+The validator resolves the JSON-LD contexts https://w3id.org/ro/crate/1.1/context and 1.3. The wheels rocrate 0.13.0 and
+0.16.0 (Apache-2.0) ship those very documents; this puts them into the cache that `rocrate-validator validate --offline
 --cache-path CACHE` reads (CACHE gets the suffix .sqlite).
 """
 
@@ -16,7 +16,7 @@ from requests.adapters import BaseAdapter
 from requests_cache import CachedSession
 from urllib3 import HTTPResponse
 
-CONTEXT = "https://w3id.org/ro/crate/1.1/context"
+CONTEXTS = ("https://w3id.org/ro/crate/1.1/context", "https://w3id.org/ro/crate/1.3/context")
 IN_WHEEL = "rocrate/data/ro-crate.jsonld"
 
 
@@ -46,16 +46,16 @@ class Shelf(BaseAdapter):
 
 
 def main():
-    cache, wheel = sys.argv[1:]
-    document = zipfile.ZipFile(wheel).read(IN_WHEEL)
+    cache, *wheels = sys.argv[1:]
     session = CachedSession(
         cache_name=cache, backend="sqlite", expire_after=-1, allowable_methods=("GET",)
     )
-    session.mount("https://", Shelf(document))
     # The cache's key covers this header; it is the one that rdflib sends.
     accept = {"Accept": "application/ld+json, application/json"}
-    terms = session.get(CONTEXT, headers=accept).json()["@context"]
-    print(f"seeded {CONTEXT}: {len(terms)} terms")
+    for context, wheel in zip(CONTEXTS, wheels, strict=True):
+        session.mount("https://", Shelf(zipfile.ZipFile(wheel).read(IN_WHEEL)))
+        terms = session.get(context, headers=accept).json()["@context"]
+        print(f"seeded {context}: {len(terms)} terms")
 
 
 main()

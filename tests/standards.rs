@@ -23,6 +23,18 @@ license-of: {robots/kobuki.urdf: BSD-3-Clause}";
     Sandbox::new().with_study(&STUDY.replace(authors, more))
 }
 
+#[test]
+fn an_edition_that_no_crate_has_is_refused() {
+    let place = place();
+    let answer = place.run(&["export", "any.zip", "--rocrate", "1.2"]);
+    assert_eq!((answer.code, &*answer.stdout), (2, ""));
+    assert_eq!(
+        answer.stderr,
+        "error: invalid value '1.2' for '--rocrate[=<EDITION>]'\n  [possible values: 1.1, 1.3]\n\n\
+         For more information, try '--help'.\n"
+    );
+}
+
 /// Returns the last line that a command prints.
 #[track_caller]
 fn last_line(place: &Sandbox, words: &[&str]) -> String {
@@ -53,12 +65,15 @@ fn every_form_is_written_and_read_and_leads_back() {
     let original = fs::read(place.path(&bundle)).unwrap();
     keep("claims.zip", &original);
     let results = verified(&place, &bundle);
-    for (form, name) in
-        [("--flat", "flat"), ("--rocrate", "crate"), ("--dir", "folder"), ("", "bag")]
-    {
-        let words = ["export", &bundle, "--out", name, form];
-        let words = if form.is_empty() { &words[..4] } else { &words[..] };
-        let exported = last_line(&place, words);
+    for (form, name) in [
+        (&["--flat"][..], "flat"),
+        (&["--rocrate"], "crate"),
+        (&["--rocrate", "1.3"], "crate-1-3"),
+        (&["--dir"], "folder"),
+        (&[], "bag"),
+    ] {
+        let words = [&["export", &bundle, "--out", name], form].concat();
+        let exported = last_line(&place, &words);
         assert_eq!(verified(&place, &exported), results, "{exported}");
         if let Ok(zip) = fs::read(place.path(&exported)) {
             keep(&format!("{name}.zip"), &zip);
@@ -67,7 +82,7 @@ fn every_form_is_written_and_read_and_leads_back() {
         let back = last_line(&place, &["export", &exported, "--out", "back"]);
         assert_eq!(verified(&place, &back), results, "from {exported}");
         let is_original = fs::read(place.path(&back)).unwrap() == original;
-        assert_eq!(is_original, name != "crate", "from {exported}");
+        assert_eq!(is_original, !name.starts_with("crate"), "from {exported}");
         if name == "crate" {
             keep("bagged-again.zip", &fs::read(place.path(&back)).unwrap());
         }
