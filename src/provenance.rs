@@ -9,6 +9,7 @@ use crate::bundle::{Circumstance, Moment, format};
 use crate::studies::Stopwatch;
 use std::ffi::OsString;
 use std::path::PathBuf;
+use std::sync::OnceLock;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use thiserror::Error;
 
@@ -23,6 +24,11 @@ pub enum EnvironmentError {
         "trial store: expected REENACT_STORE, XDG_CACHE_HOME or HOME to say where it is, found none of them set"
     )]
     NoStore,
+    /// `REENACT_PROGRESS` names no form of progress.
+    #[error(
+        "REENACT_PROGRESS: expected `json`, found `{0}`; unset it for progress that people read"
+    )]
+    Progress(String),
     /// A path is no Unicode text, which no line of a log or a result could show.
     #[error("{0}: expected a path in UTF-8, found `{1}`, which is none")]
     NotUnicode(&'static str, String),
@@ -39,6 +45,8 @@ pub struct Environment {
     pub no_color: bool,
     /// Whether the locale says that the terminal reads UTF-8 (`LC_ALL`, else `LC_CTYPE`, else `LANG`).
     pub utf8: bool,
+    /// Whether a program reads stderr, which wants progress as lines of JSON (`REENACT_PROGRESS=json`).
+    pub progress_as_json: bool,
     /// Where the original worlds of the studies are, for the tests that compare with them.
     pub original_worlds: Option<PathBuf>,
     /// Which task of an array job this is, if it is one; what cannot be matters only to whoever asks for it.
@@ -49,7 +57,7 @@ impl Environment {
     /// Reads the process's environment.
     ///
     /// # Errors
-    /// Where `SOURCE_DATE_EPOCH` is not a number.
+    /// Where `SOURCE_DATE_EPOCH` is not a number, or `REENACT_PROGRESS` something else than `json`.
     pub fn read() -> Result<Self, EnvironmentError> {
         #[expect(clippy::disallowed_methods, reason = "this is the door to the environment")]
         Self::from_lookup(|name| std::env::var_os(name))
@@ -58,7 +66,7 @@ impl Environment {
     /// Reads an environment given as a function; empty values count as unset, as the XDG specification says.
     ///
     /// # Errors
-    /// Where `SOURCE_DATE_EPOCH` is not a number.
+    /// Where `SOURCE_DATE_EPOCH` is not a number, or `REENACT_PROGRESS` something else than `json`.
     pub fn from_lookup(
         lookup: impl Fn(&str) -> Option<OsString>,
     ) -> Result<Self, EnvironmentError> {
@@ -77,6 +85,11 @@ impl Environment {
                 seconds.map(Moment).ok_or(EnvironmentError::SourceDateEpoch(text))
             })
             .transpose()?;
+        let progress_as_json = match lookup("REENACT_PROGRESS").as_deref() {
+            None => false,
+            Some("json") => true,
+            Some(other) => return Err(EnvironmentError::Progress(other.to_owned())),
+        };
         // Relative XDG paths are invalid and to be ignored.
         let cache = path("XDG_CACHE_HOME")
             .filter(|path| path.as_ref().map_or(true, |path| path.is_absolute()));
@@ -94,6 +107,7 @@ impl Environment {
                     locale.contains("utf-8") || locale.contains("utf8")
                 },
             ),
+            progress_as_json,
             original_worlds: path("REENACT_ORIGINAL_WORLDS").and_then(Result::ok),
             array_task: ArrayTask::from_lookup(lookup),
         })
@@ -205,12 +219,24 @@ pub fn kernel() -> Option<String> {
     id.get(..8).filter(|id| id.bytes().all(|b| b.is_ascii_hexdigit())).map(str::to_owned)
 }
 
+/// What is typed to start this program, where that is not the executable of this process.
+static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
+
+/// Says that `program` starts what runs in this process: a script, where the process is that of an interpreter. The first
+/// that says so is believed.
+pub fn started_by(program: PathBuf) {
+    let _ = PROGRAM.set(program);
+}
+
 /// Returns where this program is.
 ///
 /// # Errors
 /// Where the system does not say.
 pub fn program() -> std::io::Result<PathBuf> {
-    std::env::current_exe()
+    match PROGRAM.get() {
+        Some(program) => std::path::absolute(program),
+        None => std::env::current_exe(),
+    }
 }
 
 /// Lists facts about the host that matter and do not reveal who owns it: no names of users, hosts or folders.
@@ -281,6 +307,16 @@ mod tests {
         assert_eq!(
             environment.unwrap().store().unwrap_err().to_string(),
             "REENACT_STORE: expected a path in UTF-8, found `/tmp/st\u{fffd}re`, which is none"
+        );
+    }
+
+    #[test]
+    fn progress_is_for_people_unless_a_program_asks_for_it() {
+        let asked = |value| environment(&[("REENACT_PROGRESS", value)]).map(|e| e.progress_as_json);
+        assert_eq!([asked(""), asked("json")], [Ok(false), Ok(true)]);
+        assert_eq!(
+            asked("yes").unwrap_err().to_string(),
+            "REENACT_PROGRESS: expected `json`, found `yes`; unset it for progress that people read"
         );
     }
 

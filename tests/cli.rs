@@ -391,3 +391,30 @@ fn what_could_not_be_sealed_is_refused_before_it_is_run() {
         answer.stdout
     );
 }
+
+#[test]
+fn a_program_is_told_progress_in_lines_of_json() {
+    let desk = Sandbox::new().with_study(crate::sandbox::TINY);
+    let run = |asks: &str| {
+        let mut command = desk.command(&["run", "tiny.yaml", "--format", "json", "--no-cache"]);
+        crate::sandbox::Answer::of(command.env("REENACT_PROGRESS", asks))
+    };
+    let answer = run("json");
+    assert_eq!(answer.code, 0, "{}", answer.stderr);
+    let told: Vec<&str> = answer.stderr.lines().collect();
+    let line = |done| {
+        format!(
+            r#"{{"progress":{{"cached":0,"done":{done},"failed":0,"name":"tiny","trials":6}}}}"#
+        )
+    };
+    assert_eq!((told[0], told[told.len() - 1]), (&*line(0), &*line(6)));
+    assert!(told.iter().all(|one| (0..=6).any(|done| *one == line(done))), "{told:?}");
+    let other = run("yes");
+    assert_eq!(
+        (other.code, other.stderr.as_str()),
+        (
+            2,
+            "error: REENACT_PROGRESS: expected `json`, found `yes`; unset it for progress that people read\n"
+        )
+    );
+}

@@ -5,7 +5,7 @@ use super::{
     Gathering, InputEntry, LargeFiles, Limits, Lines, Resolved, Scratch, Tree, archive, bag,
     format, in_payload, results_digest_of, told,
 };
-use crate::digest::{BundleId, ResultsDigest, Sha256Digest, StudyDigest};
+use crate::digest::{BundleId, ResultsDigest, Sha256Digest, StudyDigest, TrialKey};
 use crate::plan::{Plan, ResolvedStudy, StudyInput};
 use crate::studies::TrialRecord;
 use thiserror::Error;
@@ -278,6 +278,31 @@ impl Bundle {
             }
         }
         if faults.is_empty() { Ok(records) } else { Err(faults) }
+    }
+
+    /// Returns the record of the trial with this key; none where there is no such trial.
+    ///
+    /// # Errors
+    /// The first line before it that is no record.
+    pub fn record(&self, key: &TrialKey) -> Result<Option<TrialRecord>, Fault> {
+        let mut found = Ok(None);
+        for condition in &self.resolved.conditions {
+            self.record_lines(&condition.slug, |line| {
+                match TrialRecord::from_line(line.text) {
+                    Ok(record) if record.key == *key => found = Ok(Some(record)),
+                    Ok(_) => return true,
+                    Err(problem) => {
+                        let problem = problem.to_string();
+                        found = Err(Fault::new(line.place(), "a trial record", problem));
+                    }
+                }
+                false
+            });
+            if !matches!(found, Ok(None)) {
+                break;
+            }
+        }
+        found
     }
 
     /// Returns the file `path` under `results/`.

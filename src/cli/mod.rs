@@ -13,19 +13,29 @@ mod forecast;
 mod interrupt;
 mod junit;
 mod load;
+mod opened;
 mod progress;
 mod shard;
 mod terminal;
 
 pub use args::command;
 pub use exit::Exit;
+pub use opened::{Opened, Unopened, open};
 
-use crate::provenance::Environment;
+use crate::provenance::{self, Environment};
 use args::{Arguments, Command};
 use exit::Failure;
 use std::ffi::OsString;
 use std::panic::catch_unwind;
+use std::path::PathBuf;
 use terminal::Terminal;
+
+/// Does what [`run`] does in the process of an interpreter, where `program` is the script that starts it: what is submitted
+/// to other machines starts that.
+pub fn run_as(program: PathBuf, words: impl IntoIterator<Item = OsString>) -> Exit {
+    provenance::started_by(program);
+    run(words)
+}
 
 /// Runs the command that `words` (the first being the program's name) ask for.
 pub fn run(words: impl IntoIterator<Item = OsString>) -> Exit {

@@ -1,4 +1,5 @@
-//! Progress for people: a bar where stderr is a terminal, in pipes a line now and then.
+//! Progress for people: a bar where stderr is a terminal, in pipes a line now and then. For programs that ask for it
+//! (`REENACT_PROGRESS=json`): a line of JSON whenever there is news.
 //!
 //! What matters most comes first, so that a narrow terminal cuts off what matters least.
 
@@ -10,6 +11,7 @@ use crate::provenance::RunClock;
 use crate::runner::{Observer, RunEvent};
 use crate::studies::{Outcome, TrialSpec};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use serde_json::json;
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
@@ -17,6 +19,9 @@ use std::time::Duration;
 const SPARSE_S: f64 = 30.0;
 /// Time (s) after which a line comes though it is not: silence looks like a hang to whoever reads a log.
 const SILENT_S: f64 = 120.0;
+
+/// Least time (s) between two lines for a program.
+const HEARD_S: f64 = 0.1;
 
 /// Trials done, failed and cached, time left and how much faster than real time it goes.
 #[derive(Debug)]
@@ -113,7 +118,14 @@ impl Progress {
             self.bar.set_message(message);
             return;
         }
-        let done = state.trials - state.estimate.left();
+        let done = state.done();
+        if self.terminal.is_heard() {
+            if done == 0 || done == state.trials || elapsed - state.told.0 >= HEARD_S {
+                self.terminal.note(&state.to_json(self.label.as_deref()));
+                state.told = (elapsed, 0);
+            }
+            return;
+        }
         let tenths = 10 * done / state.trials.max(1);
         let since = elapsed - state.told.0;
         let due = since >= SILENT_S || (since >= SPARSE_S && tenths > state.told.1);
@@ -126,9 +138,21 @@ impl Progress {
 }
 
 impl State {
+    fn done(&self) -> usize {
+        self.trials - self.estimate.left()
+    }
+
+    /// Tells a program how far it is ([docs/answers.md](../../docs/answers.md)).
+    fn to_json(&self, label: Option<&str>) -> String {
+        let Self { trials, cached, failed, .. } = self;
+        json!({"progress": {
+            "name": label, "trials": trials, "done": self.done(), "cached": cached, "failed": failed,
+        }})
+        .to_string()
+    }
+
     fn in_words(&self, elapsed: f64) -> String {
-        let mut words =
-            vec![format!("{}/{} trials", self.trials - self.estimate.left(), self.trials)];
+        let mut words = vec![format!("{}/{} trials", self.done(), self.trials)];
         if self.failed > 0 {
             words.push(format!("{} failed", self.failed));
         }
@@ -199,7 +223,7 @@ impl Observer for Progress {
                     interrupt::one_more();
                 }
                 self.tell(&mut state);
-                self.bar.set_position((state.trials - state.estimate.left()) as u64);
+                self.bar.set_position(state.done() as u64);
             }
         }
     }

@@ -16,21 +16,29 @@ pub(super) struct Terminal {
     color: bool,
     watched: bool,
     utf8: bool,
+    /// Whether a program reads progress from stderr.
+    heard: bool,
 }
 
 impl Terminal {
     pub(super) fn new(environment: &Environment) -> Self {
-        let watched = std::io::stderr().is_terminal();
-        Self { color: watched && !environment.no_color, watched, utf8: environment.utf8 }
+        let heard = environment.progress_as_json;
+        let watched = std::io::stderr().is_terminal() && !heard;
+        Self { color: watched && !environment.no_color, watched, utf8: environment.utf8, heard }
     }
 
     pub(super) fn plain() -> Self {
-        Self { color: false, watched: false, utf8: false }
+        Self { color: false, watched: false, utf8: false, heard: false }
     }
 
     /// Returns whether a person watches stderr: bars are drawn for people only.
     pub(super) fn is_watched(self) -> bool {
         self.watched
+    }
+
+    /// Returns whether a program reads progress from stderr: then it is told in lines of JSON.
+    pub(super) fn is_heard(self) -> bool {
+        self.heard
     }
 
     /// Returns whether the terminal's character set has more than ASCII.

@@ -6,7 +6,7 @@ use crate::bundle::{self, Found};
 use crate::stats::compatibility::Agreement;
 
 /// Returns the finding of `content`: its tables' answers, what became of the paper's claims, and how its printed numbers compare.
-pub(super) fn finding(content: &ReportContent) -> String {
+pub fn finding(content: &ReportContent) -> String {
     let (claims, _) = apart(&content.claims);
     let verdicts: Vec<String> = claims.iter().map(|claim| claim.verdict.clone()).collect();
     let rows = content.tables.iter().flat_map(|table| &table.rows);

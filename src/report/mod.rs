@@ -41,6 +41,7 @@ pub use content::{
 };
 pub use difference::difference_page;
 pub use evaluation::{Badge, Command, Evaluation};
+pub use finding::finding;
 pub use gain_still::{GainError, GainView, gain_svg};
 pub use gather::{UnreadBundle, content_of};
 pub use latex::latex;

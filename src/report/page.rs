@@ -214,7 +214,7 @@ fn view(content: &ReportContent) -> View<'_> {
     let (open_figures, folded_figures) = told_apart(content.figures.iter().map(is_paper));
     View {
         report: content,
-        finding: finding::finding(content),
+        finding: finding(content),
         groups: grouped(&claims),
         check_groups: grouped(&checks),
         claims,

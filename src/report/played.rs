@@ -4,7 +4,7 @@ use super::Note;
 use crate::bundle::{Bundle, Fault};
 use crate::plan::Plan;
 use crate::studies::recording::Recording;
-use crate::studies::{self, TrialRecord, TrialSpec};
+use crate::studies::{self, TrialSpec};
 
 /// A trial that was re-enacted.
 #[derive(Debug, Clone)]
@@ -41,31 +41,11 @@ pub fn play(
         Sensing::EveryScan => studies::reenact_sensing(spec),
         Sensing::Shown => studies::reenact(spec),
     };
-    let good = archived(bundle, spec)?.is_some_and(|line| line == record.to_line());
+    let good =
+        bundle.record(&spec.key)?.is_some_and(|archived| archived.to_line() == record.to_line());
     let found = if good { "equals" } else { "DIFFERS from" };
     let text = format!("{name}: the re-enacted record {found} the archived one");
     // Readers of the page see labels; whoever asks for the trial again needs its name.
     let title = plan.experiment.labels.title(&spec.condition, spec.trial);
     Ok(Played { title: title.unwrap_or(name), recording, note: Note { text, good } })
-}
-
-/// Returns the line of the record of `spec` in `bundle`, in its canonical form.
-fn archived(bundle: &Bundle, spec: &TrialSpec) -> Result<Option<String>, Fault> {
-    let mut found = Ok(None);
-    for condition in bundle.conditions() {
-        bundle.record_lines(&condition.slug, |line| {
-            match TrialRecord::from_line(line.text) {
-                Ok(record) if record.key == spec.key => found = Ok(Some(record.to_line())),
-                Ok(_) => return true,
-                Err(problem) => {
-                    found = Err(Fault::new(line.place(), "a trial record", problem.to_string()));
-                }
-            }
-            false
-        });
-        if !matches!(found, Ok(None)) {
-            break;
-        }
-    }
-    found
 }
