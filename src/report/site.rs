@@ -28,7 +28,7 @@ struct View<'a> {
 /// Returns the page that leads to the others.
 pub fn site_page(content: &ReportContent, site: Site<'_>) -> String {
     let (title, checked) = (&content.title, &content.checked);
-    let view = View { title, checked, finding: finding::finding(content), site };
+    let view = View { title, checked, finding: finding(content), site };
     render(include_str!("templates/site.html"), "", &view)
 }
 
