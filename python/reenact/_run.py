@@ -104,7 +104,9 @@ def run(
     return Run(
         path=Path(told["bundle"]),
         **{name: told[name] for name in ("results_digest", "study_digest", "bundle_id", "trials", "cached")},
-        **{name: told[name] for name in ("partial", "sim_seconds", "wall_seconds", "claims", "drift")},
+        **{name: told[name] for name in ("partial", "sim_seconds", "wall_seconds", "claims")},
+        # It is there only where a lock was held against it.
+        drift=told.get("drift"),
         notes=ended.told,
         answer=told,
     )

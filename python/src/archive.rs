@@ -165,7 +165,10 @@ impl Archive {
     /// Returns every file of the payload with its size in bytes, sorted by path.
     fn files(&self) -> Vec<(String, u64)> {
         let files = self.0.bundle().files();
-        files.iter().filter_map(|(path, file)| Some((in_payload(path)?.to_owned(), file.size()))).collect()
+        files
+            .iter()
+            .filter_map(|(path, file)| Some((in_payload(path)?.to_owned(), file.size())))
+            .collect()
     }
 
     /// Returns the bytes of a file of the payload; `None` where there is no such file.

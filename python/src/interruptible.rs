@@ -24,7 +24,9 @@ pub(crate) fn interruptible<T: Send + 'static>(
         // Nobody hears it after an interrupt.
         let _ = say.send(work());
     });
-    worker.map_err(|problem| refused_with(Exit::Failed, format!("cannot start a thread: {problem}")))?;
+    worker.map_err(|problem| {
+        refused_with(Exit::Failed, format!("cannot start a thread: {problem}"))
+    })?;
     // A receiver is for one thread; whoever waits without the interpreter must be allowed to be another.
     let hear = std::sync::Mutex::new(hear);
     loop {

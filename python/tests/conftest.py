@@ -26,7 +26,8 @@ def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setenv("HOME", str(tmp_path / "home"))
     work = tmp_path / "work"
-    work.mkdir()
+    for folder in (tmp_path / "home", work):
+        folder.mkdir()
     monkeypatch.chdir(work)
     return work
 

@@ -29,13 +29,13 @@ def executed() -> Any:
         cell.metadata = {}
         if cell.cell_type == "code":
             cell.execution_count = None
-            cell.outputs = [
-                {
-                    **{key: output[key] for key in KEPT if key in output},
-                    **({"execution_count": None, "metadata": {}} if output.output_type == "execute_result" else {}),
-                }
-                for output in cell.outputs
-            ]
+            for output in cell.outputs:
+                for key in set(output) - set(KEPT):
+                    del output[key]
+                if output.output_type != "stream":
+                    output.metadata = {}
+                if output.output_type == "execute_result":
+                    output.execution_count = None
     return notebook
 
 
@@ -57,6 +57,5 @@ def _joined(output: Any) -> Any:
 
 
 if __name__ == "__main__":
-    import nbformat
-
+    nbformat = pytest.importorskip("nbformat")
     NOTEBOOK.write_text(nbformat.writes(executed()) + "\n", encoding="utf-8")

@@ -16,7 +16,7 @@ def test_a_trial_comes_out_as_archived(tiny: str) -> None:
     replay = bundle.replay("floor-plan/1")
     assert replay.same and replay.name == "floor-plan/1"
     trials = bundle.trials("polars")
-    row = trials.row(by_predicate=trials["key"] == replay.key, named=True)
+    (row,) = trials.filter(trials["key"] == replay.key).to_dicts()
     assert (row["prior"], row["trial"], row["outcome"]) == ("floor-plan", 1, replay.outcome)
     assert replay.times.shape == replay.distance.shape == replay.coverage.shape == (len(replay.poses),)
     assert replay.poses.shape == (len(replay.times), 3) and (numpy.diff(replay.times) >= 0).all()

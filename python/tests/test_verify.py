@@ -40,10 +40,12 @@ def test_a_yes_has_every_level_and_no_finding(tiny: str, command: Command) -> No
 def test_a_no_is_an_answer_with_findings(place: Path) -> None:
     answer = reenact.verify(tampered(place / "changed.zip"))
     assert not answer and (answer.verdict, answer.reached) == ("broken", 0)
-    (finding,) = answer.findings
+    finding = answer.findings[0]
     assert (finding.level, finding.severity, finding.path) == (1, "error", "data/results/trials.csv")
-    digest = re.compile("(sha256:)?[0-9a-f]{64}")
-    assert digest.fullmatch(finding.expected) and digest.fullmatch(finding.found)
+    assert re.fullmatch("sha256:[0-9a-f]{64}, as manifest-sha256.txt says", finding.expected)
+    assert re.fullmatch("sha256:[0-9a-f]{64}", finding.found)
+    # What follows from the file is told, too.
+    assert {later.level for later in answer.findings[1:]} == {2, 3}
     assert answer.levels["fixity"] == "failed"
     assert "data/results/trials.csv" in answer._repr_html_()
 
