@@ -5,7 +5,7 @@
 #   .ci/slurm.sh REENACT [--keep FOLDER]      FOLDER: where logs and Slurm's configuration stay
 #
 # Needs slurmctld, slurmd, slurm-client, slurm-wlm-basic-plugins and munge: installed, or unpacked without root below `SLURM_ROOT`
-# (`apt-get download ...; dpkg -x PACKAGE.deb $SLURM_ROOT`, and their libraries in LD_LIBRARY_PATH). The system's own configuration is
+# (`apt-get download ...; dpkg -x PACKAGE.deb $SLURM_ROOT`, links without `-wlm` to its programs, and their libraries in LD_LIBRARY_PATH). The system's own configuration is
 # neither read nor written. Exit code 77 where Slurm is not to be had.
 set -euo pipefail
 cd "$(dirname "$0")/.."
