@@ -30,8 +30,8 @@ fn an_edition_that_no_crate_has_is_refused() {
     assert_eq!((answer.code, &*answer.stdout), (2, ""));
     assert_eq!(
         answer.stderr,
-        "error: invalid value '1.2' for '--rocrate[=<EDITION>]'\n  [possible values: 1.1, 1.3]\n\n\
-         For more information, try '--help'.\n"
+        "error: invalid value '1.2' for '--rocrate[=<EDITION>]'\n  [possible values: 1.1, 1.3]\n\n  \
+         tip: a similar value exists: '1.3'\n\nFor more information, try '--help'.\n"
     );
 }
 
