@@ -181,6 +181,9 @@ class Checks:
         replay.locator(".trial canvas").nth(1).wait_for(timeout=60000)
         if replay.locator(".trial canvas").count() != 2:
             self.fault("replay", "two trials do not play beside each other")
+        narrow = replay.locator("canvas").evaluate_all("all => all.filter((one) => one.width < 200).length")
+        if narrow:
+            self.fault("replay", f"{narrow} of its drawings have no room")
         told = page.locator("#played").text_content()
         if told.count("equals the archived one") != 2:
             self.fault("replay", f"it says: {told}")

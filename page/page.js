@@ -90,6 +90,17 @@ class Checker {
 
 class Cancelled extends Error {}
 
+// Shows a page in `frame`, which is laid out first: what draws by its window's size must find one. A page that nobody looks at is not
+// laid out, and is not waited for.
+async function framed(frame, bytes) {
+  frame.hidden = false;
+  await new Promise((goOn) => {
+    requestAnimationFrame(() => setTimeout(goOn));
+    setTimeout(goOn, 250);
+  });
+  frame.srcdoc = new TextDecoder().decode(bytes);
+}
+
 /** Most memory that a worker has taken (bytes). */
 let memoryPeak = 0;
 /** The check under way, or the last one. */
@@ -364,9 +375,7 @@ class Check {
     }
     try {
       const report = await this.main.ask({ do: "report", unchecked });
-      // Shown first: a page that is not shown has no size, and draws nothing.
-      byId("report").hidden = false;
-      byId("report").srcdoc = new TextDecoder().decode(report.bytes);
+      await framed(byId("report"), report.bytes);
       byId("report-told").textContent = `${report.told.words[0].toUpperCase()}${report.told.words.slice(1)}. The page that reenact report makes:`;
       const { told } = await this.main.ask({ do: "trials" });
       this.unchecked = unchecked;
@@ -414,8 +423,7 @@ class Check {
     byId("played").textContent = `executing ${trials.join(" and ")} again`;
     try {
       const { told, bytes } = await this.main.ask({ do: "replay", trials, unchecked: this.unchecked });
-      byId("replay").hidden = false;
-      byId("replay").srcdoc = new TextDecoder().decode(bytes);
+      await framed(byId("replay"), bytes);
       byId("played").textContent = told.notes.map(([text, good]) => `${good ? "✓" : "✗"} ${text}`).join("; ");
     } catch (error) {
       if (!(error instanceof Cancelled)) byId("played").textContent = error.message;

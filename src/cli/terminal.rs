@@ -12,6 +12,7 @@ static LOST: AtomicBool = AtomicBool::new(false);
 
 /// The two streams of the process.
 #[derive(Debug, Clone, Copy)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a fact of its own about whoever reads")]
 pub(super) struct Terminal {
     color: bool,
     watched: bool,
