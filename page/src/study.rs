@@ -6,7 +6,7 @@ use reenact::document::{Source, reports};
 use reenact::manifest::{self, CalibrationTrials, Experiment, InputError, Inputs, WrittenIn};
 use reenact::plan::{Plan, Selection};
 use reenact::runner::{Scheduler, Silent};
-use reenact::studies::{self, Outcome, TrialRecord, TrialSpec, planned_calibration};
+use reenact::studies::{self, Outcome, TrialRecord, TrialSpec};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::fmt::Display;
@@ -48,11 +48,7 @@ impl Inputs for Given<'_> {
     ) -> Result<CalibrationTrials, InputError> {
         let plan = Plan::of(calibration.clone());
         let records = execute(&plan).map_err(InputError::other)?;
-        let Experiment { kind, trials, .. } = plan.experiment;
-        planned_calibration(kind, plan.experiment.design(), trials)
-            .and_then(|planned| planned.showed(&records))
-            .map(|showed| CalibrationTrials::Csv(showed.to_csv().into_bytes()))
-            .map_err(InputError::other)
+        CalibrationTrials::shown_by(&plan.experiment, &records).map_err(InputError::other)
     }
 
     fn explore(

@@ -7,7 +7,7 @@ use crate::manifest::{self, CalibrationTrials, Experiment, ExploreError};
 use crate::plan::Plan;
 use crate::runner::{RunError, Scheduler, StoreError, TrialStore};
 use crate::store::DirectoryStore;
-use crate::studies::{self, CalibrationError, TrialRecord, TrialSpec, planned_calibration};
+use crate::studies::{self, CalibrationError, TrialRecord, TrialSpec};
 use std::cell::RefCell;
 
 /// Why there are no passages.
@@ -71,9 +71,7 @@ impl Calibrator<'_> {
                 records?
             }
         };
-        let Experiment { kind, trials, .. } = plan.experiment;
-        let planned = planned_calibration(kind, plan.experiment.design(), trials)?;
-        Ok(CalibrationTrials::Csv(planned.showed(&records)?.to_csv().into_bytes()))
+        Ok(CalibrationTrials::shown_by(&plan.experiment, &records)?)
     }
 
     /// Returns the map that the robot of `spec` ends with, as a descriptor and an image. One exploration takes about a

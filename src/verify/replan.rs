@@ -16,7 +16,7 @@ use crate::manifest::{self, CalibrationTrials, Experiment, InputError, Inputs, W
 use crate::plan::{ENGINE_VERSION, Plan, Selection, engine_version};
 use crate::rng::Seeds;
 use crate::runner::{Observer, RunError, Scheduler, Silent, TrialStore};
-use crate::studies::{self, TrialRecord, TrialSpec, planned_calibration};
+use crate::studies::{self, TrialRecord, TrialSpec};
 use std::cell::RefCell;
 use std::sync::Arc;
 
@@ -199,11 +199,7 @@ impl Inputs for Afresh<'_> {
         seeded.seed = seed;
         let plan = Plan::of(seeded);
         let records = study.run(&plan.trials).map_err(InputError::other)?;
-        let Experiment { kind, trials, .. } = plan.experiment;
-        planned_calibration(kind, plan.experiment.design(), trials)
-            .and_then(|planned| planned.showed(&records))
-            .map(|showed| CalibrationTrials::Csv(showed.to_csv().into_bytes()))
-            .map_err(InputError::other)
+        CalibrationTrials::shown_by(&plan.experiment, &records).map_err(InputError::other)
     }
 
     fn explore(

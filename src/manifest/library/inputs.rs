@@ -2,7 +2,7 @@
 
 use crate::manifest::experiment::Experiment;
 use crate::manifest::input::WrittenIn;
-use crate::studies::TrialSpec;
+use crate::studies::{CalibrationError, TrialRecord, TrialSpec, planned_calibration};
 use std::error::Error;
 use std::sync::Arc;
 
@@ -85,4 +85,19 @@ pub enum CalibrationTrials {
     Csv(Vec<u8>),
     /// Nothing was measured: numbers stand in that enter no result.
     StandIn,
+}
+
+impl CalibrationTrials {
+    /// Returns what the `records` of every trial of `calibration` show.
+    ///
+    /// # Errors
+    /// Where they show nothing to calibrate with.
+    pub fn shown_by(
+        calibration: &Experiment,
+        records: &[TrialRecord],
+    ) -> Result<Self, CalibrationError> {
+        planned_calibration(calibration.kind, calibration.design(), calibration.trials)
+            .and_then(|planned| planned.showed(records))
+            .map(|showed| Self::Csv(showed.to_csv().into_bytes()))
+    }
 }
