@@ -18,6 +18,7 @@ mod hand_drawn;
 mod hostile;
 mod inference;
 mod interrupted;
+mod large;
 mod maneuvers;
 mod manifests;
 mod multiverse;
