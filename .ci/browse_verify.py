@@ -4,7 +4,7 @@
     browse_verify.py run VERIFY.html MANIFEST... [--trials N] [--only FACTOR=VALUE]...
 
 `check`: the small bundle climbs to level 5, the large one to level 4, each in time and in the words of the command REENACT; the report
-shows, two trials play beside each other; a damaged bundle, one that is none and a key file that is none are told as by the command;
+shows, two trials play beside each other; a signature is checked; a damaged bundle, one that is none and a key file that is none are told as by the command;
 `?bundle=` leads to no other site; a check is cancelled; nothing is said on the console and nothing is asked of the network; no window of
 360 to 1280 pixels is too narrow; axe-core finds nothing. `run` prints the results digest of each manifest as `reenact run --format json`
 does, one line each: the determinism contract in a browser (.ci/determinism.sh).
@@ -100,16 +100,19 @@ class Checks:
                 self.fault(where, f"a request: {url}")
         page.context.close()
 
-    def command(self, bundle, level):
-        told = subprocess.run([self.arguments.reenact, "verify", bundle, "--level", str(level)], capture_output=True, text=True)
+    def command(self, bundle, level, trust=None):
+        # The page knows a key file by its name alone.
+        trusted = ["--trust", trust.name] if trust else []
+        told = subprocess.run([self.arguments.reenact, "verify", bundle.resolve(), "--level", str(level), *trusted],
+                              cwd=trust.parent if trust else None, capture_output=True, text=True)
         return told.returncode, told.stdout
 
     def words(self, page):
         """What the page says that the command prints; the seed is drawn afresh."""
         return page.locator("#said").text_content()
 
-    def compared(self, page, where, bundle, level):
-        code, text = self.command(bundle, level)
+    def compared(self, page, where, bundle, level, trust=None):
+        code, text = self.command(bundle, level, trust)
         seed = lambda said: re.sub(r"drawn with seed \d+", "drawn with seed *", said)
         found = page.evaluate("() => document.documentElement.dataset.exit")
         if found != str(code):
@@ -241,6 +244,32 @@ class Checks:
             self.fault("keys", f"says {said}\nwhere the command says {told.stderr}")
         self.closed(page, "damaged")
 
+    def signed(self):
+        """A bundle that an author signed, with that author's key and with a stranger's."""
+        quietly = functools.partial(subprocess.run, check=True, capture_output=True, cwd=self.work)
+        small = self.arguments.small.resolve()
+        for name in ("author", "stranger"):
+            quietly(["ssh-keygen", "-q", "-t", "ed25519", "-N", "", "-C", name, "-f", name])
+            public = (self.work / f"{name}.pub").read_text()
+            (self.work / f"{name}.signers").write_text(f'{name}@example.org namespaces="reenact" {public}')
+        quietly([self.arguments.reenact, "export", small, "--dir", "--out", "unpacked"])
+        (listed,) = (self.work / "unpacked").glob("*/tagmanifest-sha256.txt")
+        quietly(["ssh-keygen", "-Y", "sign", "-f", "author", "-n", "reenact", listed])
+        quietly([self.arguments.reenact, "export", small, "--signature", f"{listed}.sig", "--out", "signed"])
+        (bundle,) = (self.work / "signed").glob("*.zip")
+        page = self.opened()
+        page.locator("#vouching summary").click()
+        for name, exit in (("author", "0"), ("stranger", "1")):
+            signers = self.work / f"{name}.signers"
+            page.set_input_files("#trust", signers)
+            self.given(page, bundle, "3")
+            self.finished(page, f"signed, the {name} trusted", 10)
+            self.compared(page, f"signed, the {name} trusted", bundle, 3, signers)
+            if page.evaluate("() => document.documentElement.dataset.exit") != exit:
+                self.fault("signed", f"the {name} trusted: {self.words(page)}")
+        self.shot(page, "signed")
+        self.closed(page, "signed")
+
     def site(self):
         folder = self.work / "site"
         subprocess.run([self.arguments.reenact, "export", self.arguments.small, "--site", folder, "--page", self.arguments.page], check=True,
@@ -274,7 +303,7 @@ def check(arguments):
         checks = Checks(launched(playwright), arguments, Path(work))
         if size > LARGEST:
             checks.fault("size", f"{size} bytes, expected at most {LARGEST}")
-        for one in (checks.empty, checks.small, checks.damaged, checks.large, checks.site):
+        for one in (checks.empty, checks.small, checks.damaged, checks.signed, checks.large, checks.site):
             try:
                 one()
             except Exception as error:

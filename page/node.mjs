@@ -83,6 +83,21 @@ async function verify() {
   process.exitCode = answer.exit;
 }
 
+/** Asks for more memory than a worker may have: the module ends and says why, and another one starts. */
+async function capped() {
+  const engine = await start();
+  let said = "nothing";
+  try {
+    engine.ask({ do: "open" }, Buffer.alloc(1 << 30));
+  } catch (error) {
+    said = error instanceof Ended ? error.message : `${error}`;
+  }
+  const expected = "out of memory: a worker of this page has 1 GiB";
+  if (said === expected && engine.memory <= 1 << 30) return true;
+  console.log(`FAIL  a worker that wants 1 GiB and more says: ${said}; expected: ${expected}; it took ${engine.memory >> 20} MiB`);
+  return false;
+}
+
 async function adversary() {
   const table = JSON.parse(readFileSync(join(rest[0], "table.json"), "utf8"));
   let failed = 0, peak = 0, slowest = 0;
@@ -104,7 +119,7 @@ async function adversary() {
   }
   console.log(`${table.length - failed} of ${table.length} attacks are told as by the command; at most ${peak >> 20} MiB and ` +
     `${(slowest / 1000).toFixed(2)} s`);
-  if (failed || !table.length) process.exitCode = 1;
+  if (!(await capped()) || failed || !table.length) process.exitCode = 1;
 }
 
 const tasks = { run, verify, adversary };
