@@ -28,11 +28,15 @@ environment() { # PYTHON NAME REQUIREMENTS...
 # A binary for every Linux of the last ten years: linked for its glibc by a linker that knows it. Nothing here is compiled from C.
 environment "$newest" build -r .ci/requirements-wheel.txt maturin==1.16.0
 rm -rf target/wheels
-# Where files lay is nobody's business.
-cargo_home=${CARGO_HOME:-$HOME/.cargo}
-RUSTFLAGS="--remap-path-prefix=$root=/reenact --remap-path-prefix=$cargo_home=/cargo --remap-path-prefix=$(rustc --print sysroot)=/rust" \
-  CARGO_TARGET_DIR=$root/target/release-build CARGO_INCREMENTAL=0 SOURCE_DATE_EPOCH=${SOURCE_DATE_EPOCH:-315532800} PATH=$work/build/bin:$PATH \
-  maturin build --locked --release --zig --compatibility manylinux2014 --manifest-path python/Cargo.toml --out target/wheels
+(
+  # shellcheck source=.ci/remap.sh
+  source .ci/remap.sh
+  export CARGO_TARGET_DIR=$root/target/release-build CARGO_INCREMENTAL=0 SOURCE_DATE_EPOCH=${SOURCE_DATE_EPOCH:-315532800}
+  # The builder's own bill of materials names the folder it was built in.
+  .ci/sbom python/Cargo.toml "$(rustc -vV | sed -n 's/^host: //p')" "$work/reenact-python.cdx.json"
+  PATH=$work/build/bin:$PATH maturin build --locked --release --zig --compatibility manylinux2014 --manifest-path python/Cargo.toml \
+    --sbom-include "$work/reenact-python.cdx.json" --out target/wheels
+)
 wheel=("$root"/target/wheels/*.whl)
 "$work/build/bin/twine" check --strict "${wheel[0]}"
 "$work/build/bin/auditwheel" show "${wheel[0]}"
