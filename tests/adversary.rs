@@ -181,7 +181,7 @@ fn no_command_is_led_out_of_its_folder() {
     sandbox.write("bundle", archive::write(&tree, "tiny", Form::Bag));
     let says = "error: bundle: the bundle is not what it says: reached level 1 (fixity) of level 3 (derived)\nerror at level 2: \
                 data/study.resolved.json: expected a name of A-Z a-z 0-9 . _ - at /name, found a path that climbs out of its \
-                folder\n`reenact verify bundle` tells everything\n";
+                folder\n`reenact verify bundle` lists everything that was found\n";
     for words in [
         &["export", "bundle", "--dir"][..],
         &["export", "bundle", "--flat"],
@@ -200,7 +200,7 @@ fn no_command_is_led_out_of_its_folder() {
     sandbox.write("bundle", raw_zip::zip(&slip));
     let says = "error: bundle: the bundle is not what it says: reached no level of level 3 (derived)\nerror at level 0: \
                 bag/../../evil: expected a safe relative path, found a path that climbs out of its folder\n`reenact verify \
-                bundle` tells everything\n";
+                bundle` lists everything that was found\n";
     let answer = sandbox.run_reading(&["export", "bundle", "--dir"]);
     assert_eq!((answer.stderr.as_str(), answer.code), (says, 1));
 }

@@ -1,6 +1,7 @@
 //! All assumptions drawn at once, by the program as its users run it: what it says and writes, and that nobody has to believe it.
 
 use crate::sandbox::{Answer, Sandbox, TINY};
+use crate::schemas::assert_answers;
 use std::fs;
 
 /// Returns the tiny study with two choices left open, of which the first decides the first claim.
@@ -187,4 +188,47 @@ fn a_multiverse_table_is_the_authors_word_until_its_draws_are_done_again() {
             "\n1 of 9 rows of the multiverse table gave something else than the bundle holds\n";
         assert!(stdout.contains(counted), "{stdout}");
     }
+}
+
+#[test]
+fn what_is_found_is_told_to_programs_in_one_line() {
+    let at = Sandbox::pinned().with_study(&study());
+    let one = drawn(&at, &["--format", "json"]);
+    let one = &assert_answers("vary", &one)[0];
+    assert_eq!(
+        (&one["path"], &one["named_in_manifest"]),
+        (&"tiny.sensitivity.csv".into(), &false.into())
+    );
+    assert_eq!(one["verdicts"], serde_json::json!({"T1": "supported", "T2": "supported"}));
+    let told: Vec<String> = one["attempts"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|tried| format!("{} {}: {}", tried["setting"], tried["tried"], tried["changes"]))
+        .collect();
+    assert_eq!(
+        told,
+        [
+            r#""parameters.mapping.origin" "centre": []"#,
+            r#""parameters.mission.time-limit-s" "4": [{"claim":"T1","from":"supported","to":"cannot-be-tested"},{"claim":"T2","from":"supported","to":"cannot-be-tested"}]"#,
+            r#""parameters.mission.time-limit-s" "24": []"#,
+        ]
+    );
+
+    at.write("tiny.yaml", study() + "multiverse: tiny.multiverse.csv\n");
+    let all = drawn(&at, &["--joint", "16", "--format", "json"]);
+    let all = &assert_answers("vary-joint", &all)[0];
+    assert_eq!((&all["draws"], &all["seed"]), (&16.into(), &7.into()));
+    assert_eq!(
+        (&all["named_in_manifest"], &all["records_digest"]),
+        (&true.into(), &one["records_digest"])
+    );
+    let claim = &all["claims"][0];
+    assert_eq!(
+        (&claim["claim"], &claim["most_by"]),
+        (&"T1".into(), &"parameters.mission.time-limit-s".into())
+    );
+    let count = |key: &str| claim[key].as_u64().unwrap();
+    let counted = count("supported") + count("contradicted") + count("inconclusive");
+    assert_eq!(counted + count("cannot_be_tested"), 16, "{claim}");
 }

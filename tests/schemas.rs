@@ -129,7 +129,7 @@ fn every_schema_of_an_answer_is_one_and_is_printed() {
         names.push(name);
     }
     names.sort();
-    assert_eq!(names.len(), 14, "{names:?}");
+    assert_eq!(names.len(), 20, "{names:?}");
 }
 
 fn json<'a>(words: &[&'a str]) -> Vec<&'a str> {
@@ -226,4 +226,56 @@ fn check_answers_with_every_fault_and_its_place() {
         ]
     );
     assert_eq!(told[1]["faults"][0]["line"], Value::Null, "a file that is not there has no line");
+}
+
+#[test]
+fn files_are_written_and_told_as_the_schemas_say() {
+    let place = Sandbox::new().with_study(TINY);
+    let texts = |value: &Value| -> Vec<String> {
+        let values = value.as_array().unwrap().iter();
+        values.map(|value| value.as_str().unwrap().to_owned()).collect()
+    };
+    let begun = place.done(&json(&["init", "first"]));
+    let begun = &assert_answers("init", &begun)[0];
+    assert_eq!(begun["manifest"], "first/first.yaml");
+    let files = ["first.yaml", "kobuki.urdf", "apartment.yaml", "manifest.schema.json"];
+    assert_eq!(texts(&begun["written"]), files.map(|file| format!("first/{file}")));
+    assert_eq!(place.files("first").len(), files.len());
+
+    let shown = place.run(&json(&["show", "worlds/basic.yaml", "-o", "world.svg"]));
+    let answer = &assert_answers("show", &shown.stdout)[0];
+    assert_eq!((&answer["kind"], &answer["path"]), (&"world".into(), &"world.svg".into()));
+    let lines = texts(&answer["described"]);
+    assert_eq!(lines.join("\n") + "\n", place.run(&["show", "worlds/basic.yaml"]).stdout);
+    assert_eq!((shown.stderr.as_str(), &answer["warnings"]), ("", &0.into()));
+    let shown = place.done(&json(&["show", "robots/kobuki.urdf"]));
+    assert_eq!(assert_answers("show", &shown)[0]["kind"], "robot");
+    let derived = ["show", "worlds/basic.yaml", "--derive", "floor-plan", "-o", "plan.svg"];
+    assert_eq!(assert_answers("show", &place.done(&json(&derived)))[0]["kind"], "prior");
+
+    let run = place.done(&json(&["run", "tiny.yaml"]));
+    let run = &assert_answers("run", &run)[0];
+    let bundle = run["bundle"].as_str().unwrap();
+    let replay = ["replay", bundle, "none/0", "--svg", "still.svg", "--mcap", "trial.mcap"];
+    let replay = [&replay[..], &["--map", "map.yaml"]].concat();
+    let played = place.done(&json(&replay));
+    let played = &assert_answers("replay", &played)[0];
+    assert_eq!(played["results_digest"], run["results_digest"]);
+    let written = texts(&played["written"]);
+    assert_eq!(
+        written,
+        ["still.svg", "trial.mcap", "trial.foxglove-layout.json", "map.yaml", "map.pgm"]
+    );
+    assert!(written.iter().all(|file| place.path(file).exists()), "{written:?}");
+    let trial = &played["trials"][0];
+    assert_eq!((&trial["trial"], &trial["matches"]), (&"none/0".into(), &true.into()));
+    let plan = place.done(&json(&["plan", "tiny.yaml"]));
+    assert_eq!(trial["key"], assert_answers("plan", &plan)[0]["trials"][0]["key"]);
+
+    let imported = place.done(&json(&["import", "map.yaml", "-o", "copy.yaml"]));
+    let imported = &assert_answers("import", &imported)[0];
+    assert_eq!((&imported["path"], &imported["world"]), (&"copy.yaml".into(), &"map".into()));
+    let described = place.run(&["show", "copy.yaml"]).stdout;
+    let meaning = imported["meaning"].as_str().unwrap().trim_start_matches("sha256:");
+    assert!(described.ends_with(&format!("meaning: {meaning}\n")), "{described} {meaning}");
 }

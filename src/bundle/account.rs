@@ -2,7 +2,7 @@
 //! `README.md` are written from it.
 
 use super::{Exhibited, Found, finding, format, limits};
-use crate::claims::ClaimVerdict;
+use crate::claims::{ClaimVerdict, compared};
 use crate::plan::Plan;
 use crate::stats::compatibility::Agreement;
 use crate::studies::{End, Exhibit, GridRow, Ledger};
@@ -109,10 +109,12 @@ impl Account {
         let claims: Vec<ToldClaim> = verdicts.iter().map(ToldClaim::of).collect();
         let papers: Vec<String> =
             claims.iter().filter(|claim| !claim.is_ours).map(|c| c.verdict.clone()).collect();
+        let compared = compared(verdicts, &plan.experiment.labels);
         let finding = finding(Found {
             answer: exhibits.iter().find_map(|exhibit| exhibit.answer.as_deref()),
             verdicts: &papers,
             cells: &cells,
+            compared: compared.as_deref(),
             partial: partial.as_deref(),
             trials: ledger.len() as u64,
             conditions,

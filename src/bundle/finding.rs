@@ -11,6 +11,8 @@ pub struct Found<'a> {
     pub verdicts: &'a [String],
     /// How the cells of all tables agree with what is printed.
     pub cells: &'a [Agreement],
+    /// Which side of what the study compares came out ahead, as [`crate::claims::compared`] says it.
+    pub compared: Option<&'a str>,
     /// Why only a part of the study was run; `None` for a whole run.
     pub partial: Option<&'a str>,
     /// Trials that were run.
@@ -19,7 +21,7 @@ pub struct Found<'a> {
     pub conditions: u64,
 }
 
-/// Tells the first answer, what became of the paper's claims, and how its printed numbers compare.
+/// Tells the first answer, how many of the paper's claims hold, how its printed numbers compare, and which side came out ahead.
 pub fn finding(found: Found<'_>) -> String {
     // The rest of the answer stands with its table.
     let first = found.answer.map(|answer| match answer.split_once(". ") {
@@ -54,6 +56,7 @@ pub fn finding(found: Found<'_>) -> String {
     if let Some(tally) = most {
         parts.push(tally.in_words());
     }
+    parts.extend(found.compared.map(str::to_owned));
     if let Some(partial) = found.partial {
         parts.insert(0, format!("A part of the study was run ({})", partial.trim_end_matches('.')));
     }

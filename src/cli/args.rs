@@ -70,7 +70,7 @@ pub(super) enum Command {
     /// Seal the bundles of a study's shards as the one bundle of the whole
     #[command(after_help = examples::MERGE)]
     Merge(MergeArgs),
-    /// Hand the shards of a study to Slurm or Kubernetes, and the sealing after them
+    /// Submit the shards of a study to Slurm or Kubernetes, and a job that seals them
     #[command(after_help = examples::SUBMIT)]
     Submit(SubmitArgs),
     /// Parse and resolve everything, simulate nothing, report every fault
@@ -85,10 +85,10 @@ pub(super) enum Command {
     /// Put a signature into an attestation that `verify` wrote
     #[command(after_help = examples::ATTEST)]
     Attest(AttestArgs),
-    /// Tell what changed between two bundles or locks
+    /// Show what changed between two bundles or locks
     #[command(after_help = examples::DIFF)]
     Diff(DiffArgs),
-    /// Write down what a manifest's run yields, so that drift is found
+    /// Record what a manifest's run yields, so that drift is noticed
     #[command(after_help = examples::LOCK)]
     Lock(LockArgs),
     /// Try a manifest's claims at the other values that its assumptions state
@@ -127,7 +127,7 @@ pub(super) enum Command {
     /// Write a working starter manifest
     #[command(after_help = examples::INIT)]
     Init(InitArgs),
-    /// Look after the store of finished trials
+    /// Manage the store of finished trials
     #[command(after_help = examples::CACHE)]
     Cache(CacheArgs),
 }
@@ -180,7 +180,7 @@ pub(super) struct SelectArgs {
     /// Replace a value of the manifest (repeatable), as in `--set world.file=PATH`
     #[arg(long, value_name = "PATH=VALUE")]
     pub(super) set: Vec<String>,
-    /// A folder from which files of robots and worlds may be read that they name by a path out of theirs (repeatable)
+    /// A folder outside their own that robot and world files may refer to (repeatable)
     #[arg(long, value_name = "FOLDER")]
     pub(super) allow: Vec<PathBuf>,
 }
@@ -216,7 +216,7 @@ pub(super) struct ShowArgs {
     /// A folder that holds the folders of a Gazebo world's models (repeatable)
     #[arg(long, value_name = "FOLDER", conflicts_with = "generate")]
     pub(super) model_path: Vec<String>,
-    /// A folder from which files of robots and worlds may be read that they name by a path out of theirs (repeatable)
+    /// A folder outside their own that robot and world files may refer to (repeatable)
     #[arg(long, value_name = "FOLDER", conflicts_with = "generate")]
     pub(super) allow: Vec<PathBuf>,
     /// An argument of a robot's xacro (repeatable)
@@ -244,6 +244,9 @@ pub(super) struct ShowArgs {
         allow_hyphen_values = true
     )]
     pub(super) start: Option<Vec<f64>>,
+    /// How the answer is written
+    #[arg(long, value_enum, default_value = "human")]
+    pub(super) format: DataFormat,
 }
 
 #[derive(Debug, Args)]
@@ -253,7 +256,7 @@ pub(super) struct ImportArgs {
     /// The world YAML to write [default: the file's name with .world.yaml, in this folder]
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
-    /// Write over a file that is there
+    /// Overwrite an existing file
     #[arg(long)]
     pub(super) force: bool,
     /// Where meshes and what leans are cut (m): the height of the scanner
@@ -265,12 +268,15 @@ pub(super) struct ImportArgs {
     /// A folder that holds folders of models (repeatable)
     #[arg(long, value_name = "FOLDER")]
     pub(super) model_path: Vec<String>,
-    /// A folder from which files of robots and worlds may be read that they name by a path out of theirs (repeatable)
+    /// A folder outside their own that robot and world files may refer to (repeatable)
     #[arg(long, value_name = "FOLDER")]
     pub(super) allow: Vec<PathBuf>,
     /// What the unknown cells of a map are
     #[arg(long, value_enum, value_name = "AS", default_value = "occupied")]
     pub(super) unknown: UnknownArg,
+    /// How the answer is written
+    #[arg(long, value_enum, default_value = "human")]
+    pub(super) format: DataFormat,
 }
 
 /// What the unknown cells of a map are.
@@ -343,6 +349,18 @@ pub(super) enum SchemaOf {
     Export,
     /// Of `submit`
     Submit,
+    /// Of `vary`
+    Vary,
+    /// Of `vary --joint`
+    VaryJoint,
+    /// Of `replay`
+    Replay,
+    /// Of `show`
+    Show,
+    /// Of `import`
+    Import,
+    /// Of `init`
+    Init,
     /// Of `cache size`
     CacheSize,
     /// Of `cache verify`
@@ -392,9 +410,12 @@ pub(super) struct InitArgs {
     /// The folder of a package that the robot's files name (repeatable)
     #[arg(long, value_name = "NAME=FOLDER", requires = "robot")]
     pub(super) packages: Vec<String>,
-    /// A folder from which files of robots and worlds may be read that they name by a path out of theirs (repeatable)
+    /// A folder outside their own that robot and world files may refer to (repeatable)
     #[arg(long, value_name = "FOLDER")]
     pub(super) allow: Vec<PathBuf>,
+    /// How the answer is written
+    #[arg(long, value_enum, default_value = "human")]
+    pub(super) format: DataFormat,
 }
 
 #[derive(Debug, Args)]
@@ -409,15 +430,15 @@ pub(super) enum CacheAction {
     Dir,
     /// Print how many trials it holds and how large it is
     Size(CacheFormatArgs),
-    /// Remove what no run wrote to for some days: trials that are wanted again are simulated again
+    /// Remove what has not been written to for some days; trials that are needed again are simulated again
     Prune(PruneArgs),
-    /// Hold every record against its digest, and records of one trial against one another
+    /// Check every record against its digest, and records of one trial against each other
     Verify(CacheFormatArgs),
-    /// Put small files together, without records that are there twice and damaged ones; safe beside running processes
+    /// Merge small files, without duplicate and damaged records; safe while other processes run
     Gc,
     /// Write records to one file, to move them to another store
     Export(CacheExportArgs),
-    /// Take in a file of `export`: all of it, or nothing where anything is wrong with it
+    /// Import a file that `export` wrote: all of it, or nothing if anything is wrong with it
     Import(CacheImportArgs),
 }
 
@@ -438,14 +459,14 @@ pub(super) struct CacheExportArgs {
     /// Replace a value of the manifests (repeatable)
     #[arg(long, value_name = "PATH=VALUE", requires = "manifests")]
     pub(super) set: Vec<String>,
-    /// A folder from which files of robots and worlds may be read that they name by a path out of theirs (repeatable)
+    /// A folder outside their own that robot and world files may refer to (repeatable)
     #[arg(long, value_name = "FOLDER", requires = "manifests")]
     pub(super) allow: Vec<PathBuf>,
 }
 
 #[derive(Debug, Clone, Args)]
 pub(super) struct CacheImportArgs {
-    /// The files to take in
+    /// The files to import
     #[arg(required = true)]
     pub(super) packs: Vec<PathBuf>,
 }
@@ -453,7 +474,7 @@ pub(super) struct CacheImportArgs {
 #[derive(Debug, Clone, Copy, Args)]
 #[group(required = true)]
 pub(super) struct PruneArgs {
-    /// What nothing was written to for this many days
+    /// What has not been written to for this many days
     #[arg(long, value_name = "DAYS")]
     pub(super) older_than: Option<u32>,
     /// Everything

@@ -56,7 +56,7 @@ pub(super) fn to_level(
     let Some(bundle) = bundle else { return Err(unread(refused(path, &report, None))) };
     let brief = report.in_brief();
     if brief.is_refused && !unchecked {
-        let failure = refused(path, &report, Some("; `--unchecked` goes on all the same"));
+        let failure = refused(path, &report, Some("; `--unchecked` shows it anyway"));
         return Err(Refused { failure, is_read: true });
     }
     Ok(Checked { bundle, words: brief.words, banner: brief.banner })
@@ -88,6 +88,7 @@ fn refused(path: &Path, report: &Report, way_out: Option<&str>) -> Failure {
     }
     let word = shell_word(&name).unwrap_or(name);
     let way_out = way_out.unwrap_or_default();
-    message.push_str(&format!("`reenact verify {word}` tells everything{way_out}\n"));
+    message
+        .push_str(&format!("`reenact verify {word}` lists everything that was found{way_out}\n"));
     Failure { exit, message }
 }

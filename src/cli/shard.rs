@@ -55,7 +55,7 @@ fn placed(
         (None, None) => Err(Unplaced::OfUnknown { told_by, number }),
         (None, Some(of)) => Ok((number, of)),
         (Some(asked), of) if of.is_some_and(|of| of != asked) || number > asked => {
-            let of = of.map_or_else(|| "nobody knows how many".to_owned(), |of| of.to_string());
+            let of = of.map_or_else(|| "an unknown number".to_owned(), |of| of.to_string());
             Err(Unplaced::Otherwise { asked, told_by, number, of })
         }
         (Some(asked), _) => Ok((number, asked)),
@@ -94,7 +94,7 @@ mod tests {
             (
                 "auto/3",
                 task(4, None),
-                "`--shard auto/3`: expected a task of 3, found JOB_COMPLETION_INDEX as task 4 of nobody knows how many",
+                "`--shard auto/3`: expected a task of 3, found JOB_COMPLETION_INDEX as task 4 of an unknown number",
             ),
             (
                 "auto/0",

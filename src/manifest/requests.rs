@@ -258,7 +258,7 @@ impl<'m> Requests<'m> {
             let place = format!("{pointer}/rows/{i}");
             faults.check_factor(self.factors, row, &place, false);
             if *row == by {
-                faults.at(&place, format!("`{row}` stands in the columns already"), "remove it");
+                faults.at(&place, format!("`{row}` is among the columns already"), "remove it");
             }
         }
     }

@@ -1,18 +1,17 @@
 //! A claim as the page shows it: verdict, finding in human words, and every comparison behind it.
 
 mod forest;
-mod statement;
 
 use super::template::{fixed, percent};
 use crate::claims::published::PublishedCell;
+use crate::claims::statement::{Statement, cell_in_words};
 use crate::claims::terms::Correction;
 use crate::claims::verdict::{CellNumbers, ComparisonVerdict, agreement_in_words, rounded};
-use crate::claims::{Claim, ClaimVerdict, Judgement, PaperTable};
+use crate::claims::{self, Claim, ClaimVerdict, Judgement, PaperTable};
 use crate::labels::Labels;
 use crate::math::exp;
 use forest::{Quantity, Strip};
 use serde::Serialize;
-use statement::{Statement, cell_in_words};
 use std::collections::BTreeMap;
 
 /// A claim and what became of it.
@@ -121,6 +120,13 @@ pub(super) fn rows(
         }
     };
     Ok(verdicts.into_iter().zip(&strips).map(|(v, strip)| drawn(v, strip.as_ref())).collect())
+}
+
+/// Returns which side of what the study compares came out ahead, by the `bytes` of a list of verdicts; `None` where they say nothing
+/// of it.
+pub(super) fn compared(bytes: Option<&[u8]>, labels: &Labels) -> Option<String> {
+    let verdicts: Vec<ClaimVerdict> = serde_json::from_slice(bytes?).ok()?;
+    claims::compared(&verdicts, labels)
 }
 
 fn row(verdict: ClaimVerdict, labels: &Labels) -> ClaimRow {

@@ -34,6 +34,8 @@ pub struct ReportContent {
     pub claims: Vec<ClaimRow>,
     /// Claims about the machine of the run, which are no results; mostly empty.
     pub machine_claims: Vec<ClaimRow>,
+    /// Which side of what the study compares came out ahead; empty where no claim says so.
+    pub compared: String,
     /// Choices the paper leaves open, with their reasons.
     pub assumptions: Vec<Assumption>,
     /// How other values of the assumptions were tried: `15 trials per condition, one setting at a time, same noise`;

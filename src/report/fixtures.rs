@@ -207,6 +207,7 @@ pub(super) fn content() -> ReportContent {
             figure("scatter", "Paper against us", crate::figure::tests::scatter().to_svg()),
         ],
         claims: claims(),
+        compared: String::new(),
         machine_claims: vec![ClaimRow {
             id: "P21".into(),
             says: "a selection takes milliseconds".into(),

@@ -116,7 +116,7 @@ pub fn gain_svg(recording: &Recording, view: GainView) -> Result<String, GainErr
         "Choice {}: D {:.2} m, I {:.2} m², u {:.3}",
         view.decision, frontier.distance_m, frontier.gain_m2, frontier.utility
     );
-    Ok(document(whole, tall, &title, body))
+    Ok(document(whole, tall, &recording.titled(&title), body))
 }
 
 /// Returns the `choice`-th choice of a trial, from 1, and the map on which it was made.

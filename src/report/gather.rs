@@ -48,6 +48,7 @@ pub fn content_of(
     let rows = |path: &str, bytes: Option<&[u8]>| {
         claim::rows(path, bytes, &experiment.claims, &published, &experiment.labels)
     };
+    let compared = claim::compared(bundle.result("claims.json"), &experiment.labels);
     let claims = rows("results/claims.json", bundle.result("claims.json"))?;
     let machine_claims = rows("circumstances/claims.json", machine_verdicts)?;
     let section = cite.and_then(|cite| cite.section.as_deref()).unwrap_or_default();
@@ -101,6 +102,7 @@ pub fn content_of(
         figures,
         claims,
         machine_claims,
+        compared: compared.unwrap_or_default(),
         assumptions: assumptions(experiment),
         tried_with: tried_with(experiment),
         multiverse: multiverse::matrix(experiment),

@@ -80,7 +80,7 @@ pub(super) fn graph_still(
     let time = frames.last().map_or(0.0, |f| f.time_s);
     let title =
         format!("Graph, plan and robot after {} s{}", number(time), ended(recording, frames));
-    document(paper.width, paper.height + FOOT, &title, body)
+    document(paper.width, paper.height + FOOT, &recording.titled(&title), body)
 }
 
 fn wall(outline: &Outline, paper: &Paper) -> Element {

@@ -37,7 +37,7 @@ pub fn play(
     sensing: Sensing,
 ) -> Result<Played, Fault> {
     let name = format!("{}/{}", spec.condition.slug(), spec.trial);
-    let (record, recording) = match sensing {
+    let (record, mut recording) = match sensing {
         Sensing::EveryScan => studies::reenact_sensing(spec),
         Sensing::Shown => studies::reenact(spec),
     };
@@ -47,5 +47,7 @@ pub fn play(
     let text = format!("{name}: the re-enacted record {found} the archived one");
     // Readers of the page see labels; whoever asks for the trial again needs its name.
     let title = plan.experiment.labels.title(&spec.condition, spec.trial);
-    Ok(Played { title: title.unwrap_or(name), recording, note: Note { text, good } })
+    recording.title = title.unwrap_or_else(|| name.clone());
+    recording.name = name;
+    Ok(Played { title: recording.title.clone(), recording, note: Note { text, good } })
 }

@@ -109,13 +109,13 @@ pub fn still_svg(recording: &Recording, at: Option<f64>, shown: Shown) -> String
     let time = frames.last().map_or(0.0, |f| f.time_s);
     let what = if is_all { "Map, frontiers, path and robot" } else { "Map, path and robot" };
     let title = format!("{what} after {} s{}", number(time), ended(recording, &frames));
-    document(width, height, &title, body)
+    document(width, height, &recording.titled(&title), body)
 }
 
 /// Says how the trial ended, where `frames` are all of it.
 pub(super) fn ended(recording: &Recording, frames: &[&Frame]) -> String {
     let is_end = frames.len() == recording.frames.len() && !recording.outcome.is_empty();
-    if is_end { format!("; the trial ended: {}", recording.outcome) } else { String::new() }
+    if is_end { format!("; the trial ended: {}", recording.ending()) } else { String::new() }
 }
 
 /// Draws where the trial began, and where it was to go.

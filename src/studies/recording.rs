@@ -34,6 +34,12 @@ pub struct Recording {
     /// Deadline study: the place to reach (m, world frame).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub goal: Option<Point>,
+    /// What the trial is called where it is asked for: `none/0`; empty where that is not known.
+    #[serde(skip)]
+    pub name: String,
+    /// What readers see for it, by the labels of its manifest: `no prior, trial 0`; empty where that is not known.
+    #[serde(skip)]
+    pub title: String,
     /// How the trial ended: `reached`; empty where that is not known.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub outcome: String,
@@ -69,6 +75,16 @@ pub struct SolvedPlan {
 }
 
 impl Recording {
+    /// Returns how the trial ended as people say it: `gave up`.
+    pub fn ending(&self) -> String {
+        self.outcome.replace('-', " ")
+    }
+
+    /// Returns `text` after the trial's title, where it has one.
+    pub fn titled(&self, text: &str) -> String {
+        if self.title.is_empty() { text.to_owned() } else { format!("{}: {text}", self.title) }
+    }
+
     /// Returns the robot's map at the end, in the map's frame; none where it made none.
     pub fn final_map(&self) -> Option<OccupancyGrid> {
         let mut map = OccupancyGrid::filled(self.map_frame, Occupancy::Unknown);
@@ -94,6 +110,8 @@ impl Default for Recording {
             rule: String::new(),
             deadline_s: None,
             goal: None,
+            name: String::new(),
+            title: String::new(),
             outcome: String::new(),
             description: String::new(),
             scan_height_m: 0.0,

@@ -64,7 +64,7 @@ pub enum ContentError {
 #[derive(Debug, Error)]
 pub enum MakeAgainError {
     /// This pipeline executes nothing of the kind.
-    #[error("nobody here can execute {0} units")]
+    #[error("this program cannot execute {0} units")]
     Nobody(usize),
     /// The study has no calibration.
     #[error("there is no calibration")]

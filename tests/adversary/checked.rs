@@ -58,7 +58,7 @@ fn a_turned_verdict_is_not_shown_compared_or_handed_on() {
     let sandbox = with("turned", &turned());
     let says = "error: turned: the bundle is not what it says: reached level 2 (coherent) of level 3 (derived)\nerror at level 3: \
                 data/results/claims.json: expected `\"supported\"` at /0/verdict, as the records give, found \
-                `\"contradicted\"`\n`reenact verify turned` tells everything; `--unchecked` goes on all the same\n";
+                `\"contradicted\"`\n`reenact verify turned` lists everything that was found; `--unchecked` shows it anyway\n";
     for words in COMMANDS {
         let answer = sandbox.run_reading(words);
         assert_eq!(answer.stdout, "", "{words:?}");

@@ -57,7 +57,7 @@ fn size(text: &str) -> Result<u64, ValueError> {
 /// How much a bundle may ask of its reader.
 #[derive(Debug, Clone, Copy, Args)]
 pub(in crate::cli) struct LimitsArgs {
-    /// The largest bundle that is dealt with, by the bytes of its files unpacked: 500M, 8G
+    /// The largest bundle to accept, by the size of its files unpacked: 500M, 8G
     #[arg(long, value_name = "SIZE", default_value = "4G", value_parser = size)]
     pub(in crate::cli) max_size: u64,
 }
@@ -136,7 +136,7 @@ pub(in crate::cli) struct DiffArgs {
     pub(in crate::cli) output: Option<PathBuf>,
     #[command(flatten)]
     pub(in crate::cli) limits: LimitsArgs,
-    /// Show a bundle that fails its check all the same, under a banner
+    /// Show a bundle that fails its check anyway, under a banner
     #[arg(long)]
     pub(in crate::cli) unchecked: bool,
 }
@@ -164,7 +164,7 @@ pub(in crate::cli) struct ReportArgs {
     pub(in crate::cli) format: DataFormat,
     #[command(flatten)]
     pub(in crate::cli) limits: LimitsArgs,
-    /// Show a bundle that fails its check all the same, under a banner
+    /// Show a bundle that fails its check anyway, under a banner
     #[arg(long)]
     pub(in crate::cli) unchecked: bool,
 }
@@ -225,7 +225,7 @@ pub(in crate::cli) struct ExportArgs {
     pub(in crate::cli) format: DataFormat,
     #[command(flatten)]
     pub(in crate::cli) limits: LimitsArgs,
-    /// Write a bundle that fails its check all the same
+    /// Write a bundle that fails its check anyway
     #[arg(long)]
     pub(in crate::cli) unchecked: bool,
 }
@@ -271,9 +271,12 @@ pub(in crate::cli) struct ReplayArgs {
     /// Which candidate of that choice, from 1 [default: the chosen one]
     #[arg(long, value_name = "CANDIDATE", requires = "decision")]
     pub(in crate::cli) gain: Option<usize>,
+    /// How the answer is written
+    #[arg(long, value_enum, default_value = "human")]
+    pub(in crate::cli) format: DataFormat,
     #[command(flatten)]
     pub(in crate::cli) limits: LimitsArgs,
-    /// Show a bundle that fails its check all the same, under a banner
+    /// Show a bundle that fails its check anyway, under a banner
     #[arg(long)]
     pub(in crate::cli) unchecked: bool,
 }

@@ -33,16 +33,16 @@ fn word(text: &str) -> Result<String, NoWord> {
 pub(in crate::cli) struct SubmitArgs {
     /// The manifest
     pub(in crate::cli) manifest: PathBuf,
-    /// Who runs the shards
+    /// What runs the shards
     #[arg(long, value_enum)]
     pub(in crate::cli) engine: Engine,
-    /// Into how many shards the study is divided
+    /// How many shards to split the study into
     #[arg(long, value_name = "N")]
     pub(in crate::cli) shards: NonZero<u32>,
-    /// A folder from which files of robots and worlds may be read that they name by a path out of theirs (repeatable)
+    /// A folder outside their own that robot and world files may refer to (repeatable)
     #[arg(long, value_name = "FOLDER")]
     pub(in crate::cli) allow: Vec<PathBuf>,
-    /// Print what would be submitted, and submit and write nothing
+    /// Print what would be submitted, without submitting or writing anything
     #[arg(long)]
     pub(in crate::cli) dry_run: bool,
     /// Only conditions with these values (repeatable)
@@ -54,7 +54,7 @@ pub(in crate::cli) struct SubmitArgs {
     /// Replace a value of the manifest (repeatable)
     #[arg(long, value_name = "PATH=VALUE")]
     pub(in crate::cli) set: Vec<String>,
-    /// Where the bundle lands
+    /// Where the bundle is written
     #[arg(short, long, value_name = "DIR", default_value = "artifacts")]
     pub(in crate::cli) out: PathBuf,
     /// Processors of a shard, and its threads
@@ -85,7 +85,7 @@ pub(in crate::cli) struct SlurmArgs {
     /// The account that pays
     #[arg(long, value_name = "NAME", value_parser = word)]
     pub(in crate::cli) account: Option<String>,
-    /// The longest that a shard may take (`4:00:00`); one that is ended is run again with the trials that are left
+    /// Time limit of a shard (`4:00:00`); one that reaches it is run again with the trials that are left
     #[arg(long, value_name = "TIME", value_parser = word)]
     pub(in crate::cli) time: Option<String>,
     /// Where scripts and logs are kept [default: NAME.slurm, in this folder]

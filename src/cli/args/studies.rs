@@ -14,20 +14,20 @@ pub(in crate::cli) struct RunArgs {
     /// Threads [default: all processors]
     #[arg(short, long, value_name = "N")]
     pub(in crate::cli) jobs: Option<usize>,
-    /// Where bundles land
+    /// Where bundles are written
     #[arg(short, long, value_name = "DIR", default_value = "artifacts")]
     pub(in crate::cli) out: PathBuf,
     #[command(flatten)]
     pub(in crate::cli) select: SelectArgs,
-    /// Neither read nor write the store of finished trials
+    /// Do not read or write the store of finished trials
     #[arg(long)]
     pub(in crate::cli) no_cache: bool,
     #[command(flatten)]
     pub(in crate::cli) lock: AgainstLockArgs,
-    /// Execute every trial twice, without the store; a difference ends with 3
+    /// Execute every trial twice, without the store; exit with 3 if they differ
     #[arg(long)]
     pub(in crate::cli) twice: bool,
-    /// Only finish trials and keep them in the store; seal nothing. For workers that share a store: a `run` without this seals
+    /// Only run trials and keep them in the store; seal nothing. For workers that share a store: a `run` without this option seals
     #[arg(long, conflicts_with_all = ["no_cache", "twice", "capsule", "locked", "probe", "out"])]
     pub(in crate::cli) no_seal: bool,
     /// Seal the source of this program into the bundle as data, for readers in ten years
@@ -45,7 +45,7 @@ pub(in crate::cli) struct MergeArgs {
     /// The bundles of `run --shard I/N`, in any order; one may be given twice
     #[arg(required = true)]
     pub(in crate::cli) shards: Vec<PathBuf>,
-    /// Where the bundle lands: a folder, or a file ending in .zip
+    /// Where the bundle is written: a folder, or a file ending in .zip
     #[arg(short, long, value_name = "DIR|FILE.zip", default_value = "artifacts")]
     pub(in crate::cli) out: PathBuf,
     #[command(flatten)]
@@ -58,7 +58,7 @@ pub(in crate::cli) struct MergeArgs {
 /// Whether and how the lock is held against a run.
 #[derive(Debug, Args)]
 pub(in crate::cli) struct AgainstLockArgs {
-    /// Compare with the lock beside the manifest; drift ends with 1
+    /// Compare with the lock beside the manifest; exit with 1 if results drifted
     #[arg(long)]
     pub(in crate::cli) locked: bool,
     /// Only run trial 0 of every condition anew and compare it with the lock; seal nothing
@@ -77,7 +77,7 @@ pub(in crate::cli) struct CheckArgs {
     /// Replace a value of the manifest (repeatable)
     #[arg(long, value_name = "PATH=VALUE")]
     pub(in crate::cli) set: Vec<String>,
-    /// A folder from which files of robots and worlds may be read that they name by a path out of theirs (repeatable)
+    /// A folder outside their own that robot and world files may refer to (repeatable)
     #[arg(long, value_name = "FOLDER")]
     pub(in crate::cli) allow: Vec<PathBuf>,
 }
@@ -98,7 +98,7 @@ pub(in crate::cli) struct PlanArgs {
     /// Print what the key of this trial is made of: 8 hex digits of it, or CONDITION/NUMBER
     #[arg(long, value_name = "TRIAL")]
     pub(in crate::cli) explain: Option<String>,
-    /// Say how likely the planned trials, and other numbers of them, are to decide each claim
+    /// Show how likely the planned trials, and other numbers of trials, are to decide each claim
     #[arg(long, conflicts_with = "explain")]
     pub(in crate::cli) power: bool,
     /// How the answer is written
@@ -117,10 +117,10 @@ pub(in crate::cli) struct LockArgs {
     /// Threads [default: all processors]
     #[arg(short, long, value_name = "N")]
     pub(in crate::cli) jobs: Option<usize>,
-    /// Neither read nor write the store of finished trials
+    /// Do not read or write the store of finished trials
     #[arg(long)]
     pub(in crate::cli) no_cache: bool,
-    /// A folder from which files of robots and worlds may be read that they name by a path out of theirs (repeatable)
+    /// A folder outside their own that robot and world files may refer to (repeatable)
     #[arg(long, value_name = "FOLDER")]
     pub(in crate::cli) allow: Vec<PathBuf>,
 }
@@ -141,12 +141,15 @@ pub(in crate::cli) struct VaryArgs {
     /// Threads [default: all processors]
     #[arg(short, long, value_name = "N")]
     pub(in crate::cli) jobs: Option<usize>,
-    /// Neither read nor write the store of finished trials
+    /// Do not read or write the store of finished trials
     #[arg(long)]
     pub(in crate::cli) no_cache: bool,
-    /// A folder from which files of robots and worlds may be read that they name by a path out of theirs (repeatable)
+    /// A folder outside their own that robot and world files may refer to (repeatable)
     #[arg(long, value_name = "FOLDER")]
     pub(in crate::cli) allow: Vec<PathBuf>,
+    /// How the answer is written
+    #[arg(long, value_enum, default_value = "human")]
+    pub(in crate::cli) format: DataFormat,
 }
 
 #[derive(Debug, Args)]
@@ -158,14 +161,14 @@ pub(in crate::cli) struct InferArgs {
     #[arg(short, long, value_name = "N")]
     pub(in crate::cli) jobs: Option<usize>,
 
-    /// Where the bundle lands
+    /// Where the bundle is written
     #[arg(short, long, value_name = "DIR", default_value = "artifacts")]
     pub(in crate::cli) out: PathBuf,
 
     #[command(flatten)]
     pub(in crate::cli) select: SelectArgs,
 
-    /// Neither read nor write the store of finished proposals
+    /// Do not read or write the store of finished proposals
     #[arg(long)]
     pub(in crate::cli) no_cache: bool,
 

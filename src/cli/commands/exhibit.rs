@@ -233,8 +233,9 @@ mod tests {
   start          s  random  frontier     frontier       first   corridor
       A        680  0 ·  -   25 ✓ 26      50 ✓ 59     75 ≠ 12  100 ✓ 100
       A         68  0 ·  -   25 ·  -      50 ·  -     75 ·  -   100 ·  -
-  (ours, then the paper's; shares: ✓ compatible at 95 %, ≠ not, by Newcombe's
-  interval of the difference at both numbers of trials)
+  (ours, then the paper's, after · where there is nothing to compare; shares: ✓
+  compatible at 95 %, ≠ not, by Newcombe's interval of the difference at both
+  numbers of trials)
 "
         );
         let narrow = in_lines(&exhibit, 40);

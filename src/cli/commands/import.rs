@@ -1,16 +1,17 @@
 //! `reenact import`: a Gazebo world or a map as world YAML, to be read and edited.
 
 use super::show::shelf;
-use crate::cli::args::{ImportArgs, UnknownArg};
+use crate::cli::args::{DataFormat, ImportArgs, UnknownArg};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::load;
 use crate::cli::terminal::{Terminal, counted};
 use crate::document::{Diagnostic, Source};
 use crate::report::show;
 use crate::world::World;
-use crate::world::document::WorldDoc;
+use crate::world::document::{self, WorldDoc};
 use crate::world::map_server::solid::{self, UnknownCells};
 use crate::world::map_server::{self, Descriptor, Options};
+use serde_json::json;
 use std::path::{Path, PathBuf};
 
 /// Writes the world.
@@ -30,7 +31,21 @@ pub(in crate::cli) fn run(args: &ImportArgs, terminal: Terminal) -> Result<Exit,
     let name = file.file_name().unwrap_or_default().to_string_lossy();
     let source = format!("imported from {name} by reenact import, cut at {} m", args.height);
     let doc = WorldDoc::of(&world, source, args.height);
-    load::write(&output, doc.to_yaml().as_bytes())?;
+    let text = doc.to_yaml();
+    load::write(&output, text.as_bytes())?;
+    if args.format == DataFormat::Json {
+        let written = Source::new(output.display().to_string(), text);
+        let meaning = document::read(&written, None).map(|written| written.meaning());
+        let meaning = meaning.map_err(|faults| Failure::failed(Terminal::count(&faults)))?;
+        let answer = json!({
+            "path": output,
+            "world": world.name,
+            "solids": world.solids.len(),
+            "meaning": format!("sha256:{meaning}"),
+        });
+        terminal.result(&answer.to_string());
+        return Ok(Exit::Yes);
+    }
     terminal.result(&show::describe_world(&world, args.height));
     terminal.note(&format!(
         "wrote {} of {}",

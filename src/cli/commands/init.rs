@@ -2,7 +2,7 @@
 
 mod from_files;
 
-use crate::cli::args::InitArgs;
+use crate::cli::args::{DataFormat, InitArgs};
 use crate::cli::calibrate::Calibrator;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::load;
@@ -12,6 +12,7 @@ use crate::json;
 use crate::store;
 use crate::units::Radians;
 use from_files::Files;
+use serde_json::json;
 use std::path::{Path, PathBuf};
 
 const MANIFEST: &str = include_str!("init/study.yaml");
@@ -41,14 +42,19 @@ pub(in crate::cli) fn run(args: &InitArgs, terminal: Terminal) -> Result<Exit, F
         )));
     }
     let manifest = folder.join(format!("{name}.yaml"));
-    if args.robot.is_none() {
-        load::write(&folder.join(ROBOT_NAME), ROBOT.as_bytes())?;
-    }
-    if args.world.is_none() {
-        load::write(&folder.join(WORLD_NAME), WORLD.as_bytes())?;
-    }
     let schema = format!("{:#}\n", crate::manifest::schema(None));
-    load::write(&folder.join(SCHEMA_NAME), schema.as_bytes())?;
+    let mut written = vec![manifest.clone()];
+    for (file, bytes, is_wanted) in [
+        (ROBOT_NAME, ROBOT, args.robot.is_none()),
+        (WORLD_NAME, WORLD, args.world.is_none()),
+        (SCHEMA_NAME, &schema, true),
+    ] {
+        if is_wanted {
+            let path = folder.join(file);
+            load::write(&path, bytes.as_bytes())?;
+            written.push(path);
+        }
+    }
     if args.robot.is_none() && args.world.is_none() && args.map.is_none() {
         load::write(&manifest, MANIFEST.replace("STUDY-NAME", name).as_bytes())?;
     } else {
@@ -60,7 +66,10 @@ pub(in crate::cli) fn run(args: &InitArgs, terminal: Terminal) -> Result<Exit, F
         // Whatever is wrong is told now, with the file there to be mended.
         load::manifest(&manifest, given(args), Calibrator::StandIn, terminal)?;
     }
-    terminal.result(&format!("reenact run {}", manifest.display()));
+    terminal.result(&match args.format {
+        DataFormat::Human => format!("reenact run {}", manifest.display()),
+        DataFormat::Json => json!({"manifest": manifest, "written": written}).to_string(),
+    });
     Ok(Exit::Yes)
 }
 

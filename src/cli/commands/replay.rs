@@ -1,6 +1,6 @@
 //! `reenact replay`: any archived trial again, with full recording.
 
-use crate::cli::args::ReplayArgs;
+use crate::cli::args::{DataFormat, ReplayArgs};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::progress::Working;
 use crate::cli::terminal::{Terminal, counted};
@@ -15,7 +15,8 @@ use crate::studies::prior_map;
 use crate::studies::recording::Recording;
 use crate::verify::plan_of;
 use crate::world::map_server;
-use std::path::Path;
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
 
 /// Re-enacts one trial or two.
 pub(in crate::cli) fn run(args: &ReplayArgs, terminal: Terminal) -> Result<Exit, Failure> {
@@ -33,6 +34,8 @@ pub(in crate::cli) fn run(args: &ReplayArgs, terminal: Terminal) -> Result<Exit,
     let mut exit = Exit::Yes;
     let mut played: Vec<(String, Recording)> = Vec::new();
     let mut notes = Vec::new();
+    let mut trials: Vec<Value> = Vec::new();
+    let mut written = Written { files: Vec::new(), told: told_to(args, terminal) };
     for wanted in &args.trials {
         let spec = plan.find(wanted).map_err(Failure::not_understood)?;
         let name = format!("{}/{}", spec.condition.slug(), spec.trial);
@@ -48,6 +51,12 @@ pub(in crate::cli) fn run(args: &ReplayArgs, terminal: Terminal) -> Result<Exit,
         if !note.good {
             exit = Exit::No;
         }
+        trials.push(json!({
+            "trial": name,
+            "key": spec.key.to_string(),
+            "matches": note.good,
+            "outcome": recording.outcome,
+        }));
         notes.push(note);
         played.push((title, recording));
     }
@@ -57,7 +66,7 @@ pub(in crate::cli) fn run(args: &ReplayArgs, terminal: Terminal) -> Result<Exit,
         let page = replay_page(&plan.experiment.title, &trials, &notes);
         let page = banner.map_or(page.clone(), |banner| page_under_banner(&page, banner));
         load::write(path, page.as_bytes())?;
-        terminal.note(&format!("wrote {}", path.display()));
+        written.tell(&[path]);
     }
     if let (Some(path), Some((_, recording))) = (&args.svg, played.first()) {
         let still = match args.decision {
@@ -73,42 +82,77 @@ pub(in crate::cli) fn run(args: &ReplayArgs, terminal: Terminal) -> Result<Exit,
         };
         let still = banner.map_or(still.clone(), |banner| drawing_under_banner(&still, banner));
         load::write(path, still.as_bytes())?;
-        terminal.note(&format!("wrote {}", path.display()));
+        written.tell(&[path]);
     }
     if let (Some(path), Some((_, recording))) = (&args.mcap, played.first()) {
         let bag = bag_under_banner(recording, args.scan_rate, banner).map_err(Failure::failed)?;
         load::write(path, &bag.bytes)?;
         let layout = path.with_extension("foxglove-layout.json");
         load::write(&layout, foxglove_layout(&bag).as_bytes())?;
-        terminal.note(&format!("wrote {} and {}", path.display(), layout.display()));
+        written.tell(&[path, &layout]);
         for (topic, count) in &bag.counts {
-            terminal.note(&format!("  {topic}: {}", counted(*count as usize, "message")));
+            written.note(&format!("  {topic}: {}", counted(*count as usize, "message")));
         }
     }
     if let (Some(path), Some((name, recording))) = (&args.map, played.first()) {
-        write_map(path, name, recording, terminal)?;
+        let image = write_map(path, name, recording)?;
+        written.tell(&[path, &image]);
     }
     if let (Some(folder), Some((_, recording))) = (&args.plans, played.first()) {
         for (i, plan) in recording.plans.iter().enumerate() {
             let name = format!("plan-{:03}-at-{:.1}-s.json", i + 1, plan.time_s);
-            load::write(&folder.join(name), plan.document.as_bytes())?;
+            let path = folder.join(name);
+            load::write(&path, plan.document.as_bytes())?;
+            written.files.push(path);
         }
         let count = counted(recording.plans.len(), "plan");
-        terminal.note(&format!("wrote {count} to {}", folder.display()));
+        written.note(&format!("wrote {count} to {}", folder.display()));
     }
-    let told = notes.iter().map(|note| note.text.as_str());
-    let told: Vec<&str> = std::iter::once(words.as_str()).chain(told).collect();
-    terminal.result(&told.join("\n"));
+    terminal.result(&match args.format {
+        DataFormat::Human => {
+            let told = notes.iter().map(|note| note.text.as_str());
+            let told: Vec<&str> = std::iter::once(words.as_str()).chain(told).collect();
+            told.join("\n")
+        }
+        DataFormat::Json => json!({
+            "checked": words,
+            "results_digest": format!("sha256:{}", bundle.results_digest()),
+            "trials": trials,
+            "written": written.files,
+        })
+        .to_string(),
+    });
     Ok(exit)
 }
 
-/// Writes the map of the trial `name` to `path` and its image beside it, in the world's frame.
-fn write_map(
-    path: &Path,
-    name: &str,
-    recording: &Recording,
-    terminal: Terminal,
-) -> Result<(), Failure> {
+/// Returns the terminal where people are told of files as they are written: programs find them in the answer.
+fn told_to(args: &ReplayArgs, terminal: Terminal) -> Option<Terminal> {
+    (args.format == DataFormat::Human).then_some(terminal)
+}
+
+/// The files that were written so far.
+struct Written {
+    files: Vec<PathBuf>,
+    told: Option<Terminal>,
+}
+
+impl Written {
+    /// Tells of files that were written together.
+    fn tell(&mut self, files: &[&Path]) {
+        let names: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
+        self.note(&format!("wrote {}", names.join(" and ")));
+        self.files.extend(files.iter().map(|file| (*file).to_owned()));
+    }
+
+    fn note(&self, text: &str) {
+        if let Some(terminal) = self.told {
+            terminal.note(text);
+        }
+    }
+}
+
+/// Writes the map of the trial `name` to `path` and its image beside it, in the world's frame; returns the path of the image.
+fn write_map(path: &Path, name: &str, recording: &Recording) -> Result<PathBuf, Failure> {
     let Some(map) = recording.final_map() else {
         return Err(Failure::not_understood(format!("the robot of {name} made no metric map")));
     };
@@ -119,8 +163,7 @@ fn write_map(
     let [descriptor, pixels] = map_server::write_at(&map, origin, &image_name);
     load::write(path, &descriptor)?;
     load::write(&image, &pixels)?;
-    terminal.note(&format!("wrote {} and {}", path.display(), image.display()));
-    Ok(())
+    Ok(image)
 }
 
 /// Returns when (s) the trial first covered `percent`.

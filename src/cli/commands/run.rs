@@ -10,7 +10,7 @@ use crate::bundle::wall_time;
 use crate::bundle::{
     Additions, Form, Gathered, Gathering, Sealed, capsule, format, seal_with, shell_word,
 };
-use crate::claims::{ClaimVerdict, Judgement};
+use crate::claims::{ClaimVerdict, Judgement, compared};
 use crate::cli::args::{Format, RunArgs};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::fold::wrapped;
@@ -198,6 +198,9 @@ impl Done {
         if self.plan.partial {
             let partial = "PARTIAL: part of the study only; no claim is judged";
             head.push_str(&wrapped(partial, 0, columns));
+        }
+        if let Some(compared) = compared(&self.verdicts, &self.plan.experiment.labels) {
+            head.push_str(&wrapped(&format!("found: {compared}"), 0, columns));
         }
         let findings = assemble::findings(&self.plan, &self.ledger);
         let tables = &self.plan.experiment.tables;

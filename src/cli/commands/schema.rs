@@ -29,6 +29,12 @@ pub(in crate::cli) fn run(args: &SchemaArgs, terminal: Terminal) -> Exit {
         SchemaOf::Report => answer!("report"),
         SchemaOf::Export => answer!("export"),
         SchemaOf::Submit => answer!("submit"),
+        SchemaOf::Vary => answer!("vary"),
+        SchemaOf::VaryJoint => answer!("vary-joint"),
+        SchemaOf::Replay => answer!("replay"),
+        SchemaOf::Show => answer!("show"),
+        SchemaOf::Import => answer!("import"),
+        SchemaOf::Init => answer!("init"),
         SchemaOf::CacheSize => answer!("cache-size"),
         SchemaOf::CacheVerify => answer!("cache-verify"),
     };

@@ -1,6 +1,6 @@
 //! `reenact show`: draw an input and say what was understood.
 
-use crate::cli::args::{DerivedArg, FamilyArg, ShowArgs};
+use crate::cli::args::{DataFormat, DerivedArg, FamilyArg, ShowArgs};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::load;
 use crate::cli::terminal::Terminal;
@@ -12,6 +12,7 @@ use crate::store;
 use crate::world::generate::{self, Family};
 use crate::world::mesh;
 use crate::world::sdf::{FilePath, Folders, Models, Root};
+use serde_json::json;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -200,7 +201,20 @@ pub(in crate::cli) fn run(args: &ShowArgs, terminal: Terminal) -> Result<Exit, F
         }
         (false, _) => load::write(&output, drawing.svg.as_bytes())?,
     }
-    terminal.result(&drawing.text);
-    terminal.note(&format!("wrote {}", output.display()));
+    match args.format {
+        DataFormat::Human => {
+            terminal.result(&drawing.text);
+            terminal.note(&format!("wrote {}", output.display()));
+        }
+        DataFormat::Json => {
+            let answer = json!({
+                "path": output,
+                "kind": drawing.kind.name(),
+                "described": drawing.text.lines().collect::<Vec<_>>(),
+                "warnings": drawing.warnings.iter().map(|warning| warning.count).sum::<usize>(),
+            });
+            terminal.result(&answer.to_string());
+        }
+    }
     Ok(Exit::Yes)
 }

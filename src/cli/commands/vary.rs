@@ -7,7 +7,7 @@ use super::execution::{Execution, Times, jobs};
 use crate::bundle::assemble;
 use crate::claims::ClaimVerdict;
 use crate::claims::sensitivity::{Attempt, Flip, Sensitivity, in_words};
-use crate::cli::args::VaryArgs;
+use crate::cli::args::{DataFormat, VaryArgs};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::terminal::{Terminal, counted};
 use crate::cli::{interrupt, load};
@@ -16,6 +16,7 @@ use crate::manifest::{Assumption, Experiment};
 use crate::plan::Plan;
 use crate::provenance::Environment;
 use crate::studies::records_digest;
+use serde_json::{Map, Value, json};
 use std::path::Path;
 
 /// Tries every assumption of a manifest that has a range, and writes the verdicts beside the manifest.
@@ -59,11 +60,28 @@ pub(in crate::cli) fn run(
             let moved = study.experiment(&[format!("{}={value}", assumption.path)])?;
             let (at_tried, records) = study.verdicts(moved)?;
             found.push(&attempt, (&at_chosen, chosen_records), (&at_tried, records));
-            terminal.result(&line(&attempt, &found.flips(&attempt)));
+            if args.format == DataFormat::Human {
+                terminal.result(&line(&attempt, &found.flips(&attempt)));
+            }
         }
     }
     let path = args.manifest.with_extension("sensitivity.csv");
-    let advice = study.write(&path, &found.to_csv(), "sensitivity")?;
+    let is_named = study.write(&path, &found.to_csv(), "sensitivity")?;
+    if args.format == DataFormat::Json {
+        let attempts = found.attempts();
+        let answer = json!({
+            "manifest": args.manifest,
+            "path": path,
+            "named_in_manifest": is_named,
+            "trials_per_condition": trials,
+            "verdicts": verdicts_of(&at_chosen),
+            "records_digest": format!("sha256:{chosen_records}"),
+            "attempts": attempts.iter().map(|a| attempted(a, &found.flips(a))).collect::<Vec<_>>(),
+        });
+        terminal.result(&answer.to_string());
+        return Ok(Exit::Yes);
+    }
+    let advice = advice(is_named, &path, "sensitivity");
     terminal.result(&format!(
         "wrote {}: {} judged at {} of {}, {} per condition{advice}\n",
         path.display(),
@@ -125,19 +143,41 @@ impl Study<'_> {
         Ok((verdicts, records_digest(&records)))
     }
 
-    /// Writes what was found beside the manifest; returns what to do where the manifest does not name it under `key`.
-    fn write(&self, path: &Path, table: &str, key: &str) -> Result<String, Failure> {
+    /// Writes what was found beside the manifest; returns whether the manifest names it, under `key`.
+    fn write(&self, path: &Path, table: &str, key: &str) -> Result<bool, Failure> {
         let source = load::text(&self.args.manifest)?;
         let tree = crate::document::read(&source);
         let is_named = tree.is_ok_and(|tree| tree.root.get(key).is_some());
         load::write(path, table.as_bytes())?;
-        Ok(if is_named {
-            String::new()
-        } else {
-            let name = file_name(path);
-            format!("\nadd `{key}: {name}` to the manifest, so that bundles and reports tell it")
-        })
+        Ok(is_named)
     }
+}
+
+/// Says what to do where the manifest does not name the table at `path` under `key`.
+fn advice(is_named: bool, path: &Path, key: &str) -> String {
+    if is_named {
+        return String::new();
+    }
+    format!(
+        "\nadd `{key}: {}` to the manifest, so that bundles and reports tell it",
+        file_name(path)
+    )
+}
+
+/// Returns each claim's verdict by the claim's id.
+fn verdicts_of(verdicts: &[ClaimVerdict]) -> Map<String, Value> {
+    verdicts.iter().map(|v| (v.id.clone(), v.judgement.to_string().into())).collect()
+}
+
+/// Writes one attempt for programs.
+fn attempted(attempt: &Attempt, flips: &[Flip]) -> Value {
+    let flip = |flip: &Flip| json!({"claim": flip.claim, "from": flip.from.to_string(), "to": flip.to.to_string()});
+    json!({
+        "setting": attempt.setting,
+        "chosen": attempt.chosen,
+        "tried": attempt.tried,
+        "changes": flips.iter().map(flip).collect::<Vec<_>>(),
+    })
 }
 
 /// Writes one attempt in a line, and one more for every verdict that it changes.

@@ -13,10 +13,10 @@ pub enum InputError {
     #[error("no such file")]
     NoFile,
     /// Nobody here runs calibrations.
-    #[error("nobody here can run `{0}`")]
+    #[error("this program cannot run `{0}`")]
     NoCalibration(String),
     /// Nobody here runs explorations.
-    #[error("nobody here can run the exploration {0}")]
+    #[error("this program cannot run the exploration {0}")]
     NoExploration(String),
     /// Whoever hands inputs over has a reason of its own.
     #[error("{0}")]

@@ -8,6 +8,7 @@ mod definitions;
 mod layout;
 mod markers;
 mod messages;
+mod packed;
 mod writer;
 
 use crate::geometry::{Point, Pose};
@@ -46,7 +47,8 @@ pub fn bag(recording: &Recording, scan_rate_hz: Option<f64>) -> Result<Bag, BagE
     bag_under_banner(recording, scan_rate_hz, None)
 }
 
-/// Writes a [`bag`] with what its readers must know of the bundle: a metadata record `reenact` with the key `banner`.
+/// Writes a [`bag`] whose metadata record `reenact` has, beside the trial's name, title and outcome, what its readers must know of the
+/// bundle: the key `banner`.
 ///
 /// # Errors
 /// As there.
@@ -65,10 +67,17 @@ pub fn bag_under_banner(
         scan_period_s: scan_rate_hz.map_or(0.0, |rate| 1.0 / rate),
         scanned_s: None,
     };
-    if let Some(banner) = banner {
-        writing.writer.tell("reenact", "banner", banner)?;
-    }
+    let told = [
+        ("banner", banner.unwrap_or_default()),
+        ("trial", &recording.name),
+        ("title", &recording.title),
+        ("outcome", &recording.outcome),
+    ];
+    writing.writer.tell("reenact", &told)?;
     writing.still()?;
+    if !recording.title.is_empty() {
+        writing.log(0.0, &recording.title)?;
+    }
     let mut sensed = recording.sensed.as_deref().unwrap_or_default().iter().peekable();
     for frame in &recording.frames {
         while let Some(scan) = sensed.next_if(|s| stamp(s) <= frame.time_s) {
@@ -85,7 +94,7 @@ pub fn bag_under_banner(
     if !recording.outcome.is_empty() {
         let end = recording.frames.last().map_or(0.0, |frame| frame.time_s);
         let scans_end = recording.sensed.iter().flatten().last().map_or(0.0, stamp);
-        writing.log(end.max(scans_end), &format!("the trial ended: {}", recording.outcome))?;
+        writing.log(end.max(scans_end), &format!("the trial ended: {}", recording.ending()))?;
     }
     let (bytes, counts) = writing.writer.finish()?;
     Ok(Bag { bytes, counts })

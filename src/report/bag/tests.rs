@@ -3,6 +3,7 @@ use super::*;
 use crate::robot::{self, Scan, Twist};
 use crate::studies::recording::{ActionView, GraphView, VertexView};
 use crate::units::Tick;
+use crate::world::map_server::bag::plain;
 use mcap::MessageStream;
 
 /// Records ten seconds of driving with a scan every 50 ms, and a graph.
@@ -54,7 +55,7 @@ fn sensing() -> Recording {
 fn every_topic_is_there_with_its_type_and_in_order_of_time() {
     let bag = bag(&sensing(), None).unwrap();
     let (mut types, mut last) = (BTreeMap::new(), 0);
-    for message in MessageStream::new(&bag.bytes).unwrap() {
+    for message in MessageStream::new(&plain(&bag.bytes)).unwrap() {
         let message = message.unwrap();
         let schema = message.channel.schema.as_ref().unwrap();
         assert_eq!(
@@ -100,7 +101,7 @@ fn what_stays_true_is_offered_to_those_who_come_late() {
     recording.outcome = "late".to_owned();
     let bag = bag(&recording, None).unwrap();
     let mut durable = BTreeMap::new();
-    for message in MessageStream::new(&bag.bytes).unwrap() {
+    for message in MessageStream::new(&plain(&bag.bytes)).unwrap() {
         let channel = message.unwrap().channel;
         let profiles = &channel.metadata["offered_qos_profiles"];
         durable.insert(channel.topic.clone(), profiles.contains("durability: 1\n"));
@@ -108,10 +109,10 @@ fn what_stays_true_is_offered_to_those_who_come_late() {
     let latched: Vec<&str> =
         durable.iter().filter(|(_, is)| **is).map(|(topic, _)| topic.as_str()).collect();
     assert_eq!(latched, ["/map", "/prior_map", "/robot_description", "/tf_static", "/world"]);
-    let last = MessageStream::new(&bag.bytes).unwrap().map(Result::unwrap).last().unwrap();
+    let last = MessageStream::new(&plain(&bag.bytes)).unwrap().map(Result::unwrap).last().unwrap();
     assert_eq!(last.channel.topic, "/rosout");
     assert!(last.data.windows(21).any(|text| text == b"the trial ended: late"));
-    let left = MessageStream::new(&bag.bytes)
+    let left = MessageStream::new(&plain(&bag.bytes))
         .unwrap()
         .map(Result::unwrap)
         .find(|message| message.channel.topic == "/time_left")
@@ -123,7 +124,7 @@ fn what_stays_true_is_offered_to_those_who_come_late() {
 #[test]
 fn a_scan_is_laid_out_as_common_data_representation_has_it() {
     let bag = bag(&sensing(), None).unwrap();
-    let scan = MessageStream::new(&bag.bytes)
+    let scan = MessageStream::new(&plain(&bag.bytes))
         .unwrap()
         .map(Result::unwrap)
         .find(|message| message.channel.topic == "/scan")
@@ -143,7 +144,8 @@ fn a_scan_is_laid_out_as_common_data_representation_has_it() {
 fn the_scanner_stands_at_its_height_and_the_robot_is_described() {
     let bag = bag(&sensing(), None).unwrap();
     let of = |topic: &str| {
-        let mut all = MessageStream::new(&bag.bytes).unwrap().map(Result::unwrap);
+        let bytes = plain(&bag.bytes);
+        let mut all = MessageStream::new(&bytes).unwrap().map(Result::unwrap);
         all.find(|message| message.channel.topic == topic).unwrap()
     };
     // Encapsulation 4; length with end 4 and 18 bytes.
@@ -208,4 +210,83 @@ fn the_map_in_a_bag_is_read_back() {
         // Read or refused; never worse.
         let _ = (read_bag(&bytes[..cut], None), read_bag(&damaged, None));
     }
+}
+
+#[test]
+fn a_bag_says_which_trial_it_is_by_the_labels_of_its_study() {
+    let mut recording = sensing();
+    recording.name = "none/0".to_owned();
+    recording.title = "no prior, trial 0".to_owned();
+    recording.outcome = "gave-up".to_owned();
+    let bytes = bag_under_banner(&recording, None, Some("NOT CHECKED")).unwrap().bytes;
+    let summary = mcap::Summary::read(&bytes).unwrap().unwrap();
+    let told = mcap::read::metadata(&bytes, &summary.metadata_indexes[0]).unwrap();
+    let told: Vec<(&str, &str)> =
+        told.metadata.iter().map(|(key, value)| (key.as_str(), value.as_str())).collect();
+    assert_eq!(
+        told,
+        [
+            ("banner", "NOT CHECKED"),
+            ("outcome", "gave-up"),
+            ("title", "no prior, trial 0"),
+            ("trial", "none/0"),
+        ]
+    );
+    let lines: Vec<_> = MessageStream::new(&plain(&bytes))
+        .unwrap()
+        .map(Result::unwrap)
+        .filter(|message| message.channel.topic == "/rosout")
+        .collect();
+    let has = |i: usize, text: &str| {
+        lines[i].data.windows(text.len()).any(|part| part == text.as_bytes())
+    };
+    assert!(has(0, "no prior, trial 0") && has(lines.len() - 1, "the trial ended: gave up"));
+}
+
+#[test]
+fn chunks_are_compressed_and_every_index_points_at_what_it_names() {
+    let bytes = bag_under_banner(&sensing(), None, Some("NOT CHECKED")).unwrap().bytes;
+    let summary = mcap::Summary::read(&bytes).unwrap().unwrap();
+    assert!(!summary.chunk_indexes.is_empty());
+    for index in &summary.chunk_indexes {
+        let at = usize::try_from(index.chunk_start_offset).unwrap();
+        let length = usize::try_from(index.chunk_length).unwrap();
+        let chunk = mcap::parse_record(bytes[at], &bytes[at + 9..at + length]).unwrap();
+        let mcap::records::Record::Chunk { header, data } = chunk else {
+            panic!("no chunk at {at}")
+        };
+        assert_eq!((header.compression.as_str(), index.compression.as_str()), ("zstd", "zstd"));
+        assert_eq!(header.compressed_size, index.compressed_size);
+        assert_eq!(data.len() as u64, index.compressed_size);
+        assert!(index.compressed_size < index.uncompressed_size);
+        assert_eq!(index.message_index_offsets.len(), 15);
+        for (channel, at) in &index.message_index_offsets {
+            let at = usize::try_from(*at).unwrap();
+            // Kind 7 is a message index; behind the head stands the channel.
+            let found = (bytes[at], u16::from_le_bytes([bytes[at + 9], bytes[at + 10]]));
+            assert_eq!(found, (7, *channel));
+        }
+    }
+    let index = &summary.metadata_indexes[0];
+    assert_eq!(mcap::read::metadata(&bytes, index).unwrap().name, "reenact");
+    // Both checksums, by the rule of the specification.
+    let word = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap());
+    let long = |at: usize| {
+        usize::try_from(u64::from_le_bytes(bytes[at..at + 8].try_into().unwrap())).unwrap()
+    };
+    let footer = bytes.len() - 8 - 29;
+    let start = long(footer + 9);
+    assert_eq!(bytes[footer], 2);
+    assert_eq!(word(footer + 25), crc32fast::hash(&bytes[start..footer + 25]));
+    let data_end = start - 13;
+    assert_eq!((bytes[data_end], word(data_end + 9)), (15, crc32fast::hash(&bytes[..data_end])));
+    // The groups of the summary lie one after the other, each of records of its kind.
+    let (mut at, mut next) = (long(footer + 17), start);
+    while bytes[at] == 14 {
+        let (group, begins) = (bytes[at + 9], long(at + 10));
+        assert_eq!((begins, bytes[begins]), (next, group));
+        next = begins + long(at + 18);
+        at += 9 + long(at + 1);
+    }
+    assert_eq!((next, at), (long(footer + 17), footer));
 }

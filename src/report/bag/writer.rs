@@ -2,6 +2,7 @@
 
 use super::definitions::definition;
 use super::messages::{Message, nanoseconds};
+use super::packed::packed;
 use byteorder::LittleEndian;
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{WriteOptions, Writer};
@@ -35,6 +36,11 @@ pub enum BagError {
     /// A message cannot be encoded.
     #[error(transparent)]
     Message(#[from] cdr_encoding::Error),
+    /// The container's own bytes are not as it says.
+    #[error(
+        "the bag's records cannot be compressed: they are not as the MCAP specification has them"
+    )]
+    Unpackable,
 }
 
 /// A bag in the making.
@@ -73,9 +79,14 @@ impl BagWriter {
         Ok(self.writer.write_to_known_channel(&header, &bytes)?)
     }
 
-    /// Writes the metadata record `name` with one entry.
-    pub(super) fn tell(&mut self, name: &str, key: &str, value: &str) -> Result<(), BagError> {
-        let metadata = BTreeMap::from([(key.to_owned(), value.to_owned())]);
+    /// Writes the metadata record `name` with those `entries` that say something; none where none does.
+    pub(super) fn tell(&mut self, name: &str, entries: &[(&str, &str)]) -> Result<(), BagError> {
+        let told = entries.iter().filter(|(_, value)| !value.is_empty());
+        let metadata: BTreeMap<String, String> =
+            told.map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
+        if metadata.is_empty() {
+            return Ok(());
+        }
         let record = Metadata { name: name.to_owned(), metadata };
         Ok(self.writer.write_metadata(&record)?)
     }
@@ -92,6 +103,7 @@ impl BagWriter {
     pub(super) fn finish(mut self) -> Result<(Vec<u8>, BTreeMap<&'static str, u32>), BagError> {
         self.writer.finish()?;
         let counts = self.channels.into_iter().map(|(topic, (_, count))| (topic, count));
-        Ok((self.writer.into_inner().into_inner(), counts.collect()))
+        let plain = self.writer.into_inner().into_inner();
+        Ok((packed(&plain).ok_or(BagError::Unpackable)?, counts.collect()))
     }
 }

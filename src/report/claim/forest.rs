@@ -1,8 +1,8 @@
 //! Claims as a forest plot: every comparison's effect with its interval against the line that its claim draws, and what the paper's
 //! own numbers give. Claims of one quantity stand together, on one axis.
 
-use super::statement::{Statement, Wanted};
 use crate::claims::published::PublishedCell;
+use crate::claims::statement::{Statement, Wanted};
 use crate::claims::verdict::ComparisonVerdict;
 use crate::claims::{ClaimVerdict, Judgement};
 use crate::figure::Axis;

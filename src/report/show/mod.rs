@@ -33,9 +33,39 @@ use std::collections::BTreeMap;
 /// Height (m) at which worlds are cut where no robot says otherwise: the lidar of the studies' Kobuki.
 pub const CUT_HEIGHT: f64 = 0.1602;
 
+/// What a drawing is of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// A robot.
+    Robot,
+    /// A world.
+    World,
+    /// An occupancy grid.
+    Map,
+    /// A map of rooms and the ways between them.
+    TopoMetricMap,
+    /// What a robot may be told beforehand of a world.
+    Prior,
+}
+
+impl Kind {
+    /// Returns the word for it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Robot => "robot",
+            Self::World => "world",
+            Self::Map => "map",
+            Self::TopoMetricMap => "topo-metric-map",
+            Self::Prior => "prior",
+        }
+    }
+}
+
 /// What `reenact show` gives for one file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drawing {
+    /// What is drawn.
+    pub kind: Kind,
     /// The drawing, as an SVG file.
     pub svg: String,
     /// Grid maps only: a PNG of one pixel per cell, as `map_saver` writes it.
@@ -102,13 +132,14 @@ pub fn draw(
             };
             let (robot, warnings) = description::read(&source, &request, &mut *robot.files)?;
             let (svg, text) = (robot_svg(&robot), describe_robot(&robot));
-            return Ok(Drawing { svg, png: None, text, warnings });
+            return Ok(Drawing { kind: Kind::Robot, svg, png: None, text, warnings });
         }
         return Ok(drawn_world(&sdf::read_with(&source, models)?, height));
     }
     if map_server::is_descriptor(text) {
         let (map, warnings) = read_map(name, &source, fetch)?;
         return Ok(Drawing {
+            kind: Kind::Map,
             svg: grid_svg(name, &map),
             png: Some(grid_png(&map)),
             text: describe_grid(name, &map),
@@ -141,6 +172,7 @@ fn drawn_world(world: &crate::world::World, height: f64) -> Drawing {
     let warning = |text: String| Diagnostic::placeless(text).warning();
     let breaks = graph_of(world).and_then(Result::err).unwrap_or_default();
     Drawing {
+        kind: Kind::World,
         svg: world_svg(world, height),
         png: None,
         text: describe_world(world, height),

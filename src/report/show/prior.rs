@@ -91,6 +91,7 @@ pub fn draw_derived(
     let grid = grid.map_err(|problem| vec![Diagnostic::placeless(problem.to_string())])?;
     let name = format!("{what} of {}", world.name);
     Ok(Drawing {
+        kind: super::Kind::Prior,
         svg: grid_svg(&name, &grid),
         png: Some(grid_png(&grid)),
         text: describe_grid(&name, &grid),

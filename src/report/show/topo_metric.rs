@@ -55,6 +55,7 @@ fn drawing(name: &str, map: &TopoMetricMap, walls: &[Outline], world: Option<&st
     canvas.legend(&legend);
     let over = world.map_or_else(String::new, |world| format!("over the world: {world}\n"));
     Drawing {
+        kind: super::Kind::TopoMetricMap,
         svg: canvas.finish(&format!("Topo-metric map {title}")),
         png: None,
         text: format!("topo-metric map: {name}\n{over}{summary}\nmeaning: {}\n", map.meaning()),

@@ -94,6 +94,11 @@ impl Layout for OutcomeTable {
         let lines = abreast.table(with(side_by_side.clone()), |cell| {
             [if is_published { cell.in_line() } else { whole_number(cell.value()) }]
         });
+        let is_alone = |cell: &OutcomeCell| cell.agreement.mark().is_empty();
+        let legend = is_published.then(|| match cells.iter().any(is_alone) {
+            true => "ours, then the paper's, after \u{b7} where there is nothing to compare",
+            false => "ours, then the paper's",
+        });
         Set {
             grid: Grid {
                 quantity: self.show.describe(),
@@ -107,7 +112,7 @@ impl Layout for OutcomeTable {
             },
             print: Some(print),
             lines: Lines::all(lines, self.rows.len(), []),
-            legend: is_published.then(|| "ours, then the paper's".to_owned()).into_iter().collect(),
+            legend: legend.map(str::to_owned).into_iter().collect(),
             more: 0,
         }
     }

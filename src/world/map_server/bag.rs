@@ -29,7 +29,7 @@ const MAGIC: &[u8] = b"\x89MCAP";
 pub enum BagError {
     /// It is no MCAP file, or is damaged.
     #[error(
-        "it cannot be read: {0}; where it is compressed, write it anew with `mcap compress --compression none`"
+        "it cannot be read: {0}; where it is compressed by lz4, write it anew with `mcap compress --compression zstd`"
     )]
     Unreadable(String),
     /// There is no grid in it.
@@ -59,6 +59,12 @@ pub enum BagError {
 /// Returns whether `bytes` begin as an MCAP file does.
 pub fn is_bag(bytes: &[u8]) -> bool {
     bytes.starts_with(MAGIC)
+}
+
+/// Returns the messages of a bag, chunks taken apart: for tests of what writes bags.
+#[cfg(test)]
+pub(crate) fn plain(bytes: &[u8]) -> Vec<u8> {
+    framing::messages(bytes).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// Reads the last grid on `topic`; where none is asked for, on the one topic that holds grids, or on `/map`.

@@ -1,13 +1,14 @@
 //! `reenact vary --joint N`: the claims judged again at draws that change every assumption at once.
 
-use super::Study;
+use super::{Study, advice, verdicts_of};
 use crate::claims::Judgement;
-use crate::claims::multiverse::{Choice, Found, MOST_CELLS, Multiverse};
+use crate::claims::multiverse::{Choice, Explained, Found, MOST_CELLS, Multiverse};
+use crate::cli::args::DataFormat;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::load;
 use crate::cli::terminal::counted;
 use crate::manifest::Experiment;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 /// The greatest seed that a CSV file holds to the last digit, whatever reads it.
 const MOST_SEED: u64 = i64::MAX as u64;
@@ -31,7 +32,36 @@ impl Study<'_> {
             found.push(&values, self.found_at(&choices, &values)?);
         }
         let path = self.args.manifest.with_extension("multiverse.csv");
-        let advice = self.write(&path, &found.to_csv(), "multiverse")?;
+        let is_named = self.write(&path, &found.to_csv(), "multiverse")?;
+        if self.args.format == DataFormat::Json {
+            let answer = json!({
+                "manifest": self.args.manifest,
+                "path": path,
+                "named_in_manifest": is_named,
+                "trials_per_condition": trials,
+                "seed": seed,
+                "draws": draws,
+                "verdicts": verdicts_of(&verdicts),
+                "records_digest": format!("sha256:{records}"),
+                "choices": choices
+                    .iter()
+                    .map(|choice| json!({"setting": choice.setting, "domain": choice.domain.to_string()}))
+                    .collect::<Vec<_>>(),
+                "refused": found
+                    .refused()
+                    .map(|(draw, reason)| json!({"draw": draw.number, "reason": reason}))
+                    .collect::<Vec<_>>(),
+                "claims": found
+                    .explanation()
+                    .claims
+                    .iter()
+                    .map(|claim| told(claim, &found.settings))
+                    .collect::<Vec<_>>(),
+            });
+            self.terminal.result(&answer.to_string());
+            return Ok(Exit::Yes);
+        }
+        let advice = advice(is_named, &path, "multiverse");
         self.terminal.result(&in_words(&choices, &found));
         self.terminal.result(&format!(
             "wrote {}: {} judged at {}{advice}\n",
@@ -93,6 +123,23 @@ fn check_draws(draws: usize, choices: usize, claims: usize) -> Result<(), Failur
         )));
     }
     Ok(())
+}
+
+/// Writes for programs how many draws give a claim each verdict, and which choice explains most.
+fn told(claim: &Explained, settings: &[String]) -> Value {
+    let most = claim.most();
+    json!({
+        "claim": claim.claim,
+        "as_chosen": claim.chosen.to_string(),
+        "supported": claim.count(Judgement::Supported),
+        "contradicted": claim.count(Judgement::Contradicted),
+        "inconclusive": claim.count(Judgement::Inconclusive),
+        "cannot_be_tested": claim.count(Judgement::CannotBeTested),
+        "support_share_low": claim.support.map(|interval| interval.low),
+        "support_share_high": claim.support.map(|interval| interval.high),
+        "most_by": most.and_then(|(place, _)| settings.get(place)),
+        "most_share": most.map(|(_, share)| share),
+    })
 }
 
 /// Writes what was drawn, and for every claim how many draws support it and which choice explains most.

@@ -4,6 +4,8 @@
 
 use super::MAGIC;
 use crate::document::quoted;
+use ruzstd::decoding::{FrameDecoder, StreamingDecoder};
+use std::io::Read as _;
 
 /// Length of the magic bytes at both ends, and of a record's head: its kind and its length.
 const MAGIC_LENGTH: usize = 8;
@@ -19,6 +21,13 @@ const DATA_END: u8 = 15;
 
 /// What stands in a chunk before its compression: times, size, checksum.
 const CHUNK_HEAD: usize = 28;
+/// Where in it size and checksum of its records stand, before compression.
+const SIZE: usize = 16;
+const CHECKSUM: usize = 24;
+
+/// How much all chunks may come to where they are unpacked (bytes), and how far back a chunk may refer.
+const MAX_UNPACKED: u64 = 256 << 20;
+const MAX_WINDOW: u64 = 16 << 20;
 
 const LONGER: &str = "a record says that it is longer than it is";
 
@@ -29,7 +38,8 @@ const LONGER: &str = "a record says that it is longer than it is";
 pub(super) fn messages(bytes: &[u8]) -> Result<Vec<u8>, String> {
     let (magic, records) = bytes.split_at_checked(MAGIC_LENGTH).ok_or(LONGER)?;
     let mut kept = magic.to_vec();
-    keep(records, &mut kept, Within::File)?;
+    let mut room = MAX_UNPACKED;
+    keep(records, &mut kept, Within::File, &mut room)?;
     kept.extend_from_slice(magic);
     Ok(kept)
 }
@@ -41,7 +51,13 @@ enum Within {
     Chunk,
 }
 
-fn keep(mut records: &[u8], kept: &mut Vec<u8>, within: Within) -> Result<(), String> {
+/// Appends to `kept` what is wanted of `records`; chunks in them may be unpacked to so many bytes as there is `room`.
+fn keep(
+    mut records: &[u8],
+    kept: &mut Vec<u8>,
+    within: Within,
+    room: &mut u64,
+) -> Result<(), String> {
     loop {
         if match within {
             Within::File => records.starts_with(MAGIC),
@@ -56,11 +72,14 @@ fn keep(mut records: &[u8], kept: &mut Vec<u8>, within: Within) -> Result<(), St
             CHUNK if within == Within::Chunk => return Err("a chunk lies in a chunk".to_owned()),
             CHUNK => {
                 let (compression, records) = chunk(content).ok_or(LONGER)?;
-                if !compression.is_empty() {
-                    let name = String::from_utf8_lossy(compression);
-                    return Err(format!("a chunk is compressed as `{}`", quoted(&name)));
+                match compression {
+                    b"" => keep(records, kept, Within::Chunk, room)?,
+                    b"zstd" => keep(&unpacked(content, records, room)?, kept, Within::Chunk, room)?,
+                    other => {
+                        let name = String::from_utf8_lossy(other);
+                        return Err(format!("a chunk is compressed as `{}`", quoted(&name)));
+                    }
                 }
-                keep(records, kept, Within::Chunk)?;
                 false
             }
             SCHEMA => schema(content).map(|()| true).ok_or(LONGER)?,
@@ -95,6 +114,26 @@ fn chunk(content: &[u8]) -> Option<(&[u8], &[u8])> {
     Some((compression, records))
 }
 
+/// Unpacks `records`, those of the chunk with this `content`, into what there is `room` for.
+fn unpacked(content: &[u8], records: &[u8], room: &mut u64) -> Result<Vec<u8>, String> {
+    let size = content.get(SIZE..).and_then(|rest| rest.first_chunk()).ok_or(LONGER)?;
+    let sum = content.get(CHECKSUM..).and_then(|rest| rest.first_chunk()).ok_or(LONGER)?;
+    let (size, sum) = (u64::from_le_bytes(*size), u32::from_le_bytes(*sum));
+    *room = room.checked_sub(size).ok_or_else(|| {
+        format!("its chunks are larger than {} MiB when unpacked", MAX_UNPACKED >> 20)
+    })?;
+    let damaged = || "a chunk is not what it says, once it is unpacked".to_owned();
+    let mut decoder = FrameDecoder::new();
+    decoder.set_max_window_size(MAX_WINDOW);
+    let decoder = StreamingDecoder::new_with_decoder(records, decoder).map_err(|_| damaged())?;
+    // Memory is asked for as bytes come, not as the chunk says.
+    let mut unpacked = Vec::new();
+    decoder.take(size + 1).read_to_end(&mut unpacked).map_err(|_| damaged())?;
+    // A checksum of 0 says that there is none.
+    let is_whole = unpacked.len() as u64 == size && (sum == 0 || crc32fast::hash(&unpacked) == sum);
+    if is_whole { Ok(unpacked) } else { Err(damaged()) }
+}
+
 /// Looks at the lengths in a schema: behind its number its name, encoding and text.
 fn schema(content: &[u8]) -> Option<()> {
     let mut rest = content.get(2..)?;
@@ -119,6 +158,7 @@ fn channel(content: &[u8]) -> Option<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use ruzstd::encoding::{CompressionLevel, compress_to_vec};
 
     const ENDS: &[u8] = b"\x89MCAP0\r\n";
 
@@ -171,9 +211,43 @@ mod tests {
         assert_eq!(why(&[channel_of(&text(b"k"))]), LONGER);
         let nested = chunk_of(b"", &chunk_of(b"", b""));
         assert_eq!(why(&[nested]), "a chunk lies in a chunk");
-        assert_eq!(why(&[chunk_of(b"zstd", b"...")]), "a chunk is compressed as `zstd`");
+        assert_eq!(why(&[chunk_of(b"lz4", b"...")]), "a chunk is compressed as `lz4`");
         let cut = [ENDS, &record(MESSAGE, &[0; 30])].concat();
         assert_eq!(messages(&cut).unwrap_err(), "it ends within a record");
         assert_eq!(messages(b"\x89MCAP").unwrap_err(), LONGER);
+    }
+    /// Returns a chunk that says that `records` have this `size` and checksum.
+    fn packed_chunk(records: &[u8], size: u64, sum: u32) -> Vec<u8> {
+        let packed = compress_to_vec(records, CompressionLevel::Fastest);
+        let head = [&[0; SIZE][..], &size.to_le_bytes(), &sum.to_le_bytes()].concat();
+        let length = (packed.len() as u64).to_le_bytes();
+        record(CHUNK, &[&head[..], &text(b"zstd"), &length, &packed].concat())
+    }
+
+    #[test]
+    fn chunks_of_zstd_are_unpacked_and_held_against_what_they_say() {
+        let inner = [channel_of(b""), record(MESSAGE, &[7; 3000])].concat();
+        let (size, sum) = (inner.len() as u64, crc32fast::hash(&inner));
+        let ends = [record(DATA_END, &[0; 4]), record(FOOTER, &[0; 20])].concat();
+        let read = |chunk: Vec<u8>| messages(&bag(&[chunk, ends.clone()]));
+        let kept = bag(&[inner.clone(), ends.clone()]);
+        assert_eq!(read(packed_chunk(&inner, size, sum)), Ok(kept.clone()));
+        assert_eq!(read(packed_chunk(&inner, size, 0)), Ok(kept), "a checksum of 0 is none");
+        let damaged = Err("a chunk is not what it says, once it is unpacked".to_owned());
+        assert_eq!(read(packed_chunk(&inner, size, sum ^ 1)), damaged);
+        assert_eq!(read(packed_chunk(&inner, size - 1, sum)), damaged, "it is longer");
+        assert_eq!(read(packed_chunk(&inner, size + 1, sum)), damaged, "it is shorter");
+        let mut broken = packed_chunk(&inner, size, sum);
+        let last = broken.len() - 1;
+        broken.truncate(last);
+        broken[1..9].copy_from_slice(&(last as u64 - 9).to_le_bytes());
+        assert_eq!(read(broken), Err(LONGER.to_owned()));
+        let too_large = Err("its chunks are larger than 256 MiB when unpacked".to_owned());
+        assert_eq!(read(packed_chunk(b"", MAX_UNPACKED + 1, 0)), too_large);
+        // Chunks share what there is room for.
+        let mut room = 2 * size - 1;
+        let two = [packed_chunk(&inner, size, sum), packed_chunk(&inner, size, sum)].concat();
+        let told = keep(&[&two[..], ENDS].concat(), &mut Vec::new(), Within::File, &mut room);
+        assert_eq!(told, too_large.map(|_: Vec<u8>| ()));
     }
 }

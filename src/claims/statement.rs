@@ -4,26 +4,26 @@
 use crate::labels::Labels;
 
 /// Factor values that name cells: `start=C, deadline-s=680|477`.
-type Pins<'a> = Vec<(&'a str, &'a str)>;
+pub(crate) type Pins<'a> = Vec<(&'a str, &'a str)>;
 
 /// A comparison's statement, taken apart.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Statement<'a> {
+pub(crate) struct Statement<'a> {
     /// What is compared: `success`, `log of distance-m-at-95 over distance-m-at-80`.
-    pub(super) metric: &'a str,
+    pub(crate) metric: &'a str,
     /// The cells of the first side; none for all trials.
-    pub(super) first: Pins<'a>,
+    pub(crate) first: Pins<'a>,
     /// Those of the second, where there are two sides.
-    pub(super) second: Option<Pins<'a>>,
+    pub(crate) second: Option<Pins<'a>>,
     /// The word between the sides: `<`; empty where there is one.
-    relation: &'a str,
+    pub(crate) relation: &'a str,
     /// What follows: `within 0.1`, `at most 0.5`.
-    tail: &'a str,
+    pub(crate) tail: &'a str,
 }
 
 impl<'a> Statement<'a> {
     /// Takes `about` apart; `None` where it is of another form.
-    pub(super) fn read(about: &'a str) -> Option<Self> {
+    pub(crate) fn read(about: &'a str) -> Option<Self> {
         let (metric, rest) = about.split_once(": (")?;
         let (first, rest) = rest.split_once(')')?;
         let first = pins(first)?;
@@ -38,7 +38,7 @@ impl<'a> Statement<'a> {
     }
 
     /// Says it as one would: `success: strategy random higher than frontier, at start A and deadline-s 680`.
-    pub(super) fn in_words(&self, labels: &Labels) -> String {
+    pub(crate) fn in_words(&self, labels: &Labels) -> String {
         let said = |pins: &Pins<'a>| said(pins, labels);
         let metric = self.metric;
         let tail = if self.tail.is_empty() { String::new() } else { format!(" {}", self.tail) };
@@ -95,7 +95,7 @@ fn either(factor: &str, values: &str, labels: &Labels) -> String {
 }
 
 /// Names cells; a label says itself what it is, a value stands behind its factor.
-fn said(pins: &Pins<'_>, labels: &Labels) -> String {
+pub(crate) fn said(pins: &Pins<'_>, labels: &Labels) -> String {
     let pin = |(factor, values): &(&str, &str)| {
         let either = either(factor, values, labels);
         let first = values.split('|').next().unwrap_or_default();
@@ -108,7 +108,7 @@ fn said(pins: &Pins<'_>, labels: &Labels) -> String {
 }
 
 /// Returns the cell that `text` names (`start=A, strategy=random`) as readers see it; of another form, as it is.
-pub(super) fn cell_in_words(text: &str, labels: &Labels) -> String {
+pub(crate) fn cell_in_words(text: &str, labels: &Labels) -> String {
     if labels.is_empty() {
         return text.to_owned();
     }
@@ -120,16 +120,16 @@ pub(super) fn cell_in_words(text: &str, labels: &Labels) -> String {
 
 /// Where an effect has to lie for a statement to hold, in the unit of the effect.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Wanted {
+pub(crate) struct Wanted {
     /// Above this; minus infinity where anything below will do.
-    pub(super) low: f64,
+    pub(crate) low: f64,
     /// Below this.
-    pub(super) high: f64,
+    pub(crate) high: f64,
 }
 
 impl Wanted {
     /// Returns what `about` asks of the effect `name`; `None` where it asks nothing that can be drawn on a line.
-    pub(super) fn read(about: &str, name: &str) -> Option<Self> {
+    pub(crate) fn read(about: &str, name: &str) -> Option<Self> {
         const ANY: f64 = f64::INFINITY;
         let after = |word: &str| -> Option<f64> {
             let (_, rest) = about.split_once(word)?;
