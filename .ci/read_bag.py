@@ -5,7 +5,7 @@
 Every TOPIC must be there. The messages are decoded by mcap-ros2-support and, a second time, by rosbags. Frames are those of REP-105,
 and the robot's description has the frames that the bag moves. evo reads the true trajectory: its length along the arcs between the
 poses is the distance that the trial's record has, within a millimetre. Beside the bag stands a layout for Foxglove that names topics of
-the bag alone. Needs PyPI's mcap, mcap-ros2-support, rosbags and evo.
+the bag alone. Chunks are compressed by zstd, and every checksum and index holds. Needs PyPI's mcap, mcap-ros2-support, rosbags and evo.
 """
 
 import collections
@@ -17,6 +17,9 @@ from pathlib import Path
 
 import numpy as np
 from evo.core.trajectory import PoseTrajectory3D
+from mcap.reader import SeekingReader
+from mcap.records import Chunk, DataEnd, Footer
+from mcap.stream_reader import StreamReader
 from mcap_ros2.reader import read_ros2_messages
 from rosbags.highlevel import AnyReader
 
@@ -56,6 +59,34 @@ for topic, count in sorted(counts.items()):
     print(f"{topic}: {count}")
 missing = set(sys.argv[2:]) - set(counts)
 assert not missing, f"missing: {sorted(missing)}"
+
+# The container: every checksum (of each chunk unpacked, of the data, of the summary) is there and holds, read from end to end and by
+# the indices; chunks are compressed, and each lies where its index says.
+content = bag.read_bytes()
+with bag.open("rb") as file:
+    records = list(StreamReader(file, emit_chunks=True, validate_crcs=True).records)
+chunks = [record for record in records if isinstance(record, Chunk)]
+assert chunks and {chunk.compression for chunk in chunks} == {"zstd"}
+assert all(chunk.uncompressed_crc for chunk in chunks)
+assert all(record.data_section_crc for record in records if isinstance(record, DataEnd))
+assert all(record.summary_crc for record in records if isinstance(record, Footer))
+with bag.open("rb") as file:
+    reader = SeekingReader(file, validate_crcs=True)
+    summary = reader.get_summary()
+    assert len(summary.chunk_indexes) == len(chunks)
+    for index, chunk in zip(summary.chunk_indexes, chunks):
+        at = index.chunk_start_offset
+        assert content[at] == 6 and int.from_bytes(content[at + 1 : at + 9], "little") + 9 == index.chunk_length
+        sizes = (index.compressed_size, index.uncompressed_size)
+        assert sizes == (len(chunk.data), chunk.uncompressed_size) and index.compression == "zstd"
+        ends = index.chunk_start_offset + index.chunk_length
+        assert all(content[offset] == 7 and offset >= ends for offset in index.message_index_offsets.values())
+    sought = collections.Counter(channel.topic for _, channel, _ in reader.iter_messages())
+    assert sought == counts and summary.statistics.message_count == sum(counts.values())
+    told = {record.name: record.metadata for record in reader.iter_metadata()}["reenact"]
+assert set(told) == {"trial", "title", "outcome"}, told
+plain = sum(chunk.uncompressed_size for chunk in chunks)
+print(f"trial: {told['trial']} ({told['title']}), {told['outcome']}; {plain} bytes as {len(content)}")
 
 # REP-105: from the robot's sensor to the map, each frame with one parent; above it the truth's.
 chain, frame = [], "laser"

@@ -38,8 +38,8 @@ struct Contrast<'a> {
     /// Those that it is held against.
     others: BTreeSet<&'a str>,
     is_higher: bool,
-    /// What holds on both sides, in all comparisons.
-    place: Pins<'a>,
+    /// What holds on both sides: of each factor the values that the comparisons have, `680|477`.
+    place: Vec<(&'a str, String)>,
 }
 
 /// A comparison's side, of which one value is apart from what both have.
@@ -98,14 +98,23 @@ impl<'a> Contrast<'a> {
         };
         let (value, other): (_, fn(&Pair<'a>) -> &'a str) =
             if is_higher { (first.higher, |p| p.lower) } else { (first.lower, |p| p.higher) };
-        let in_all = |pin: &(&str, &str)| pairs.iter().all(|p| p.shared.contains(pin));
+        let values = |factor: &str| {
+            let mut values: Vec<&str> = Vec::new();
+            for (_, value) in pairs.iter().flat_map(|p| &p.shared).filter(|(f, _)| *f == factor) {
+                if !values.contains(value) {
+                    values.push(value);
+                }
+            }
+            values.join("|")
+        };
+        let factors = first.shared.iter().map(|(factor, _)| *factor);
         Some(Self {
             metric: first.metric,
             factor: first.factor,
             value,
             others: pairs.iter().map(other).collect(),
             is_higher,
-            place: first.shared.iter().filter(|pin| in_all(pin)).copied().collect(),
+            place: factors.map(|factor| (factor, values(factor))).collect(),
         })
     }
 
@@ -128,9 +137,9 @@ impl<'a> Contrast<'a> {
         let place = if self.place.is_empty() {
             String::new()
         } else {
-            let pin = |pin: &(&str, &str)| match pin.1.contains('|') {
-                true => said(&vec![*pin], labels),
-                false => labels.in_words(pin.0, pin.1),
+            let pin = |(factor, values): &(&str, String)| match values.contains('|') {
+                true => said(&vec![(factor, values)], labels),
+                false => labels.in_words(factor, values),
             };
             format!(", at {}", self.place.iter().map(pin).collect::<Vec<_>>().join(", "))
         };
@@ -225,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn what_differs_between_comparisons_is_not_where_it_holds() {
+    fn what_differs_between_comparisons_is_where_it_holds_too() {
         let several = [
             "success: (deadline-s=68, strategy=random) > (deadline-s=68, strategy=frontier)",
             "success: (deadline-s=90, strategy=random) > (deadline-s=90, strategy=frontier)",
@@ -233,7 +242,7 @@ mod tests {
         let one = verdict("D1", "supported", "supports", &several);
         assert_eq!(
             compared(&[one], &labels()).unwrap(),
-            "success is higher with random than with frontier, as printed (D1)"
+            "success is higher with random than with frontier, at deadline (s) 68 or 90, as printed (D1)"
         );
     }
 

@@ -174,7 +174,7 @@ fn thinned_scans_keep_their_rate_and_nothing_else_is_lost() {
     let thinned = bag(&sensing(), Some(5.0)).unwrap();
     assert_eq!((all.counts["/scan"], thinned.counts["/scan"]), (200, 50));
     assert_eq!(all.counts["/odom"], thinned.counts["/odom"]);
-    assert!(thinned.bytes.len() < all.bytes.len());
+    assert!(plain(&thinned.bytes).len() < plain(&all.bytes).len());
 }
 
 #[test]
@@ -259,7 +259,7 @@ fn chunks_are_compressed_and_every_index_points_at_what_it_names() {
         assert_eq!(header.compressed_size, index.compressed_size);
         assert_eq!(data.len() as u64, index.compressed_size);
         assert!(index.compressed_size < index.uncompressed_size);
-        assert_eq!(index.message_index_offsets.len(), 15);
+        assert_eq!(index.message_index_offsets.len(), 16);
         for (channel, at) in &index.message_index_offsets {
             let at = usize::try_from(*at).unwrap();
             // Kind 7 is a message index; behind the head stands the channel.
