@@ -137,9 +137,12 @@ impl<'a> Contrast<'a> {
         let place = if self.place.is_empty() {
             String::new()
         } else {
-            let pin = |(factor, values): &(&str, String)| match values.contains('|') {
-                true => said(&vec![(factor, values)], labels),
-                false => labels.in_words(factor, values),
+            let pin = |(factor, values): &(&str, String)| {
+                if values.contains('|') {
+                    said(&vec![(factor, values)], labels)
+                } else {
+                    labels.in_words(factor, values)
+                }
             };
             format!(", at {}", self.place.iter().map(pin).collect::<Vec<_>>().join(", "))
         };

@@ -95,9 +95,12 @@ impl Layout for OutcomeTable {
             [if is_published { cell.in_line() } else { whole_number(cell.value()) }]
         });
         let is_alone = |cell: &OutcomeCell| cell.agreement.mark().is_empty();
-        let legend = is_published.then(|| match cells.iter().any(is_alone) {
-            true => "ours, then the paper's, after \u{b7} where there is nothing to compare",
-            false => "ours, then the paper's",
+        let legend = is_published.then(|| {
+            if cells.iter().any(is_alone) {
+                "ours, then the paper's, after \u{b7} where there is nothing to compare"
+            } else {
+                "ours, then the paper's"
+            }
         });
         Set {
             grid: Grid {
