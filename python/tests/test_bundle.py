@@ -71,8 +71,10 @@ def test_figures_and_what_a_notebook_shows(published: reenact.Bundle, place: Pat
     html = published._repr_html_()
     assert html.startswith(f"<div><h3>{published.title}</h3><p>{published.finding}</p>")
     assert published.results_digest in html and html.count("data:image/svg+xml;base64,") == 1
-    # The same sentence as on the bundle's own page.
-    assert f'<p class="finding">{published.finding}</p>' in published.read("index.html").decode()
+    # The same sentence as on the bundle's own page; of a study without claims a report says beside it what changes against the baseline.
+    sealed, _, beside = published.finding.partition("; against no prior, ")
+    assert beside.startswith("distance travelled (m) changes by ") and beside.endswith(" %).")
+    assert f'<p class="finding">{sealed}.</p>' in published.read("index.html").decode()
 
 
 def test_what_it_is_and_what_is_in_it(published: reenact.Bundle) -> None:
