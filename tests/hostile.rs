@@ -218,3 +218,60 @@ fn threads_that_nobody_needs_are_not_started() {
         )
     );
 }
+
+/// Returns a bag whose only chunk says that it holds so many MiB of one message of zeros; compressed by zstd it has some kilobytes.
+fn bag_of_zeros(mib: usize) -> Vec<u8> {
+    /// The most that a block of zstd stands for (RFC 8878, section 3.1.1.2.4).
+    const BLOCK: usize = 128 << 10;
+    let size = mib << 20;
+    let record = |kind: u8, parts: &[&[u8]]| {
+        let content = parts.concat();
+        [&[kind][..], &content.len().to_le_bytes(), &content].concat()
+    };
+    let text = |text: &[u8]| [&u32::try_from(text.len()).unwrap().to_le_bytes(), text].concat();
+    let head = [&[5][..], &(size - 9).to_le_bytes()].concat();
+    // A frame with a window of 8 MiB: the message's head as it is, then blocks of one byte again and again.
+    let mut frame = b"\x28\xb5\x2f\xfd\0\x68".to_vec();
+    let block = |length: usize, kind: usize| (length << 3 | kind << 1).to_le_bytes();
+    frame.extend(&block(head.len(), 0)[..3]);
+    frame.extend(&head);
+    let mut left = size - head.len();
+    while left > 0 {
+        let length = left.min(BLOCK);
+        left -= length;
+        let mut block = block(length, 1);
+        block[0] |= u8::from(left == 0);
+        frame.extend(&block[..3]);
+        frame.push(0);
+    }
+    let sizes = [&[0; 16][..], &size.to_le_bytes(), &[0; 4]].concat();
+    let length = frame.len().to_le_bytes();
+    [
+        &b"\x89MCAP0\r\n"[..],
+        &record(1, &[&text(b""), &text(b"")]),
+        &record(3, &[&[1, 0], &text(b"nav_msgs/msg/OccupancyGrid"), &text(b"ros2msg"), &text(b"")]),
+        &record(4, &[&[0, 0, 1, 0], &text(b"/map"), &text(b"cdr"), &text(b"")]),
+        &record(6, &[&sizes, &text(b"zstd"), &length, &frame]),
+        &record(15, &[&[0; 4]]),
+        &record(2, &[&[0; 20]]),
+        b"\x89MCAP0\r\n",
+    ]
+    .concat()
+}
+
+#[test]
+fn a_bag_that_unpacks_to_thousands_of_times_its_size_costs_no_more_than_a_plain_one() {
+    let sandbox = with_study();
+    sandbox.write("tiny.yaml", TINY.replace("{floor-plan-of: world}", "{map: run.mcap}"));
+    for (mib, why) in [
+        (33, "it cannot be read: its chunks are larger than 32 MiB when unpacked"),
+        (30, "the grid on `/map` is damaged"),
+    ] {
+        let bag = bag_of_zeros(mib);
+        assert!(bag.len() < 4000, "{}", bag.len());
+        sandbox.write("run.mcap", bag);
+        let answer = sandbox.run_reading(&["check", "tiny.yaml"]);
+        let told = refused(&answer);
+        assert!(told.contains(why), "{told}");
+    }
+}

@@ -8,34 +8,27 @@
 //! 4. Summary Offset: where its group begins, and its length.
 //! 5. Data End and Footer: checksums, and where both parts of the summary begin.
 
+use crate::world::map_server::bag::framing::{
+    self, CHUNK, CHUNK_HEAD, DATA_END, FOOTER, HEAD, MAGIC_LENGTH, short,
+};
 use ruzstd::encoding::{CompressionLevel, compress_to_vec};
 use std::collections::BTreeMap;
 
-/// Length of the magic bytes at both ends, and of a record's head: its kind and its length.
-const MAGIC: usize = 8;
-const HEAD: usize = 9;
-
-/// Kinds of records.
-const FOOTER: u8 = 2;
-const CHUNK: u8 = 6;
+/// Kinds of records that no reader of messages needs.
 const CHUNK_INDEX: u8 = 8;
 const METADATA_INDEX: u8 = 0x0d;
 const SUMMARY_OFFSET: u8 = 0x0e;
-const DATA_END: u8 = 0x0f;
 
 /// What the chunks are compressed by.
 const ZSTD: &[u8] = b"zstd";
-
-/// What stands in a chunk before its compression: times, size, checksum.
-const CHUNK_HEAD: usize = 28;
 
 /// Compresses the chunks of `plain`, a whole bag; `None` where it is no bag that the container's crate writes. The same bytes give
 /// the same bytes on every machine.
 pub(super) fn packed(plain: &[u8]) -> Option<Vec<u8>> {
     let mut packing = Packing::default();
-    packing.bytes.extend_from_slice(plain.get(..MAGIC)?);
-    let mut at = MAGIC;
-    while at < plain.len() - MAGIC {
+    packing.bytes.extend_from_slice(plain.get(..MAGIC_LENGTH)?);
+    let mut at = MAGIC_LENGTH;
+    while at < plain.len() - MAGIC_LENGTH {
         let (kind, content) = record(plain.get(at..)?)?;
         packing.starts.insert(at as u64, packing.bytes.len() as u64);
         packing.record(at as u64, kind, content)?;
@@ -161,9 +154,8 @@ struct Chunk {
 
 /// Compresses the records of a chunk that has this `content`, where that makes them shorter.
 fn chunk(content: &[u8]) -> Option<Chunk> {
-    let (head, rest) = content.split_at_checked(CHUNK_HEAD)?;
-    let (compression, rest) = short(rest)?;
-    let (_, records) = number(rest)?;
+    let (compression, records) = framing::chunk(content)?;
+    let head = &content[..CHUNK_HEAD];
     let shorter = compress_to_vec(records, CompressionLevel::Fastest);
     if !compression.is_empty() || shorter.len() >= records.len() {
         return Some(Chunk { bytes: content.to_vec(), compressed: None });
@@ -178,10 +170,4 @@ fn chunk(content: &[u8]) -> Option<Chunk> {
 fn number(bytes: &[u8]) -> Option<(u64, &[u8])> {
     let (number, rest) = bytes.split_first_chunk()?;
     Some((u64::from_le_bytes(*number), rest))
-}
-
-/// Returns bytes whose number of 32 bits stands before them, and what comes behind.
-fn short(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
-    let (length, rest) = bytes.split_first_chunk()?;
-    rest.split_at_checked(usize::try_from(u32::from_le_bytes(*length)).ok()?)
 }

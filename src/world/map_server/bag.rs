@@ -1,7 +1,7 @@
 //! The occupancy grid of a bag: `nav_msgs/msg/OccupancyGrid` in an MCAP file, as `ros2 bag record --storage mcap` and
 //! `reenact replay --mcap` write it. The last message of its topic counts.
 
-mod framing;
+pub(crate) mod framing;
 
 use super::descriptor::STRAIGHT;
 use super::turned;

@@ -8,25 +8,26 @@ use ruzstd::decoding::{FrameDecoder, StreamingDecoder};
 use std::io::Read as _;
 
 /// Length of the magic bytes at both ends, and of a record's head: its kind and its length.
-const MAGIC_LENGTH: usize = 8;
-const HEAD: usize = 9;
+pub(crate) const MAGIC_LENGTH: usize = 8;
+pub(crate) const HEAD: usize = 9;
 
 /// Kinds of records.
-const FOOTER: u8 = 2;
+pub(crate) const FOOTER: u8 = 2;
 const SCHEMA: u8 = 3;
 const CHANNEL: u8 = 4;
 const MESSAGE: u8 = 5;
-const CHUNK: u8 = 6;
-const DATA_END: u8 = 15;
+pub(crate) const CHUNK: u8 = 6;
+pub(crate) const DATA_END: u8 = 15;
 
 /// What stands in a chunk before its compression: times, size, checksum.
-const CHUNK_HEAD: usize = 28;
+pub(crate) const CHUNK_HEAD: usize = 28;
 /// Where in it size and checksum of its records stand, before compression.
 const SIZE: usize = 16;
 const CHECKSUM: usize = 24;
 
-/// How much all chunks may come to where they are unpacked (bytes), and how far back a chunk may refer.
-const MAX_UNPACKED: u64 = 256 << 20;
+/// How much all chunks may come to where they are unpacked (bytes), of which up to four copies are in memory at a time, and how far
+/// back a chunk may refer.
+const MAX_UNPACKED: u64 = 32 << 20;
 const MAX_WINDOW: u64 = 16 << 20;
 
 const LONGER: &str = "a record says that it is longer than it is";
@@ -101,13 +102,13 @@ fn counted(length: u64, bytes: &[u8]) -> Option<(&[u8], &[u8])> {
 }
 
 /// Returns bytes whose number of 32 bits stands before them, and what comes behind.
-fn short(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
+pub(crate) fn short(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
     let (length, rest) = bytes.split_first_chunk()?;
     counted(u32::from_le_bytes(*length).into(), rest)
 }
 
 /// Returns how a chunk is compressed, and its records.
-fn chunk(content: &[u8]) -> Option<(&[u8], &[u8])> {
+pub(crate) fn chunk(content: &[u8]) -> Option<(&[u8], &[u8])> {
     let (compression, rest) = short(content.get(CHUNK_HEAD..)?)?;
     let (length, rest) = rest.split_first_chunk()?;
     let (records, _) = counted(u64::from_le_bytes(*length), rest)?;
@@ -216,6 +217,7 @@ mod tests {
         assert_eq!(messages(&cut).unwrap_err(), "it ends within a record");
         assert_eq!(messages(b"\x89MCAP").unwrap_err(), LONGER);
     }
+
     /// Returns a chunk that says that `records` have this `size` and checksum.
     fn packed_chunk(records: &[u8], size: u64, sum: u32) -> Vec<u8> {
         let packed = compress_to_vec(records, CompressionLevel::Fastest);
@@ -242,7 +244,7 @@ mod tests {
         broken.truncate(last);
         broken[1..9].copy_from_slice(&(last as u64 - 9).to_le_bytes());
         assert_eq!(read(broken), Err(LONGER.to_owned()));
-        let too_large = Err("its chunks are larger than 256 MiB when unpacked".to_owned());
+        let too_large = Err("its chunks are larger than 32 MiB when unpacked".to_owned());
         assert_eq!(read(packed_chunk(b"", MAX_UNPACKED + 1, 0)), too_large);
         // Chunks share what there is room for.
         let mut room = 2 * size - 1;
