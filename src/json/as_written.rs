@@ -5,11 +5,13 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::Value;
 use std::fmt;
 use std::marker::PhantomData;
+use std::sync::Arc;
 
 /// What stands at a key where this program writes a `T`: kept as it was written, and a `T` only when that is asked for. A document
 /// is not refused as a whole for one key that nobody reads, and says the same when it is written again.
 pub struct AsWritten<T> {
-    value: Option<Value>,
+    /// Shared by clones: the conditions of a study may come to many megabytes.
+    value: Option<Arc<Value>>,
     of: PhantomData<fn() -> T>,
 }
 
@@ -21,7 +23,7 @@ impl<T> AsWritten<T> {
 
     /// Returns what stands there, whatever it is.
     pub fn value(&self) -> Option<&Value> {
-        self.value.as_ref()
+        self.value.as_deref()
     }
 }
 
@@ -31,7 +33,7 @@ impl<T: Serialize> AsWritten<T> {
     /// # Panics
     /// As [`value_of`](super::value_of).
     pub fn of(value: &T) -> Self {
-        Self { value: Some(super::value_of(value)), of: PhantomData }
+        Self { value: Some(Arc::new(super::value_of(value))), of: PhantomData }
     }
 }
 
@@ -41,7 +43,7 @@ impl<T: DeserializeOwned> AsWritten<T> {
     /// # Errors
     /// Where it is no `T`.
     pub fn read(&self) -> Result<T, serde_json::Error> {
-        match &self.value {
+        match self.value() {
             Some(value) => T::deserialize(value),
             None => T::deserialize(&Value::Null),
         }
@@ -74,12 +76,12 @@ impl<T> fmt::Debug for AsWritten<T> {
 
 impl<T> Serialize for AsWritten<T> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        self.value.serialize(serializer)
+        self.value().serialize(serializer)
     }
 }
 
 impl<'de, T> Deserialize<'de> for AsWritten<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        Ok(Self { value: Some(Value::deserialize(deserializer)?), of: PhantomData })
+        Ok(Self { value: Some(Arc::new(Value::deserialize(deserializer)?)), of: PhantomData })
     }
 }

@@ -10,7 +10,7 @@ use crate::json;
 use crate::studies::Setup;
 use crate::studies::inference::{
     Distribution, HoldOut, Inference, InferenceSetup, LeftOut, Observed, ObservedCell, Prior,
-    Shared,
+    Shared, Times,
 };
 use crate::table::Table;
 use serde_json::Value;
@@ -106,7 +106,8 @@ fn inference(
             faults.unknown(&place, message, "not one of `by`", name, &columns);
         }
     }
-    let observed = observed?;
+    let mut observed = observed?;
+    let times = times(doc, published, &mut observed, faults)?;
     let priors: Vec<Prior> = priors.into_iter().collect::<Option<_>>()?;
     let mut hold_outs = vec![HoldOut::nothing(&observed)];
     for kind in &doc.hold_out {
@@ -118,9 +119,11 @@ fn inference(
     Some(Inference {
         observed,
         priors,
+        times,
         concentration: doc.concentration.clone(),
         walks: doc.walks,
         points: doc.points,
+        rounds: doc.rounds,
         draws: doc.draws,
         simulated_tables: doc.simulated_tables,
         hold_outs,
@@ -190,7 +193,8 @@ fn observed(
         let count = |percent: f64| (percent * n / 100.0).round().clamp(0.0, n) as u32;
         let (a, b, all) = (count(a), count(b), count(100.0));
         let b = b.min(all - a);
-        cells.push(ObservedCell { levels: own, counts: [a, b, all - a - b], left_out: false });
+        let counts = [a, b, all - a - b];
+        cells.push(ObservedCell { levels: own, counts, time_s: None, left_out: false });
     }
     let mut left_out = Vec::new();
     for (index, out) in doc.left_out.iter().enumerate() {
@@ -229,6 +233,72 @@ fn observed(
     }
     let outcomes = [(*first).clone(), (*second).clone()];
     Some(Observed { outcomes, factors: doc.by.clone(), cells, left_out })
+}
+
+/// Puts the mean times into the cells of `observed`, where times are learned from; the outer `None` where they cannot be read.
+#[expect(clippy::option_option, reason = "not asked for is no fault")]
+fn times(
+    doc: &InferDoc,
+    published: &BTreeMap<String, Table>,
+    observed: &mut Observed,
+    faults: &mut Faults<'_>,
+) -> Option<Option<Times>> {
+    let Some(asked) = &doc.times else { return Some(None) };
+    let place = format!("{PLACE}/times/published");
+    let Some(table) = published.get(&asked.published) else {
+        let known: Vec<&str> = published.keys().map(String::as_str).collect();
+        let message = format!("unknown published numbers `{}`", asked.published);
+        faults.unknown(&place, message, "not a key of `published`", &asked.published, &known);
+        return None;
+    };
+    let lacking = doc.by.iter().map(String::as_str).chain(["value", "n"]);
+    if let Some(column) = lacking.into_iter().find(|column| table.column(column).is_none()) {
+        let message = format!(
+            "the published numbers `{}` have no column `{column}`, which mean times need",
+            asked.published
+        );
+        faults.at(&place, message, "expected a mean (s) and of how many trials in every row");
+        return None;
+    }
+    let mut found = 0_usize;
+    for cell in &mut observed.cells {
+        let same = |row: &&Vec<crate::table::Value>| {
+            doc.by
+                .iter()
+                .zip(&cell.levels)
+                .all(|(column, level)| table.value(row, column).to_string() == *level)
+        };
+        let Some(row) = table.rows.iter().find(same) else { continue };
+        let number = |column: &str| table.value(row, column).as_f64();
+        let (Some(seconds), Some(trials)) = (number("value"), number("n")) else { continue };
+        if trials >= f64::from(asked.at_least) && seconds > 0.0 {
+            cell.time_s = Some(seconds);
+            found += 1;
+        }
+    }
+    if found == 0 {
+        let message = format!(
+            "no cell of the observed table has a mean time of at least {} trials in `{}`",
+            asked.at_least, asked.published
+        );
+        faults.at(&place, message, "expected rows of the same cells");
+        return None;
+    }
+    if asked.model_error.len() != doc.concentration.len() {
+        let message = format!(
+            "expected a model error for each of {} concentrations, found {}",
+            doc.concentration.len(),
+            asked.model_error.len()
+        );
+        let place = format!("{PLACE}/times/model-error");
+        faults.at(&place, message, "in the order of `concentration`");
+        return None;
+    }
+    Some(Some(Times {
+        model_error: asked.model_error.clone(),
+        scatter: asked.scatter,
+        at_least: asked.at_least,
+    }))
 }
 
 fn prior(path: &str, doc: &ChoicePriorDoc, faults: &mut Faults<'_>) -> Option<Prior> {

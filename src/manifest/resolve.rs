@@ -147,8 +147,8 @@ impl Resolver<'_> {
                 .iter()
                 .map(|(name, file)| (name.clone(), normalised(file.path())))
                 .collect(),
-            tables: match doc.infer {
-                Some(_) => Shown::requests(),
+            tables: match &doc.infer {
+                Some(infer) => Shown::requests(infer.times.is_some()),
                 None => doc.tables.clone(),
             },
             figures: doc.figures.clone(),

@@ -25,17 +25,23 @@ pub fn ln_probability<const N: usize>(
     })
 }
 
-/// Computes the likelihood of three `counts` as [`ln_probability`] does, relative to that of a model that expects just what was
-/// counted, by products: for tables that are asked millions of times.
+/// Computes the likelihood of three `counts` as [`ln_probability`] does, relative to that of a multinomial which expects just what
+/// was counted, by products: for tables that are asked millions of times. The reference knows no concentration, so that
+/// likelihoods of different concentrations compare.
 pub fn relative_likelihood(counts: [u32; 3], expected: [f64; 3], concentration: f64) -> f64 {
     let all: u32 = counts.iter().sum();
-    let product = |shares: [f64; 3]| {
-        counts.iter().zip(shares).fold(1.0, |product, (count, share)| {
-            (0..*count).fold(product, |p, i| p * (concentration * share + f64::from(i)))
-        })
-    };
-    let counted = counts.map(|count| f64::from(count) / real(u64::from(all.max(1))));
-    product(expected) / product(counted)
+    let mut likelihood = 1.0;
+    let mut before = 0_u32;
+    for (count, share) in counts.into_iter().zip(expected) {
+        let counted = f64::from(count) / real(u64::from(all.max(1)));
+        for i in 0..count {
+            let drawn =
+                (concentration * share + f64::from(i)) / (concentration + f64::from(before));
+            likelihood *= drawn / counted;
+            before += 1;
+        }
+    }
+    likelihood
 }
 
 #[cfg(test)]
@@ -65,9 +71,15 @@ mod tests {
     }
 
     #[test]
-    fn the_relative_likelihood_is_one_at_best() {
+    fn relative_likelihoods_compare_over_shares_and_concentrations() {
         let counts = [20, 25, 5];
-        assert_eq!(relative_likelihood(counts, [0.4, 0.5, 0.1], 20.0), 1.0);
+        let counted = [0.4, 0.5, 0.1];
+        assert_close(relative_likelihood(counts, counted, 1e9), 1.0, 1e-5);
+        let (few, many) =
+            (ln_probability(counts, counted, 6.0), ln_probability(counts, counted, 48.0));
+        let [least, most] = [6.0, 48.0].map(|kappa| relative_likelihood(counts, counted, kappa));
+        assert!(least < most && most < 1.0, "what is trusted and right gains by it");
+        assert_close(math::ln(least / most), few - many, 1e-9);
         let (a, b) = ([0.5, 0.4, 0.1], [0.4, 0.4, 0.2]);
         let ln = |expected| ln_probability(counts, expected, 20.0);
         let ratio = relative_likelihood(counts, a, 20.0) / relative_likelihood(counts, b, 20.0);

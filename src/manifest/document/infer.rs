@@ -15,6 +15,9 @@ pub struct InferDoc {
     /// end so. Every row says of how many (`n`).
     #[schemars(extend("minProperties" = 2, "maxProperties" = 2))]
     pub observed: Ordered<String>,
+    /// Mean times of the trials that ended in the first outcome, which the table prints beside: learned from where this is given.
+    #[serde(default)]
+    pub times: Option<TimesDoc>,
     /// The columns that tell its cells apart; rows of different levels of the first are of different starts.
     #[schemars(length(min = 1))]
     pub by: Vec<String>,
@@ -31,10 +34,15 @@ pub struct InferDoc {
     #[serde(default = "walks")]
     #[schemars(range(min = 1, max = 1000))]
     pub walks: u32,
-    /// Draws of the numbers that trajectories can be timed again by, in each trial.
+    /// Draws of the numbers that trajectories can be timed again by, in each round.
     #[serde(default = "points")]
     #[schemars(range(min = 1, max = 10_000))]
     pub points: u32,
+    /// Rounds of such draws in each trial: each after the first is drawn near those that explain the table, and all are weighed by
+    /// how likely they were to be drawn.
+    #[serde(default = "rounds")]
+    #[schemars(range(min = 1, max = 20))]
+    pub rounds: u32,
     /// Posterior draws that each trial hands on.
     #[serde(default = "draws")]
     #[schemars(range(min = 1, max = 20))]
@@ -49,6 +57,28 @@ pub struct InferDoc {
     /// The columns by whose means a baseline predicts what is held out.
     #[serde(default)]
     pub baseline: Vec<String>,
+}
+
+/// How mean times are learned from.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct TimesDoc {
+    /// The published numbers: the mean (s), and of how many trials (`n`).
+    pub published: String,
+    /// Relative error of an expected mean that no sampling explains: one for each concentration, in their order, for both say how
+    /// far the model is trusted.
+    #[schemars(length(min = 1), inner(range(min = 0.01, max = 2.0)))]
+    pub model_error: Vec<f64>,
+    /// Standard deviation of a single time, over the mean.
+    #[schemars(range(min = 0.0, max = 5.0))]
+    pub scatter: f64,
+    /// From how many times on a mean is learned from.
+    #[serde(default = "at_least")]
+    #[schemars(range(min = 1))]
+    pub at_least: u32,
+    /// Where these come from.
+    #[serde(default)]
+    pub why: Option<String>,
 }
 
 /// Cells that are left out.
@@ -90,12 +120,20 @@ fn concentration() -> Vec<f64> {
     vec![6.0, 12.0, 24.0, 48.0]
 }
 
+fn at_least() -> u32 {
+    8
+}
+
 fn walks() -> u32 {
     32
 }
 
 fn points() -> u32 {
     48
+}
+
+fn rounds() -> u32 {
+    1
 }
 
 fn draws() -> u32 {

@@ -51,6 +51,25 @@ pub(super) fn declared(show: Shown, findings: &Findings<'_>) -> Vec<Column> {
             ]);
             columns
         }
+        Shown::Times => {
+            let seconds = |name: &str, meaning: &str| number(name, "s", meaning);
+            let factors = Posterior::of(findings)
+                .map_or_else(Vec::new, |p| p.inference().observed.factors.clone());
+            let mut columns: Vec<Column> =
+                factors.iter().map(|name| text(name, "A column of the observed table")).collect();
+            columns.extend([
+                seconds("printed-s", "Mean time that the paper prints"),
+                seconds("expected-s", "Median of what a table would print"),
+                seconds("low-s", "5 % quantile of it"),
+                seconds("high-s", "95 % quantile of it"),
+                Column::probability(
+                    "tail",
+                    "Probability of a time as far out as the printed one, on either side",
+                ),
+                text("left-out", "yes: left out of the likelihood").empty_where("it is not"),
+            ]);
+            columns
+        }
         Shown::HeldOut => vec![
             text("held-out", "What kind of part of the table is held out"),
             text("part", "Which part"),

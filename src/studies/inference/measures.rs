@@ -6,7 +6,7 @@ use crate::studies::{Entry, Measures};
 use crate::table::Column;
 
 /// What the beginnings of the names of measures mean.
-const MEANINGS: [(&str, &str); 9] = [
+const MEANINGS: [(&str, &str); 11] = [
     (
         "evidence-",
         "Logarithm of the likelihood of what is learned from, averaged over the prior in this building: by hold-out",
@@ -16,10 +16,18 @@ const MEANINGS: [(&str, &str); 9] = [
         "draw-cell-",
         "Probability of an outcome by a posterior draw: number of the draw, of the cell, of the outcome",
     ),
+    (
+        "draw-time-",
+        "Mean time (s) of the first outcome by a posterior draw: number of the draw, of the cell",
+    ),
     ("draw-", "A posterior draw: its number, and the number of what is supposed"),
     (
         "prior-cell-",
         "Probability of an outcome by a prior draw: number of the draw, of the cell, of the outcome",
+    ),
+    (
+        "prior-time-",
+        "Mean time (s) of the first outcome by a prior draw: number of the draw, of the cell",
     ),
     ("prior-", "A prior draw: its number, and the number of what is supposed"),
     (
@@ -73,6 +81,10 @@ impl Proposal {
                         put(format!("{beginning}-cell-{d:02}-{c:03}-{o}"), thousandths(*share));
                     }
                 }
+                for (c, time_s) in drawn.times.iter().enumerate() {
+                    let tenths = time_s.map_or(f64::NAN, |time_s| (10.0 * time_s).round() / 10.0);
+                    put(format!("{beginning}-time-{d:02}-{c:03}"), tenths);
+                }
             }
         }
         for (h, cells) in self.held.iter().enumerate() {
@@ -103,6 +115,9 @@ impl Proposal {
                 cells: (0..cells)
                     .map(|c| Some([outcome(c, 0)?, outcome(c, 1)?]))
                     .collect::<Option<_>>()?,
+                times: (0..if inference.times.is_some() { cells } else { 0 })
+                    .map(|c| value(format!("{beginning}-time-{d:02}-{c:03}")))
+                    .collect(),
             })
         };
         let held = |h: usize| {

@@ -15,16 +15,18 @@ mod proposal;
 mod requests;
 mod setup;
 mod tables;
+mod times;
 mod words;
 
 pub use hold_out::HoldOut;
-pub use likelihood::{GRID, Likelihoods};
+pub use likelihood::{GRID, Likelihoods, Place};
 pub use measures::measure;
-pub use observed::{LeftOut, Observed, ObservedCell};
+pub use observed::{LeftOut, Observed, ObservedCell, Printed};
 pub use posterior::Posterior;
 pub use proposal::{Below, Drawn, Proposal};
 pub use requests::{InferenceTable, Shown};
 pub use setup::{InferenceSetup, Shared};
+pub use times::Times;
 
 use super::Setup;
 use crate::math;
@@ -40,12 +42,18 @@ pub struct Inference {
     pub observed: Observed,
     /// What is not known, in the order written.
     pub priors: Vec<Prior>,
+    /// How mean times are learned from, where they are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub times: Option<Times>,
     /// How much the model is trusted: concentrations of the Dirichlet-multinomial, all as likely before.
     pub concentration: Vec<f64>,
     /// Trajectories behind each probability.
     pub walks: u32,
-    /// Draws of what a trajectory can be timed again by, in each trial.
+    /// Draws of what a trajectory can be timed again by, in each round of each trial.
     pub points: u32,
+    /// Rounds of such draws: each after the first is drawn near those that explain the table.
+    #[serde(skip_serializing_if = "is_one")]
+    pub rounds: u32,
     /// Posterior draws that each trial hands on.
     pub draws: u32,
     /// Tables made by known draws, to check the inference by.
@@ -155,6 +163,11 @@ pub trait Proposing: Sync {
         truths: &[Drawn],
         seeds: &Seeds,
     ) -> Result<Proposal, String>;
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands it over so")]
+fn is_one(rounds: &u32) -> bool {
+    *rounds == 1
 }
 
 /// Draws `count` places of each of `priors`, one in every of as many equal parts of it, in random order.

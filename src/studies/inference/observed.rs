@@ -24,8 +24,20 @@ pub struct ObservedCell {
     pub levels: Vec<String>,
     /// How many trials ended in the first outcome, the second, and otherwise.
     pub counts: [u32; 3],
+    /// The mean time (s) of those that ended in the first, where it is learned from.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time_s: Option<f64>,
     /// Whether it is left out.
     pub left_out: bool,
+}
+
+/// What a table prints in one cell, the observed one or one that was made.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Printed {
+    /// How many trials ended in the first outcome, the second, and otherwise.
+    pub counts: [u32; 3],
+    /// The mean time (s) of those that ended in the first, where it is learned from.
+    pub time_s: Option<f64>,
 }
 
 /// Cells that are left out by declaration.
@@ -40,6 +52,11 @@ pub struct LeftOut {
 }
 
 impl ObservedCell {
+    /// Returns what is printed in it.
+    pub fn printed(&self) -> Printed {
+        Printed { counts: self.counts, time_s: self.time_s }
+    }
+
     /// Returns how many trials there were.
     pub fn trials(&self) -> u32 {
         self.counts.iter().sum()

@@ -1,7 +1,7 @@
 //! All proposals together: what the observed table says of what was not known.
 
 use super::setup::draw_counts;
-use super::{Drawn, HoldOut, Inference, InferenceSetup, Proposal, Shared};
+use super::{Drawn, HoldOut, Inference, InferenceSetup, ObservedCell, Proposal, Shared, Times};
 use crate::condition::Condition;
 use crate::rng::{Seeds, Stream};
 use crate::stats::importance::{effective_size, ln_mean_exp, quantile, resample, weights};
@@ -161,6 +161,19 @@ impl<'a> Posterior<'a> {
         cells.map(|(index, _)| Predicted::of(inference, index, &draws, &mut stream)).collect()
     }
 
+    /// Returns what the mean time of each cell is expected to be, cell by cell: of those whose time is learned from.
+    pub fn times(&self) -> Vec<(&'a ObservedCell, PredictedTime)> {
+        let (draws, inference) = (self.draws(), self.inference());
+        let Some(how) = &inference.times else { return Vec::new() };
+        let mut stream = Seeds::new(0, Vec::new()).stream("predicted-times");
+        let mut all = Vec::new();
+        for (index, cell) in inference.observed.cells.iter().enumerate() {
+            let Some(printed_s) = cell.time_s else { continue };
+            all.push((cell, PredictedTime::of(how, index, cell, printed_s, &draws, &mut stream)));
+        }
+        all
+    }
+
     /// Returns the distance of the posterior's expectations to the print (points), over all cells that are not left out.
     pub fn fit(&self) -> f64 {
         let cells = self.cells();
@@ -292,13 +305,7 @@ impl<'a> Posterior<'a> {
 }
 
 fn concentration(inference: &Inference, drawn: &Drawn) -> f64 {
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "an index, as draws hold it"
-    )]
-    let index = drawn.values.last().copied().unwrap_or_default() as usize;
-    inference.concentration.get(index).copied().unwrap_or(1.0)
+    inference.concentration.get(drawn.trust()).copied().unwrap_or(1.0)
 }
 
 /// A cell as the posterior predicts it: shares of the first outcome (%).
@@ -327,21 +334,63 @@ impl Predicted {
             }
         }
         let alike = vec![1.0; made.len()];
-        let printed = cell.percent();
-        let share = |counts: &dyn Fn(f64) -> bool| {
-            real(made.iter().filter(|made| counts(**made)).count() as u64) / length(&made).max(1.0)
-        };
-        let (low, high) = (share(&|made| made <= printed), share(&|made| made >= printed));
         Self {
             expected: shares.iter().sum::<f64>() / length(&shares).max(1.0),
             interval: [0.05, 0.95].map(|at| quantile(&made, &alike, at)),
-            tail: (2.0 * low.min(high)).min(1.0),
+            tail: two_sided(&made, cell.percent()),
             range: [
                 shares.iter().copied().fold(f64::INFINITY, f64::min),
                 shares.iter().copied().fold(f64::NEG_INFINITY, f64::max),
             ],
         }
     }
+}
+
+/// The mean time of a cell as the posterior predicts it (s).
+#[derive(Debug, Clone, PartialEq)]
+pub struct PredictedTime {
+    /// The median.
+    pub expected: f64,
+    /// Between which times nine of ten tables would lie.
+    pub interval: [f64; 2],
+    /// Probability of a time at least as far out as the printed one, on its side, twice; at most 1.
+    pub tail: f64,
+}
+
+impl PredictedTime {
+    fn of(
+        how: &Times,
+        index: usize,
+        cell: &ObservedCell,
+        printed_s: f64,
+        draws: &[Kept<'_>],
+        stream: &mut Stream,
+    ) -> Self {
+        let mut made = Vec::with_capacity(REPLICATES * draws.len());
+        for kept in draws {
+            let Some(expected_s) = kept.drawn.times.get(index).copied().flatten() else { continue };
+            for _ in 0..REPLICATES {
+                let trials = cell.counts[0].max(how.at_least);
+                made.extend(how.draw(expected_s, trials, kept.drawn.trust(), stream));
+            }
+        }
+        let alike = vec![1.0; made.len()];
+        let at = |share| quantile(&made, &alike, share);
+        Self {
+            expected: at(0.5),
+            interval: [0.05, 0.95].map(at),
+            tail: two_sided(&made, printed_s),
+        }
+    }
+}
+
+/// Returns the share of `made` at least as far out as `printed`, on its side, twice; at most 1.
+fn two_sided(made: &[f64], printed: f64) -> f64 {
+    let share = |counts: &dyn Fn(f64) -> bool| {
+        real(made.iter().filter(|made| counts(**made)).count() as u64) / length(made).max(1.0)
+    };
+    let (low, high) = (share(&|made| made <= printed), share(&|made| made >= printed));
+    (2.0 * low.min(high)).min(1.0)
 }
 
 /// A part of the table that was held out.

@@ -24,6 +24,22 @@ pub struct Drawn {
     pub values: Vec<f64>,
     /// By cell: the probabilities of the first and the second outcome.
     pub cells: Vec<[f64; 2]>,
+    /// By cell: the mean time (s) of the first outcome, where it ever happens. Empty where no times are learned from.
+    pub times: Vec<Option<f64>>,
+}
+
+impl Drawn {
+    /// Returns the index of the concentration, which says how far the model is trusted.
+    pub fn trust(&self) -> usize {
+        let last = self.values.last().copied().unwrap_or_default();
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "an index, as draws hold it"
+        )]
+        let trust = last as usize;
+        trust
+    }
 }
 
 /// What a building says of a simulated table.

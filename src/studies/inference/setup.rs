@@ -1,6 +1,6 @@
 //! The setup of a condition of an inference: the study's own, and what all conditions share.
 
-use super::{Drawn, Inference, Likelihoods, Proposal, Proposing};
+use super::{Drawn, Inference, Likelihoods, Printed, Proposal, Proposing};
 use crate::digest::Sha256Digest;
 use crate::geometry::Pose;
 use crate::rng::{Seeds, Stream};
@@ -79,7 +79,7 @@ impl Shared {
     /// Returns the tables made by known draws of the prior, in buildings that are drawn too.
     fn simulate(&self) -> Result<Tables, String> {
         let observed = &self.inference.observed;
-        let mut tables = vec![observed.cells.iter().map(|cell| cell.counts).collect::<Vec<_>>()];
+        let mut tables = vec![observed.cells.iter().map(super::ObservedCell::printed).collect()];
         let mut truths = Vec::new();
         for table in 0..self.inference.simulated_tables {
             let coordinates = vec![("simulated-table".to_owned(), table.to_string())];
@@ -88,17 +88,20 @@ impl Shared {
             let truth =
                 self.proposing.predict(&self.buildings[building], &self.inference, &seeds)?;
             let mut stream = seeds.stream("counts");
-            let concentration = truth.values.last().copied().unwrap_or_default();
-            #[expect(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "an index, as draws hold it"
-            )]
-            let concentration = self.inference.concentration[concentration as usize];
-            let counts = truth.cells.iter().zip(&observed.cells).map(|(expected, cell)| {
-                draw_counts(*expected, concentration, cell.trials(), &mut stream)
+            let trust = truth.trust();
+            let concentration = self.inference.concentration[trust];
+            let mut timing = seeds.stream("times");
+            let made = observed.cells.iter().enumerate().map(|(at, cell)| {
+                let expected = truth.cells[at];
+                let counts = draw_counts(expected, concentration, cell.trials(), &mut stream);
+                let expected_s = truth.times.get(at).copied().flatten();
+                let how = self.inference.times.as_ref().zip(expected_s);
+                let time_s = how.and_then(|(how, expected_s)| {
+                    how.draw(expected_s, counts[0], trust, &mut timing)
+                });
+                Printed { counts, time_s }
             });
-            tables.push(counts.collect());
+            tables.push(made.collect::<Vec<_>>());
             truths.push(truth);
         }
         Ok(Tables { likelihoods: Likelihoods::of(&self.inference, &tables), truths })

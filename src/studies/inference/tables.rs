@@ -1,7 +1,7 @@
 //! What an inference found, as tables.
 
 use super::columns::declared;
-use super::posterior::{Held, Predicted};
+use super::posterior::{Held, Predicted, PredictedTime};
 use super::words;
 use super::{InferenceTable, Posterior, Shown, shown};
 use crate::stats::importance::quantile;
@@ -23,6 +23,7 @@ impl Layout for InferenceTable {
             Shown::Choices => choices(&posterior),
             Shown::Numbers => numbers(&posterior),
             Shown::Cells => cells(&posterior),
+            Shown::Times => times(&posterior),
             Shown::HeldOut => held_out(&posterior),
             Shown::Simulated => simulated(&posterior),
             Shown::Posterior => draws(&posterior, findings),
@@ -98,6 +99,7 @@ impl Layout for InferenceTable {
         match self.show {
             Shown::Summary => words::summary_in_words(cells),
             Shown::Cells => Some(words::never_matched(cells)),
+            Shown::Times => Some(words::times_never_matched(cells)),
             Shown::Choices => Some(words::literal_in_words(cells)),
             Shown::HeldOut => words::held_in_words(cells),
             Shown::Simulated => words::simulated_in_words(cells),
@@ -129,7 +131,9 @@ fn keys(show: Shown, findings: &Findings<'_>) -> usize {
     match show {
         Shown::Summary | Shown::Numbers | Shown::Simulated | Shown::Posterior => 1,
         Shown::Choices | Shown::HeldOut => 2,
-        Shown::Cells => Posterior::of(findings).map_or(1, |p| p.inference().observed.factors.len()),
+        Shown::Cells | Shown::Times => {
+            Posterior::of(findings).map_or(1, |p| p.inference().observed.factors.len())
+        }
     }
 }
 
@@ -236,6 +240,19 @@ fn cells(posterior: &Posterior<'_>) -> Vec<Row> {
     observed.cells.iter().zip(posterior.cells()).map(each).collect()
 }
 
+fn times(posterior: &Posterior<'_>) -> Vec<Row> {
+    let each = |(cell, predicted): (&super::ObservedCell, PredictedTime)| {
+        let mut row: Row = cell.levels.iter().map(|level| level.as_str().into()).collect();
+        row.push(cell.time_s.map_or(Value::Missing, rounded));
+        row.push(rounded(predicted.expected));
+        row.extend(predicted.interval.map(rounded));
+        row.push(rounded(predicted.tail));
+        row.push(cell.left_out.then(|| "yes".to_owned()).into());
+        row
+    };
+    posterior.times().into_iter().map(each).collect()
+}
+
 fn held_out(posterior: &Posterior<'_>) -> Vec<Row> {
     let row = |held: Held| -> Row {
         vec![
@@ -290,13 +307,7 @@ fn draws(posterior: &Posterior<'_>, findings: &Findings<'_>) -> Vec<Row> {
                 shown(&prior.written(*value)).into()
             });
         }
-        let last = kept.drawn.values.last().copied().unwrap_or_default();
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "an index, as draws hold it"
-        )]
-        let concentration = inference.concentration.get(last as usize).copied();
+        let concentration = inference.concentration.get(kept.drawn.trust()).copied();
         row.push(concentration.into());
         row.push(rounded(posterior.distance(kept.drawn)));
         row

@@ -10,6 +10,7 @@ fn observed() -> Observed {
                 cells.push(ObservedCell {
                     levels: vec![start.to_owned(), deadline.to_string(), strategy.to_owned()],
                     counts: [30, 15, 5],
+                    time_s: None,
                     left_out: false,
                 });
             }
@@ -78,15 +79,18 @@ fn a_proposal_survives_its_record() {
             distribution: Distribution::Values(vec![json!("uniform"), json!("nearest")]),
             literal: Some(0),
         }],
+        times: Some(Times { model_error: vec![0.3], scatter: 0.7, at_least: 8 }),
         concentration: vec![20.0],
         walks: 1,
         points: 1,
+        rounds: 1,
         draws: 1,
         simulated_tables: 1,
         hold_outs: vec![HoldOut::nothing(&observed())],
         baseline: Vec::new(),
     };
-    let drawn = Drawn { values: vec![3.0, 1.0, 0.0], cells: vec![[0.25, 0.5]; 8] };
+    let times = vec![Some(120.5), None, Some(3.0), None, None, None, None, None];
+    let drawn = Drawn { values: vec![3.0, 1.0, 0.0], cells: vec![[0.25, 0.5]; 8], times };
     let proposal = Proposal {
         ln_evidence: vec![-12.5],
         by_value: vec![vec![f64::NEG_INFINITY, -11.0]],

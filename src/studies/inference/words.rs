@@ -58,20 +58,31 @@ pub(super) fn literal_in_words(rows: &[Row]) -> String {
 }
 
 pub(super) fn never_matched(rows: &[Row]) -> String {
+    matched(rows, "cell", 8, |printed, expected| {
+        format!("printed {printed:.0} %, expected {expected:.0} %")
+    })
+}
+
+pub(super) fn times_never_matched(rows: &[Row]) -> String {
+    matched(rows, "time", 6, |printed, expected| {
+        format!("printed {printed:.0} s, expected {expected:.0} s")
+    })
+}
+
+/// Names the rows whose tail, the last number, is small; `numbers` columns stand behind their names: printed and expected first.
+fn matched(rows: &[Row], what: &str, numbers: usize, told: fn(f64, f64) -> String) -> String {
     let never: Vec<String> = rows
         .iter()
         .filter_map(|row| {
-            let end = row.len();
-            let tail = row[end - 2].as_f64()?;
-            let [printed, expected] = [row[end - 8].as_f64()?, row[end - 7].as_f64()?];
-            let name: Vec<String> = row[..end - 8].iter().map(ToString::to_string).collect();
-            (tail < NEVER).then(|| {
-                format!("{} (printed {printed:.0} %, expected {expected:.0} %)", name.join(" "))
-            })
+            let first = row.len() - numbers;
+            let tail = row[row.len() - 2].as_f64()?;
+            let [printed, expected] = [row[first].as_f64()?, row[first + 1].as_f64()?];
+            let name: Vec<String> = row[..first].iter().map(ToString::to_string).collect();
+            (tail < NEVER).then(|| format!("{} ({})", name.join(" "), told(printed, expected)))
         })
         .collect();
     if never.is_empty() {
-        format!("Every cell is matched: none has a tail below {NEVER}.")
+        format!("Every {what} is matched: none has a tail below {NEVER}.")
     } else {
         format!("Never matched, with a tail below {NEVER}: {}.", never.join("; "))
     }

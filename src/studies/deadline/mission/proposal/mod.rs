@@ -5,6 +5,7 @@
 //! the likelihood of all placements of the starts is the product over starts of a mean over vertices.
 
 mod model;
+mod rounds;
 mod score;
 mod timing;
 mod walk;
@@ -19,8 +20,9 @@ use crate::studies::deadline::Parameters;
 use crate::studies::inference::{Drawn, Inference, Likelihoods, Proposal, Proposing, stratified};
 
 use model::{Bears, Model};
+use rounds::{Group, Near, importance};
 use score::Scores;
-use timing::{Hazards, Sums, Timing};
+use timing::{Cuts, Hazards, Sums, Timing};
 use walk::{Site, Walk};
 
 /// Points of the prior that share their times: hazards cost less to suppose.
@@ -68,6 +70,8 @@ impl Proposing for AtGraphLevel {
         let site = Site { topology: model.topology, places: &model.places, maneuvers: &maneuvers };
         let mut walking = seeds.stream("walks");
         let mut cells = vec![[0.0; 2]; inference.observed.cells.len()];
+        let with_times = inference.times.is_some();
+        let mut times = vec![None; if with_times { cells.len() } else { 0 }];
         for (row, start) in starts.iter().enumerate() {
             let columns: Vec<usize> =
                 (0..model.columns.len()).filter(|column| model.columns[*column].0 == row).collect();
@@ -76,10 +80,10 @@ impl Proposing for AtGraphLevel {
             let pace = model.pace(&parameters);
             let timing = Timing::new(pace, &parameters.rules.schedule, &deadlines);
             let hazards = Hazards::of(&pace);
-            let (mut cuts, mut survivals) = (Vec::new(), Vec::new());
+            let (mut cuts, mut survivals) = (Cuts::default(), Vec::new());
             for strategy in 0..model.strategies.len() {
                 let rules = model.rules(&parameters, strategy);
-                let mut sums = Sums::none(model.goals.len(), deadlines.len());
+                let mut sums = Sums::none(model.goals.len(), deadlines.len(), with_times);
                 for walk in 0..u64::from(inference.walks) {
                     let place = (row * model.strategies.len() + strategy) as u64;
                     let stream = walking.at(place * u64::from(inference.walks) + walk);
@@ -91,7 +95,11 @@ impl Proposing for AtGraphLevel {
                 sums.divide(f64::from(inference.walks));
                 for (t, column) in columns.iter().enumerate() {
                     let at = goal * deadlines.len() + t;
-                    cells[model.cells[*column][strategy]] = [sums.reached[at], sums.collided[at]];
+                    let cell = model.cells[*column][strategy];
+                    cells[cell] = [sums.reached[at], sums.collided[at]];
+                    if with_times {
+                        times[cell] = sums.time_s(at);
+                    }
                 }
             }
         }
@@ -99,7 +107,7 @@ impl Proposing for AtGraphLevel {
         values.extend(starts.iter().map(|start| real(*start as u64)));
         values.extend(priors);
         values.push(real(concentration));
-        Ok(Drawn { values, cells })
+        Ok(Drawn { values, cells, times })
     }
 
     fn propose(
@@ -131,15 +139,18 @@ impl Proposing for AtGraphLevel {
         let points = timings * HAZARDS;
         let paces = stratified(paced.len(), timings, &mut stream);
         let others = stratified(hazards.len() + 1, points, &mut stream);
+        let even = paces.into_iter().zip(others.chunks(HAZARDS));
+        let mut groups: Vec<Group> =
+            even.map(|(pace, others)| Group { pace, others: others.to_vec() }).collect();
         let mut scores = Scores::new(&model, &variants, likelihoods, truths, points, seeds);
         let deadlines: Vec<f64> = model.columns.iter().map(|(_, deadline)| *deadline).collect();
-        for (timing, pace) in paces.iter().enumerate() {
-            let first = timing * HAZARDS;
-            let supposed: Vec<Supposed> = others[first..first + HAZARDS]
+        let suppose = |group: &Group| -> Result<(Vec<Supposed>, Vec<Vec<Vec<Sums>>>), String> {
+            let supposed: Vec<Supposed> = group
+                .others
                 .iter()
                 .map(|other| {
                     let mut values = fixed.clone();
-                    let shares = paced.iter().zip(pace).chain(hazards.iter().zip(other));
+                    let shares = paced.iter().zip(&group.pace).chain(hazards.iter().zip(other));
                     for (prior, share) in shares {
                         values[*prior] = inference.priors[*prior].at(*share);
                     }
@@ -157,9 +168,40 @@ impl Proposing for AtGraphLevel {
             let timed = Timing::new(model.pace(&parameters[0]), schedule, &deadlines);
             let hazards: Vec<Hazards> =
                 parameters.iter().map(|parameters| Hazards::of(&model.pace(parameters))).collect();
-            let sums = walks.timed(&model, &timed, &hazards);
-            for (number, (supposed, sums)) in supposed.iter().zip(&sums).enumerate() {
-                scores.add(first + number, supposed, sums);
+            Ok((supposed, walks.timed(&model, &timed, &hazards)))
+        };
+        let mut nearer = seeds.stream("rounds");
+        let mut rounds: Vec<Option<Near>> = Vec::new();
+        let mut explained: Vec<Vec<f64>> = Vec::new();
+        for _ in 1..inference.rounds {
+            for group in &groups[explained.len()..] {
+                let (supposed, sums) = suppose(group)?;
+                let each = supposed.iter().zip(&sums);
+                explained.push(each.map(|(one, sums)| scores.explains(one, sums)).collect());
+            }
+            let weights: Vec<Vec<f64>> = groups
+                .iter()
+                .zip(&explained)
+                .map(|(group, own)| {
+                    let each = group.others.iter().zip(own);
+                    each.map(|(other, own)| own * importance(&rounds, &group.pace, other)).collect()
+                })
+                .collect();
+            let near = Near::of(&groups, &weights);
+            match &near {
+                Some(near) => {
+                    groups.extend((0..timings).map(|_| near.draw(HAZARDS, &mut nearer)));
+                }
+                // Nothing explains the table: the prior once more.
+                None => groups.extend_from_within(..timings),
+            }
+            rounds.push(near);
+        }
+        for (number, group) in groups.iter().enumerate() {
+            let (supposed, sums) = suppose(group)?;
+            for (place, (supposed, sums)) in supposed.iter().zip(&sums).enumerate() {
+                let weight = importance(&rounds, &group.pace, &group.others[place]);
+                scores.add(number * HAZARDS + place, supposed, sums, weight);
             }
         }
         Ok(scores.finish())
@@ -243,8 +285,9 @@ impl Walks {
         timing: &Timing<'_>,
         hazards: &[Hazards],
     ) -> Vec<Vec<Vec<Sums>>> {
-        let none = Sums::none(model.goals.len(), model.columns.len());
-        let (mut cuts, mut survivals) = (Vec::new(), Vec::new());
+        let with_times = model.inference.times.is_some();
+        let none = Sums::none(model.goals.len(), model.columns.len(), with_times);
+        let (mut cuts, mut survivals) = (Cuts::default(), Vec::new());
         let mut all: Vec<Vec<Vec<Sums>>> = vec![Vec::new(); hazards.len()];
         for starts in &self.walks {
             for variants in &mut all {

@@ -6,7 +6,7 @@ use crate::math;
 use crate::rng::{Seeds, Stream};
 use crate::stats::importance::draw;
 use crate::stats::{length, real};
-use crate::studies::inference::{Below, Drawn, Likelihoods, Proposal};
+use crate::studies::inference::{Below, Drawn, Likelihoods, Place, Proposal};
 
 /// Draws by which the cells of a hold-out are predicted.
 const HELD_DRAWS: usize = 4;
@@ -34,6 +34,9 @@ pub(super) struct Scores<'a> {
     prior: Vec<(usize, usize)>,
     prior_draws: Vec<Drawn>,
     count: f64,
+    /// Points of the first round, and how many of those with their goals were added.
+    first_round: usize,
+    in_first_round: f64,
 }
 
 /// A point of the prior with what it predicts.
@@ -42,6 +45,8 @@ struct Point<'p> {
     concentration: usize,
     goal: usize,
     sums: &'p [Vec<Sums>],
+    /// How much less likely than by the prior it was drawn.
+    weight: f64,
 }
 
 /// By start of the table, variant and vertex: the likelihood of the row.
@@ -98,18 +103,43 @@ impl<'a> Scores<'a> {
             prior,
             prior_draws: Vec::new(),
             count: 0.0,
+            first_round: points,
+            in_first_round: 0.0,
         }
     }
 
-    /// Adds the point `number` of the prior: every goal with every start.
-    pub(super) fn add(&mut self, number: usize, supposed: &Supposed, sums: &[Vec<Sums>]) {
+    /// Returns the likelihood of the observed table at a point, in the mean over every goal with every start.
+    pub(super) fn explains(&self, supposed: &Supposed, sums: &[Vec<Sums>]) -> f64 {
+        let Supposed { values, concentration } = supposed;
+        let of_goal = |goal: usize| {
+            let point = Point { values, concentration: *concentration, goal, sums, weight: 1.0 };
+            let rows = self.rows(&point, &self.places(&point), 0, 0);
+            let combined = self.combined(goal, &rows);
+            combined.iter().sum::<f64>() / length(&combined)
+        };
+        let goals = self.model.goals.len();
+        (0..goals).map(of_goal).sum::<f64>() / real(goals as u64)
+    }
+
+    /// Adds the point `number`, which was drawn `weight` times less likely than by the prior: every goal with every start. Simulated
+    /// tables are held against the first round alone, for the others lie where the observed one is explained.
+    pub(super) fn add(
+        &mut self,
+        number: usize,
+        supposed: &Supposed,
+        sums: &[Vec<Sums>],
+        weight: f64,
+    ) {
         let Supposed { values, concentration } = supposed;
         for goal in 0..self.model.goals.len() {
-            let point = Point { values, concentration: *concentration, goal, sums };
+            let point = Point { values, concentration: *concentration, goal, sums, weight };
             let places = self.places(&point);
             self.observed(&point, &places);
-            for table in 0..self.truths.len() {
-                self.simulated(&point, &places, table);
+            if number < self.first_round {
+                for table in 0..self.truths.len() {
+                    self.simulated(&point, &places, table);
+                }
+                self.in_first_round += 1.0;
             }
             self.count += 1.0;
             if self.prior.contains(&(number, goal)) {
@@ -128,13 +158,13 @@ impl<'a> Scores<'a> {
     }
 
     /// Returns where the likelihood of each prediction stands: by variant, vertex and column.
-    fn places(&self, point: &Point<'_>) -> Vec<Vec<Vec<usize>>> {
+    fn places(&self, point: &Point<'_>) -> Vec<Vec<Vec<Place>>> {
         let columns = self.model.columns.len();
         let of_start = |sums: &Sums| {
             (0..columns)
                 .map(|column| {
                     let at = point.goal * columns + column;
-                    Likelihoods::place(sums.reached[at], sums.collided[at])
+                    Likelihoods::place(sums.reached[at], sums.collided[at], sums.time_s(at))
                 })
                 .collect()
         };
@@ -145,7 +175,7 @@ impl<'a> Scores<'a> {
     fn rows(
         &self,
         point: &Point<'_>,
-        places: &[Vec<Vec<usize>>],
+        places: &[Vec<Vec<Place>>],
         table: usize,
         part: usize,
     ) -> Rows {
@@ -159,8 +189,13 @@ impl<'a> Scores<'a> {
                 }
                 let cell = model.cells[column][variant.strategy];
                 let known = self.likelihoods.of_cell(table, point.concentration, cell);
+                let timed = self.likelihoods.of_time(table, point.concentration, cell);
                 for (vertex, product) in own[*start].iter_mut().enumerate() {
-                    *product *= f64::from(known[places[number][vertex][column]]);
+                    let place = places[number][vertex][column];
+                    *product *= f64::from(known[place.counts]);
+                    if let Some(timed) = timed {
+                        *product *= f64::from(timed[place.time]);
+                    }
                 }
             }
             for (row, own) in rows.iter_mut().zip(own) {
@@ -202,11 +237,11 @@ impl<'a> Scores<'a> {
         }
     }
 
-    fn observed(&mut self, point: &Point<'_>, places: &[Vec<Vec<usize>>]) {
+    fn observed(&mut self, point: &Point<'_>, places: &[Vec<Vec<Place>>]) {
         for part in 0..self.trains.len() {
             let rows = self.rows(point, places, 0, part);
             let combined = self.combined(point.goal, &rows);
-            let mean = combined.iter().sum::<f64>() / length(&combined);
+            let mean = point.weight * combined.iter().sum::<f64>() / length(&combined);
             if part == 0 {
                 self.value(point, &combined);
             }
@@ -234,18 +269,18 @@ impl<'a> Scores<'a> {
             if let Bears::Strategy(strategy) = self.model.bears[prior] {
                 for (combination, likelihood) in self.combinations.iter().zip(combined) {
                     let value = index(self.variants[combination[strategy]].values[prior]);
-                    sums[value].0 += likelihood;
-                    sums[value].1 += 1.0;
+                    sums[value].0 += point.weight * likelihood;
+                    sums[value].1 += point.weight;
                 }
             } else {
                 let (sum, count) = &mut sums[index(point.values[prior])];
-                *sum += combined.iter().sum::<f64>();
-                *count += length(combined);
+                *sum += point.weight * combined.iter().sum::<f64>();
+                *count += point.weight * length(combined);
             }
         }
     }
 
-    fn simulated(&mut self, point: &Point<'_>, places: &[Vec<Vec<usize>>], table: usize) {
+    fn simulated(&mut self, point: &Point<'_>, places: &[Vec<Vec<Place>>], table: usize) {
         let rows = self.rows(point, places, table + 1, 0);
         let combined = self.combined(point.goal, &rows);
         let mean = combined.iter().sum::<f64>() / length(&combined);
@@ -282,6 +317,8 @@ impl<'a> Scores<'a> {
         let model = self.model;
         let mut priors = point.values.to_vec();
         let mut cells = vec![[0.0; 2]; model.inference.observed.cells.len()];
+        let with_times = model.inference.times.is_some();
+        let mut times = vec![None; if with_times { cells.len() } else { 0 }];
         for (strategy, variant) in self.combinations[combination].iter().enumerate() {
             for (prior, bears) in model.bears.iter().enumerate() {
                 if *bears == Bears::Strategy(strategy) {
@@ -291,14 +328,18 @@ impl<'a> Scores<'a> {
             for (column, (start, _)) in model.columns.iter().enumerate() {
                 let sums = &point.sums[*variant][starts[*start]];
                 let at = point.goal * model.columns.len() + column;
-                cells[model.cells[column][strategy]] = [sums.reached[at], sums.collided[at]];
+                let cell = model.cells[column][strategy];
+                cells[cell] = [sums.reached[at], sums.collided[at]];
+                if with_times {
+                    times[cell] = sums.time_s(at);
+                }
             }
         }
         let mut values = vec![real(model.goals[point.goal] as u64)];
         values.extend(starts.iter().map(|start| real(*start as u64)));
         values.extend(priors);
         values.push(real(point.concentration as u64));
-        Drawn { values, cells }
+        Drawn { values, cells, times }
     }
 
     /// Returns what the building says.
@@ -321,15 +362,15 @@ impl<'a> Scores<'a> {
             by_value: self
                 .by_value
                 .iter()
-                .map(|values| values.iter().map(|(sum, count)| ln(*sum, count.max(1.0))).collect())
+                .map(|values| values.iter().map(|(sum, count)| ln(*sum, *count)).collect())
                 .collect(),
             held: (1..inference.hold_outs.len()).map(held).collect(),
             simulated: self
                 .simulated
                 .iter()
                 .map(|(sum, below)| Below {
-                    ln_evidence: ln(*sum, self.count),
-                    below: below.iter().map(|below| ln(*below, self.count)).collect(),
+                    ln_evidence: ln(*sum, self.in_first_round),
+                    below: below.iter().map(|below| ln(*below, self.in_first_round)).collect(),
                 })
                 .collect(),
             draws: std::mem::take(&mut self.kept[0]),

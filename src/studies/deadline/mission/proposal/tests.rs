@@ -1,4 +1,4 @@
-use super::timing::{Hazards, Pace, Sums, Timing};
+use super::timing::{Cuts, Hazards, Pace, Sums, Timing};
 use super::walk::{Leg, Site, Walk};
 use crate::rng::Seeds;
 use crate::studies::deadline::build_cmdp::{Maneuvers, Motion, SideCorridors};
@@ -136,7 +136,7 @@ fn survival_is_carried_along_and_a_deadline_cuts_it() {
     let timing = Timing::new(pace(), &schedule, &deadlines);
     let walk = Walk::new(0, LEGS.to_vec(), &[None, None, None, Some(0), Some(1)]);
     assert_eq!(walk.arrivals, [Some(3), None]);
-    let (mut sums, mut cuts) = (Sums::none(2, 3), Vec::new());
+    let (mut sums, mut cuts) = (Sums::none(2, 3, true), Cuts::default());
     timing.cut(&walk.legs, &mut cuts);
     Hazards::of(&pace()).add(&walk, &cuts, &mut Vec::new(), &mut sums);
     let corridors = 0.99_f64 * 0.99 * 0.99;
@@ -144,6 +144,9 @@ fn survival_is_carried_along_and_a_deadline_cuts_it() {
     let close = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-12, "{found}");
     close(sums.reached[0], reached);
     close(sums.collided[0], 1.0 - reached);
+    // Where it is reached it takes 55 s.
+    close(sums.time_s(0).unwrap(), 55.0);
+    assert_eq!(sums.time_s(3), None, "a goal that is never reached");
     // After 50 s the door is half passed.
     close(sums.reached[1], 0.0);
     close(sums.collided[1], 1.0 - corridors + (corridors - reached) * 0.5);
@@ -160,11 +163,11 @@ fn a_leg_takes_its_local_deadline_between_all_slow_and_all_fast() {
         let schedule = Schedule { seconds_per_edge, ..Schedule::default() };
         let deadlines = [1000.0];
         let timing = Timing::new(pace(), &schedule, &deadlines);
-        let mut cuts = Vec::new();
+        let mut cuts = Cuts::default();
         // A third leg that takes 12 s a corridor ends after the deadline: the share tells when it began.
         let last = Leg { planned: false, corridors: 200, doors: 0, entries: 0, to: 3 };
         timing.cut(&[LEGS[0], LEGS[1], last], &mut cuts);
-        1000.0 - cuts[0].share * 2400.0
+        1000.0 - cuts.each[0].share * 2400.0
     };
     // 21 s until the plan begins; two edges slow are 24 s, fast 16.
     for (seconds_per_edge, expected) in [(30.0, 45.0), (10.0, 41.0), (5.0, 37.0)] {

@@ -30,6 +30,23 @@ pub(super) struct Cut {
     pub(super) legs: Option<u16>,
     /// Share of the next leg that is done by then.
     pub(super) share: f64,
+    /// Where its times stand among those of all cuts.
+    first: usize,
+}
+
+/// Where each deadline cuts a walk, and when the legs before end.
+#[derive(Debug, Default)]
+pub(super) struct Cuts {
+    pub(super) each: Vec<Cut>,
+    /// Cut by cut: when the first leg begins (s), and when each leg ends.
+    ends: Vec<f64>,
+}
+
+impl Cuts {
+    /// Returns when (s) `legs` of a walk have ended, as `cut` has it.
+    fn after(&self, cut: &Cut, legs: u16) -> f64 {
+        self.ends[cut.first + usize::from(legs)]
+    }
 }
 
 /// How long legs take.
@@ -45,28 +62,33 @@ impl<'a> Timing<'a> {
     }
 
     /// Computes where each deadline cuts the walk `legs`, into `cuts`.
-    pub(super) fn cut(&self, legs: &[Leg], cuts: &mut Vec<Cut>) {
-        cuts.clear();
+    pub(super) fn cut(&self, legs: &[Leg], cuts: &mut Cuts) {
+        cuts.each.clear();
+        cuts.ends.clear();
         for deadline in self.deadlines {
-            cuts.push(self.cut_by(legs, *deadline));
+            let cut = self.cut_by(legs, *deadline, &mut cuts.ends);
+            cuts.each.push(cut);
         }
     }
 
-    fn cut_by(&self, legs: &[Leg], deadline: f64) -> Cut {
+    fn cut_by(&self, legs: &[Leg], deadline: f64, ends: &mut Vec<f64>) -> Cut {
         let mut now = self.pace.look_around;
+        let first = ends.len();
+        ends.push(now);
         if now >= deadline {
-            return Cut { legs: None, share: 0.0 };
+            return Cut { legs: None, share: 0.0, first };
         }
         let mut count = 0_u16;
         for leg in legs {
             let time = self.time(*leg, now, deadline);
             if now + time >= deadline {
-                return Cut { legs: Some(count), share: (deadline - now) / time };
+                return Cut { legs: Some(count), share: (deadline - now) / time, first };
             }
             now += time;
+            ends.push(now);
             count += 1;
         }
-        Cut { legs: Some(count), share: 0.0 }
+        Cut { legs: Some(count), share: 0.0, first }
     }
 
     fn duration(&self, leg: Leg, speed: usize) -> f64 {
@@ -96,22 +118,34 @@ pub(super) struct Hazards {
     other: [f64; MOST],
 }
 
-/// For every goal and deadline, the sums over walks of the probabilities to have reached it and to have collided before.
+/// For every goal and deadline, the sums over walks of the probabilities to have reached it and to have collided before, and of
+/// the time that reaching it took.
 #[derive(Debug, Clone)]
 pub(super) struct Sums {
     /// By goal, then by deadline.
     pub(super) reached: Vec<f64>,
     pub(super) collided: Vec<f64>,
+    /// The first times its time (s); empty where no times are learned from.
+    taken: Vec<f64>,
 }
 
 impl Sums {
-    pub(super) fn none(goals: usize, deadlines: usize) -> Self {
-        Self { reached: vec![0.0; goals * deadlines], collided: vec![0.0; goals * deadlines] }
+    pub(super) fn none(goals: usize, deadlines: usize, with_times: bool) -> Self {
+        let count = goals * deadlines;
+        let taken = if with_times { count } else { 0 };
+        Self { reached: vec![0.0; count], collided: vec![0.0; count], taken: vec![0.0; taken] }
+    }
+
+    /// Returns the mean time (s) of what is reached at the place `at`; `None` where that never happens, or where no times are learned from.
+    pub(super) fn time_s(&self, at: usize) -> Option<f64> {
+        let taken = *self.taken.get(at)?;
+        (self.reached[at] > 0.0).then(|| taken / self.reached[at])
     }
 
     /// Makes the sums over `count` walks means.
     pub(super) fn divide(&mut self, count: f64) {
-        self.reached.iter_mut().chain(&mut self.collided).for_each(|sum| *sum /= count);
+        let all = self.reached.iter_mut().chain(&mut self.collided).chain(&mut self.taken);
+        all.for_each(|sum| *sum /= count);
     }
 }
 
@@ -135,8 +169,8 @@ impl Hazards {
     }
 
     /// Adds what `walk` gives where deadlines cut it by `cuts`. `survivals` is room to work in.
-    pub(super) fn add(&self, walk: &Walk, cuts: &[Cut], survivals: &mut Vec<f64>, sums: &mut Sums) {
-        let last = cuts.iter().filter_map(|cut| cut.legs).max().unwrap_or(0);
+    pub(super) fn add(&self, walk: &Walk, cuts: &Cuts, survivals: &mut Vec<f64>, sums: &mut Sums) {
+        let last = cuts.each.iter().filter_map(|cut| cut.legs).max().unwrap_or(0);
         let legs = walk.legs.len().min(usize::from(last) + 1);
         survivals.clear();
         let mut survival = 1.0;
@@ -152,15 +186,18 @@ impl Hazards {
             let after = survivals.get(done + 1).copied().unwrap_or(before);
             1.0 - before + (before - after) * cut.share
         };
-        for (t, cut) in cuts.iter().enumerate() {
+        for (t, cut) in cuts.each.iter().enumerate() {
             let collided = over(cut);
             for (goal, arrival) in walk.arrivals.iter().enumerate() {
-                let at = goal * cuts.len() + t;
+                let at = goal * cuts.each.len() + t;
                 match (arrival, cut.legs) {
                     (Some(arrival), Some(done)) if *arrival <= done => {
                         let survival = survivals[usize::from(*arrival)];
                         sums.reached[at] += survival;
                         sums.collided[at] += 1.0 - survival;
+                        if let Some(taken) = sums.taken.get_mut(at) {
+                            *taken += survival * cuts.after(cut, *arrival);
+                        }
                     }
                     _ => sums.collided[at] += collided,
                 }
