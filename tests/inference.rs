@@ -7,7 +7,7 @@ use reenact::bundle::{Form, Limits, Tree, archive};
 use std::{process::Stdio, time::Duration};
 
 /// Two buildings, few walks.
-const TINY: &str = "
+pub(crate) const TINY: &str = "
 reenact: 1
 name: tiny
 title: A tiny inference

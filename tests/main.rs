@@ -10,6 +10,7 @@ mod cli;
 mod derived_inputs;
 mod determinism;
 mod documentation;
+mod draws;
 mod drift;
 mod engines;
 mod faults;

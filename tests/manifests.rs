@@ -4,7 +4,9 @@ use crate::sandbox::repository;
 use proptest::prelude::*;
 use reenact::bundle::assemble;
 use reenact::document::{Diagnostic, Source};
-use reenact::manifest::{self, CalibrationTrials, Experiment, InputError, Inputs, WrittenIn};
+use reenact::manifest::{
+    self, CalibrationTrials, Experiment, InputError, Inputs, ProposalTrials, WrittenIn,
+};
 use reenact::plan::{Plan, ResolvedStudy, Selection, engine_version};
 use reenact::studies::{StudyKind, TrialRecord, TrialSpec};
 use std::collections::BTreeMap;
@@ -16,9 +18,10 @@ pub(crate) struct Beside(pub(crate) PathBuf);
 impl Inputs for Beside {
     fn read(&self, as_written: &str, written_in: WrittenIn) -> Result<Vec<u8>, InputError> {
         match written_in {
-            WrittenIn::CommandLine | WrittenIn::Calibration | WrittenIn::PreviousMap => {
-                Err(InputError::NoFile)
-            }
+            WrittenIn::CommandLine
+            | WrittenIn::Calibration
+            | WrittenIn::Inference
+            | WrittenIn::PreviousMap => Err(InputError::NoFile),
             WrittenIn::Manifest => {
                 std::fs::read(self.0.join(as_written)).map_err(|_| InputError::NoFile)
             }
@@ -28,6 +31,11 @@ impl Inputs for Beside {
     /// Returns numbers that stand in for a run.
     fn calibrate(&self, _: &Experiment, _: &str) -> Result<CalibrationTrials, InputError> {
         Ok(CalibrationTrials::StandIn)
+    }
+
+    /// Returns draws that stand in for those of a run.
+    fn propose(&self, _: &Experiment, _: &str) -> Result<ProposalTrials, InputError> {
+        Ok(ProposalTrials::StandIn)
     }
 
     /// Returns floor plans that stand in for explorations.

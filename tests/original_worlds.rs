@@ -16,9 +16,10 @@ impl Inputs for Disk {
     fn read(&self, as_written: &str, written_in: WrittenIn) -> Result<Vec<u8>, InputError> {
         let path = match written_in {
             WrittenIn::Manifest => self.0.join(as_written),
-            WrittenIn::CommandLine | WrittenIn::Calibration | WrittenIn::PreviousMap => {
-                PathBuf::from(as_written)
-            }
+            WrittenIn::CommandLine
+            | WrittenIn::Calibration
+            | WrittenIn::Inference
+            | WrittenIn::PreviousMap => PathBuf::from(as_written),
         };
         std::fs::read(&path).map_err(|e| {
             InputError::other(std::io::Error::new(e.kind(), format!("{}: {e}", path.display())))

@@ -3,7 +3,7 @@
 use reenact::bundle::{Circumstance, Moment, assemble, seal};
 use reenact::digest::ResultsDigest;
 use reenact::document::{Source, reports};
-use reenact::manifest::{self, CalibrationTrials, Experiment, InputError, Inputs, WrittenIn};
+use reenact::manifest::{self, CalibrationTrials, Experiment, InputError, Inputs, ProposalTrials, WrittenIn};
 use reenact::plan::{Plan, Selection};
 use reenact::runner::{Scheduler, Silent};
 use reenact::studies::{self, Outcome, TrialRecord, TrialSpec};
@@ -49,6 +49,11 @@ impl Inputs for Given<'_> {
         let plan = Plan::of(calibration.clone());
         let records = execute(&plan).map_err(InputError::other)?;
         CalibrationTrials::shown_by(&plan.experiment, &records).map_err(InputError::other)
+    }
+
+    fn propose(&self, inference: &Experiment, _: &str) -> Result<ProposalTrials, InputError> {
+        let records = execute(&Plan::of(inference.clone())).map_err(InputError::other)?;
+        Ok(ProposalTrials::of(&records))
     }
 
     fn explore(

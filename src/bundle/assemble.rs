@@ -11,6 +11,7 @@ use crate::claims::{self, ClaimVerdict, Observations, tidy};
 use crate::json::AsWritten;
 use crate::manifest::InputKind;
 use crate::plan::{Plan, Selection, engine_version};
+use crate::studies::inference::InferenceDesign;
 use crate::studies::{Dictionary, Exhibit, Findings, Ledger, Outcome, TrialRecord};
 use crate::table::{Column, DescribedTable, Table, Value, csv_line};
 use serde_json::json;
@@ -152,7 +153,8 @@ pub fn verdicts_of(plan: &Plan, ledger: &Ledger) -> Result<Vec<ClaimVerdict>, Tr
     }
     let experiment = &plan.experiment;
     let context =
-        claims::Context::new(&experiment.published, &experiment.shared_noise, experiment.seed);
+        claims::Context::new(&experiment.published, &experiment.shared_noise, experiment.seed)
+            .over_draws(experiment.draws());
     let about_the_study: Vec<_> =
         experiment.claims.iter().filter(|claim| !claim.circumstance).collect();
     if about_the_study.is_empty() {
@@ -432,9 +434,18 @@ fn described_inputs(plan: &Plan) -> Vec<DescribedTable> {
                 let words = ("Claims at draws of all assumptions together", "one draw");
                 DescribedTable::of(&table, path, words, Dictionary::of_multiverse)
             }
-            // Nothing else is read as a CSV; what a calibration reads so are the paper's numbers, too.
+            InputKind::Draws => {
+                let columns = columns_of_draws(plan);
+                let words = ("Draws of the posterior", "one draw: a value of the factor of draws");
+                DescribedTable::of(&table, path, words, |name| {
+                    columns.iter().find(|column| column.name == name).cloned()
+                })
+            }
+            // Nothing else is read as a CSV; what other manifests read so are the paper's numbers, too.
             InputKind::PublishedNumbers
             | InputKind::Calibration
+            | InputKind::Inference
+            | InputKind::Proposals
             | InputKind::Settings
             | InputKind::Robot
             | InputKind::World
@@ -449,10 +460,23 @@ fn described_inputs(plan: &Plan) -> Vec<DescribedTable> {
     described
 }
 
-/// Describes a column that tells apart the cells of the table that an inference observes.
+/// Describes the columns of the table of draws that the study runs.
+fn columns_of_draws(plan: &Plan) -> Vec<Column> {
+    let Some(run) = plan.experiment.inference() else { return Vec::new() };
+    let conditions: Vec<_> = run.experiment.design().collect();
+    let design = InferenceDesign::of(&run.experiment.factors, &conditions);
+    design.map_or_else(Vec::new, |design| design.columns())
+}
+
+/// Describes a column that tells apart the cells of the table that an inference observes, the study's own or the one whose draws
+/// it runs.
 fn cell_of_observed(plan: &Plan, name: &str) -> Option<Column> {
-    let by = plan.experiment.document.node("/infer/by")?.to_json();
-    let is_level = by.as_array()?.iter().any(|level| level == name);
+    let inference = plan.experiment.inference().map(|run| &run.experiment.document);
+    let mut by = [Some(&plan.experiment.document), inference]
+        .into_iter()
+        .flatten()
+        .filter_map(|document| document.node("/infer/by"));
+    let is_level = by.any(|by| by.to_json().as_array().is_some_and(|by| by.contains(&name.into())));
     is_level.then(|| Column::text(name, "Level of the paper's table: tells its cells apart"))
 }
 

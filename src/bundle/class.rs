@@ -80,6 +80,11 @@ const TABLE: &[Row] = &[
         Class::Derived(5),
         "passages of the calibration; the pairs already at level 3, from the passages",
     ),
+    Row(
+        Which::Made(WrittenIn::Inference),
+        Class::Derived(5),
+        "proposals of the inference whose draws are run; the draws already at level 3, from the proposals",
+    ),
     Row(Which::Made(WrittenIn::PreviousMap), Class::Derived(5), "earlier explorations"),
     Row(Which::Inputs, Class::Given, "robots, worlds, images, settings, published tables"),
     Row(
@@ -159,6 +164,9 @@ pub fn table_in_markdown() -> String {
             Which::Under(folder, ending) => format!("`{}*{ending}`", BundlePath::payload(folder)),
             Which::Made(WrittenIn::Calibration) => {
                 "`data/inputs/*.passages.csv`, `*.maneuvers.csv`".to_owned()
+            }
+            Which::Made(WrittenIn::Inference) => {
+                "`data/inputs/*.proposals.jsonl`, `*.draws.csv`".to_owned()
             }
             Which::Made(_) => "`data/inputs/previous-map-*`".to_owned(),
             Which::Inputs => "other `data/inputs/*`".to_owned(),

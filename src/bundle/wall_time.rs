@@ -48,7 +48,8 @@ pub fn measured(
     }
     let experiment = &plan.experiment;
     let context =
-        claims::Context::new(&experiment.published, &experiment.shared_noise, experiment.seed);
+        claims::Context::new(&experiment.published, &experiment.shared_noise, experiment.seed)
+            .over_draws(experiment.draws());
     let mut files = Vec::new();
     let verdicts = match times {
         Ok(times) => {

@@ -10,6 +10,8 @@ pub struct Context<'a> {
     pub published: &'a BTreeMap<String, Table>,
     /// Factors over which the trials share their noise.
     pub shared_noise: &'a [String],
+    /// The factor whose values are draws of a posterior, where there is one: what holds in each of them holds in a share of draws.
+    pub draws: Option<&'a str>,
     /// Seed of resampling: the experiment's.
     pub seed: u64,
     /// Bootstrap resamples.
@@ -25,6 +27,12 @@ impl<'a> Context<'a> {
         shared_noise: &'a [String],
         seed: u64,
     ) -> Self {
-        Self { published, shared_noise, seed, resamples: 2000, permutations: 9999 }
+        Self { published, shared_noise, draws: None, seed, resamples: 2000, permutations: 9999 }
+    }
+
+    /// Returns the same where the values of the factor `draws` are draws of a posterior.
+    #[must_use]
+    pub fn over_draws(self, draws: Option<&'a str>) -> Self {
+        Self { draws, ..self }
     }
 }

@@ -119,7 +119,8 @@ fn conclude(claim: &Claim, bench: &Bench<'_>, drafts: Vec<Draft>) -> ClaimVerdic
             trials_to_decide,
         });
     }
-    let (judgement, reason) = sum_up(&comparisons, required, &terms);
+    let over = over_draws(claim, bench.context, total);
+    let (judgement, reason) = sum_up(&comparisons, required, &terms, over);
     let open: Vec<Option<u64>> = comparisons
         .iter()
         .filter(|c| c.judgement == Judgement::Inconclusive)
@@ -145,6 +146,7 @@ fn conclude(claim: &Claim, bench: &Bench<'_>, drafts: Vec<Draft>) -> ClaimVerdic
         form: claim.expect.form().into(),
         alpha: terms.alpha,
         correction: terms.correction,
+        over: over.map(str::to_owned),
         required,
         minimum_n: terms.minimum_n,
         comparisons,
@@ -153,11 +155,29 @@ fn conclude(claim: &Claim, bench: &Bench<'_>, drafts: Vec<Draft>) -> ClaimVerdic
     }
 }
 
+/// Returns the factor of draws, where `claim` is repeated over its values alone and makes one comparison for each.
+fn over_draws<'c>(claim: &Claim, context: &Context<'c>, comparisons: usize) -> Option<&'c str> {
+    let draws = context.draws?;
+    let scope = claim.expect.as_form().scope();
+    let mut repeated =
+        scope.selections.iter().filter(|(pointer, _)| pointer.starts_with("/for-each/"));
+    let (_, each) = repeated.next().filter(|_| scope.measured.len() == 1)?;
+    let alone = repeated.next().is_none() && each.0.len() == 1;
+    (alone && each.0.get(draws)?.0.len() == comparisons).then_some(draws)
+}
+
+/// Says in what share of draws a claim holds.
+pub fn share_of(draws: &str, hold: usize, of: usize) -> String {
+    let percent = 100.0 * real(hold as u64) / real(of.max(1) as u64);
+    format!("holds in {percent:.0} % of the values of {draws} ({hold} of {of})")
+}
+
 /// Sums up the judgements of a claim's comparisons: the claim's own, and a sentence for it.
 fn sum_up(
     comparisons: &[ComparisonVerdict],
     required: usize,
     terms: &Terms,
+    over: Option<&str>,
 ) -> (Judgement, String) {
     let total = comparisons.len();
     let count = |j| comparisons.iter().filter(|c| c.judgement == j).count();
@@ -200,6 +220,11 @@ fn sum_up(
             let p = p.unwrap_or(1.0);
             format!("p {which}{p:.2e} at alpha {} by {}", terms.alpha, comparisons[0].test)
         }
+        _ if over.is_some() => format!(
+            "{}, the other way in {contradicted}, {untestable} cannot be tested; {required} must hold, at alpha {}",
+            share_of(over.unwrap_or_default(), supported, total),
+            terms.alpha
+        ),
         _ => format!(
             "{supported} of {total} comparisons hold, {contradicted} hold the other way, {untestable} cannot be \
              tested; {required} must hold, at alpha {}",

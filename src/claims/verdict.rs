@@ -278,6 +278,10 @@ pub struct ClaimVerdict {
     /// What keeps its comparisons honest.
     #[serde(default)]
     pub correction: Correction,
+    /// The factor of draws, where each comparison is of one of its values and all of them are: then the claim holds in a share
+    /// of draws.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub over: Option<String>,
     /// Comparisons that must hold.
     #[serde(default)]
     pub required: usize,

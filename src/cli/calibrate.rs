@@ -1,16 +1,16 @@
-//! What an experiment needs of runs before its own: the trials of its calibration, run here or taken from the store; and the
-//! maps of earlier explorations.
+//! What an experiment needs of runs before its own: the trials of its calibration and of the inference whose draws it runs, run here
+//! or taken from the store; and the maps of earlier explorations.
 
 use super::progress::Progress;
 use super::terminal::Terminal;
-use crate::manifest::{self, CalibrationTrials, Experiment, ExploreError};
+use crate::manifest::{self, CalibrationTrials, Experiment, ExploreError, ProposalTrials};
 use crate::plan::Plan;
 use crate::runner::{RunError, Scheduler, StoreError, TrialStore};
 use crate::store::DirectoryStore;
 use crate::studies::{self, CalibrationError, TrialRecord, TrialSpec};
 use std::cell::RefCell;
 
-/// Why there are no passages.
+/// Why there are no passages, or no proposals.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum Unmeasured {
     #[error(transparent)]
@@ -19,8 +19,17 @@ pub(super) enum Unmeasured {
     Store(#[from] StoreError),
     #[error(transparent)]
     Unfit(#[from] CalibrationError),
-    #[error("{left} of its {of} passages have not run yet: `reenact run {manifest}` runs them")]
-    NotRun { left: usize, of: usize, manifest: String },
+    #[error(
+        "{left} of its {of} {trials} have not run yet: `reenact {command} {manifest}` runs them"
+    )]
+    NotRun {
+        left: usize,
+        of: usize,
+        /// What its trials are called.
+        trials: &'static str,
+        command: &'static str,
+        manifest: String,
+    },
 }
 
 /// How a calibration is had.
@@ -48,19 +57,39 @@ impl Calibrator<'_> {
         calibration: &Experiment,
         terminal: Terminal,
     ) -> Result<CalibrationTrials, Unmeasured> {
-        if matches!(self, Self::StandIn) {
-            return Ok(CalibrationTrials::StandIn);
-        }
         let plan = Plan::of(calibration.clone());
-        let records = match self {
-            Self::StandIn => Vec::new(),
-            Self::Stored(store) => stored(&plan, store)?,
-            Self::AtHand(store, missing) => match stored(&plan, store) {
+        match self.records(&plan, terminal)? {
+            None => Ok(CalibrationTrials::StandIn),
+            Some(records) => Ok(CalibrationTrials::shown_by(&plan.experiment, &records)?),
+        }
+    }
+
+    /// Returns what the trials of `inference` proposed.
+    pub(super) fn proposals(
+        self,
+        inference: &Experiment,
+        terminal: Terminal,
+    ) -> Result<ProposalTrials, Unmeasured> {
+        let records = self.records(&Plan::of(inference.clone()), terminal)?;
+        Ok(records.map_or(ProposalTrials::StandIn, |records| ProposalTrials::of(&records)))
+    }
+
+    /// Returns the record of every trial of `plan`; `None` where nothing is run and numbers stand in.
+    fn records(
+        self,
+        plan: &Plan,
+        terminal: Terminal,
+    ) -> Result<Option<Vec<TrialRecord>>, Unmeasured> {
+        match self {
+            Self::StandIn => Ok(None),
+            Self::Stored(store) => stored(plan, store).map(Some),
+            Self::AtHand(store, missing) => match stored(plan, store) {
                 Err(error @ Unmeasured::NotRun { .. }) => {
-                    missing.replace(Some(error));
-                    return Ok(CalibrationTrials::StandIn);
+                    // What is named first is what the rest waits for.
+                    missing.borrow_mut().get_or_insert(error);
+                    Ok(None)
                 }
-                records => records?,
+                records => records.map(Some),
             },
             Self::Run { scheduler, store } => {
                 let progress = Progress::of(&plan.trials, terminal).labelled(&plan.experiment.name);
@@ -68,10 +97,9 @@ impl Calibrator<'_> {
                 let store = store.map(|store| store as &dyn TrialStore);
                 let records = scheduler.run(&plan.trials, &studies::execute, store, &progress);
                 progress.finish();
-                records?
+                Ok(Some(records?))
             }
-        };
-        Ok(CalibrationTrials::shown_by(&plan.experiment, &records)?)
+        }
     }
 
     /// Returns the map that the robot of `spec` ends with, as a descriptor and an image. One exploration takes about a
@@ -99,9 +127,13 @@ fn stored(plan: &Plan, store: &DirectoryStore) -> Result<Vec<TrialRecord>, Unmea
         return Ok(records);
     }
     let source = plan.experiment.document.sources.first();
+    let infers = plan.experiment.document.node("/infer").is_some();
+    let (trials, command) = if infers { ("proposals", "infer") } else { ("passages", "run") };
     Err(Unmeasured::NotRun {
         left: plan.trials.len() - records.len(),
         of: plan.trials.len(),
+        trials,
+        command,
         manifest: source.map_or_else(String::new, |source| source.name.to_string()),
     })
 }

@@ -7,7 +7,9 @@ use super::terminal::Terminal;
 use crate::bundle::archive::Archive;
 use crate::bundle::{Resolved, format, names};
 use crate::document::{Diagnostic, Severity, Source};
-use crate::manifest::{self, CalibrationTrials, Experiment, InputError, Inputs, WrittenIn};
+use crate::manifest::{
+    self, CalibrationTrials, Experiment, InputError, Inputs, ProposalTrials, WrittenIn,
+};
 use crate::plan::{Plan, Selection};
 use crate::store::{self, reason};
 use crate::studies::TrialSpec;
@@ -272,9 +274,10 @@ impl Inputs for Folder<'_> {
         let beside = self.sealed.get(as_written).unwrap_or(&beside);
         let read = |path: &Path| store::read(path, MOST_INPUT);
         match written_in {
-            WrittenIn::Manifest | WrittenIn::Calibration | WrittenIn::PreviousMap => {
-                read(beside).map_err(Unread::Beside)
-            }
+            WrittenIn::Manifest
+            | WrittenIn::Calibration
+            | WrittenIn::Inference
+            | WrittenIn::PreviousMap => read(beside).map_err(Unread::Beside),
             // Given on the command line: from here, as a shell completes it, or else from the manifest.
             WrittenIn::CommandLine => read(Path::new(as_written))
                 .or_else(|here| read(beside).map_err(|_| Unread::Anywhere(here))),
@@ -294,6 +297,10 @@ impl Inputs for Folder<'_> {
         _: &str,
     ) -> Result<CalibrationTrials, InputError> {
         self.calibrator.trials(calibration, self.terminal).map_err(InputError::other)
+    }
+
+    fn propose(&self, inference: &Experiment, _: &str) -> Result<ProposalTrials, InputError> {
+        self.calibrator.proposals(inference, self.terminal).map_err(InputError::other)
     }
 
     fn explore(

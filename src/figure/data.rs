@@ -56,7 +56,8 @@ fn rows<'a, R>(
 impl EstimateChart {
     /// Returns the estimates, their intervals, and the paper's.
     pub fn data(&self) -> Table {
-        let mut table = Table::new([
+        let banded = !self.band.is_empty();
+        let names = [
             "line",
             "panel",
             "row",
@@ -69,7 +70,9 @@ impl EstimateChart {
             "paper",
             "paper-low",
             "paper-high",
-        ]);
+        ];
+        let bands = ["band-low", "band-median", "band-high"].into_iter().filter(|_| banded);
+        let mut table = Table::new(names.into_iter().chain(bands));
         for (names, row) in rows::<Estimate>(&self.lines, &self.names) {
             let n: Option<i64> = row.n.and_then(|n| i64::try_from(n).ok());
             let cells = names
@@ -78,7 +81,8 @@ impl EstimateChart {
                 .chain(ends(row.interval))
                 .chain(ends(row.middle_half))
                 .chain([n.into(), row.published.into()])
-                .chain(ends(row.published_interval));
+                .chain(ends(row.published_interval))
+                .chain((0..3).filter(|_| banded).map(|i| row.band.map(|band| band[i]).into()));
             table.push(cells.collect());
         }
         table

@@ -26,6 +26,8 @@ pub struct EstimateChart {
     pub interval: String,
     /// What the boxes are; empty for bars from zero.
     pub boxes: String,
+    /// What the narrow boxes and their ticks are: `5 to 95 % over draw, median`; empty where there are none.
+    pub band: String,
     /// What the mark of a panel is: `deadline`; empty where panels have none.
     pub mark: String,
     /// Names of the rows of every panel.
@@ -43,6 +45,8 @@ pub struct Estimate {
     pub value: Option<f64>,
     /// Low and high end of its interval.
     pub interval: Option<(f64, f64)>,
+    /// Low end, middle and high end of the narrow box, which stands for the interval: of the values of a factor.
+    pub band: Option<[f64; 3]>,
     /// Low and high end of the box: of the middle half of the trials.
     pub middle_half: Option<(f64, f64)>,
     /// Trials behind it, printed beside it where boxes are drawn.
@@ -182,18 +186,29 @@ impl EstimateChart {
     fn items(&self, dots: bool) -> Vec<KeyItem> {
         let rows = || self.rows();
         let mut mark = Element::new("g");
+        let banded = !self.band.is_empty();
         if dots {
-            mark.push(spread(-12.0, 12.0, 0.0));
-            mark.push(whisker(-8.0, 8.0, 0.0));
+            if banded {
+                band([-12.0, 3.0, 12.0], 0.0).into_iter().for_each(|part| mark.push(part));
+            } else {
+                mark.push(spread(-12.0, 12.0, 0.0));
+                mark.push(whisker(-8.0, 8.0, 0.0));
+            }
             mark.push(dot(0.0, 0.0));
         } else {
             mark.push(bar(-14.0, 6.0, 0.0));
-            mark.push(whisker(-1.0, 13.0, 0.0));
+            if banded {
+                band([-4.0, 4.0, 13.0], 0.0).into_iter().for_each(|part| mark.push(part));
+            } else {
+                mark.push(whisker(-1.0, 13.0, 0.0));
+            }
         }
-        let mut ours = format!("ours, {}", self.interval);
-        if dots {
-            ours = format!("ours: mean, {}, {}", self.interval, self.boxes);
-        }
+        let mut ours = match (dots, banded) {
+            (false, false) => format!("ours, {}", self.interval),
+            (true, false) => format!("ours: mean, {}, {}", self.interval, self.boxes),
+            (false, true) => format!("ours, {}", self.band),
+            (true, true) => format!("ours: mean, {}", self.band),
+        };
         if let Some(n) = self.all_behind() {
             ours.push_str(&format!(", n = {n} each"));
         }
@@ -229,7 +244,7 @@ fn in_short(value: f64) -> String {
 fn ends(row: &Estimate) -> Vec<f64> {
     let intervals = [row.interval, row.middle_half, row.published_interval];
     let ends = intervals.into_iter().flatten().flat_map(|(low, high)| [low, high]);
-    ends.chain(row.value).chain(row.published).collect()
+    ends.chain(row.band.into_iter().flatten()).chain(row.value).chain(row.published).collect()
 }
 
 fn draw(area: &Area<'_>, y: f64, row: &Estimate, dots: bool) -> Vec<Element> {
@@ -246,6 +261,9 @@ fn draw(area: &Area<'_>, y: f64, row: &Estimate, dots: bool) -> Vec<Element> {
             if let Some((low, high)) = row.interval.map(at).filter(|(l, h)| h - l > 10.0) {
                 elements.push(whisker(low, high, above));
             }
+            elements.extend(
+                row.band.map(|ends| band(ends.map(|at| area.x(at)), above)).into_iter().flatten(),
+            );
             elements.push(dot(area.x(value), above));
         }
         Some(value) => {
@@ -253,6 +271,9 @@ fn draw(area: &Area<'_>, y: f64, row: &Estimate, dots: bool) -> Vec<Element> {
             if let Some((low, high)) = row.interval.map(at) {
                 elements.push(whisker(low, high, above));
             }
+            elements.extend(
+                row.band.map(|ends| band(ends.map(|at| area.x(at)), above)).into_iter().flatten(),
+            );
         }
         None => elements.push(label(area.x(area.axis.low) + 6.0, above + 4.5, "start", "–")),
     }
@@ -272,6 +293,23 @@ fn bar(from: f64, to: f64, y: f64) -> Element {
         .at("width", (to - from).abs())
         .at("height", BAR)
         .set("fill", OURS)
+}
+
+/// Draws a narrow box from the first to the last, and a tick at the middle one: light on a bar, lined in ink on the ground, so that
+/// either is seen without colour.
+fn band([low, middle, high]: [f64; 3], y: f64) -> [Element; 2] {
+    let height = BAR / 2.0;
+    let span = Element::new("rect")
+        .at("x", low)
+        .at("y", y - height / 2.0)
+        .at("width", (high - low).max(0.0))
+        .at("height", height)
+        .set("fill", OURS_TINT)
+        .set("stroke", super::INK)
+        .set("class", "ink-stroke")
+        .at("stroke-width", 1.0);
+    let tick = rule((middle, y - height / 2.0 - 2.0), (middle, y + height / 2.0 + 2.0), 2.0, 1.0);
+    [span, tick]
 }
 
 fn spread(from: f64, to: f64, y: f64) -> Element {

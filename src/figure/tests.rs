@@ -116,6 +116,7 @@ fn estimates(names: &[&str], panels: &[&str], lines: &[&str], dots: bool) -> Est
         Estimate {
             value: known.then_some(value),
             interval: known.then_some((value - 6.0, value + 5.0)),
+            band: None,
             middle_half: (known && dots).then_some((value - 12.0, value + 10.0)),
             n: Some(30 - (at as u64) % 4),
             published: (at % 5 != 4).then_some(100.0 - value),
@@ -127,6 +128,7 @@ fn estimates(names: &[&str], panels: &[&str], lines: &[&str], dots: bool) -> Est
         quantity: "reached (% of trials)".into(),
         interval: "95 % interval".into(),
         boxes: if dots { "middle half of trials".into() } else { String::new() },
+        band: String::new(),
         mark: String::new(),
         names: names.iter().map(|name| (*name).into()).collect(),
         lines: lines

@@ -2,6 +2,7 @@
 
 use super::knowledge::Knowledge;
 use super::lint;
+use super::parameters::Here;
 use super::parts::Parts;
 use super::resolver::Resolver;
 use crate::condition::Condition;
@@ -27,8 +28,17 @@ pub(super) struct Asked<'r, 'a> {
 
 impl ConditionAsWritten for Asked<'_, '_> {
     fn parameters(&self) -> Value {
-        let Resolver { doc, groups, .. } = &*self.resolver;
-        doc.parameters.for_condition(groups, &|factor| self.condition.value(factor))
+        let Resolver { doc, groups, draws, .. } = &*self.resolver;
+        let condition = self.condition;
+        let here = Here {
+            level: &|factor| condition.value(factor),
+            drawn: &|reference| draws.as_ref()?.number(reference, condition),
+        };
+        let mut parameters = doc.parameters.for_condition(groups, &here);
+        if let Some(draws) = draws {
+            draws.put_into(&mut parameters, condition);
+        }
+        parameters
     }
 
     fn refuse_parameters(&mut self, reason: String) {

@@ -1,12 +1,11 @@
 //! `calibration: FILE`: the manifest whose trials measure what the mind of another expects.
 
 use super::experiment::{CalibrationRun, Experiment};
-use super::input::{Input, InputKind, WrittenIn};
-use super::library::{CalibrationTrials, InputError, Inputs, Library, joined, normalised};
-use super::resolve::resolve;
+use super::input::InputKind;
+use super::library::{CalibrationTrials, InputError, normalised};
+use super::nested::Nested;
 use super::resolver::Resolver;
 use crate::studies::{CalibrationError, Expectations, planned_calibration};
-use std::cell::RefCell;
 use std::string::FromUtf8Error;
 use std::sync::Arc;
 
@@ -28,7 +27,7 @@ impl Resolver<'_> {
             return None;
         };
         let pointer = "/calibration";
-        if let Some(other) = self.library.files.calibrates() {
+        if let Some((Nested::Calibration, other)) = self.library.files.read_as() {
             let message =
                 format!("`{other}` is read as a calibration and asks for the calibration `{path}`");
             let fault = self.faults.fault(pointer, message).label("one that is none of its own");
@@ -36,7 +35,15 @@ impl Resolver<'_> {
             self.faults.push(fault.help(help));
             return None;
         }
-        let experiment = self.calibration_experiment(path, pointer)?;
+        let experiment = self.nested(path, pointer, Nested::Calibration)?;
+        if let (Some(own), Some(other)) = (&self.inference_run, &experiment.inference)
+            && own.sealed_as != other.sealed_as
+        {
+            let message = format!("`{path}` runs draws of another posterior");
+            let fault = self.faults.fault(pointer, message).label("expected draws of the same one");
+            self.faults.push(fault.help("name the same `posterior` in both manifests"));
+            return None;
+        }
         let path = normalised(path);
         let stem = path.strip_suffix(".yaml").unwrap_or(&path);
         let [sealed_as, pairs] = ["passages", "maneuvers"].map(|what| format!("{stem}.{what}.csv"));
@@ -55,29 +62,6 @@ impl Resolver<'_> {
                 let fault = self.faults.fault(pointer, message).label(problem.to_string());
                 self.faults
                     .push(fault.help(format!("`reenact check {path}` tells its own faults")));
-                None
-            }
-        }
-    }
-
-    /// Returns the experiment that the manifest `path`, written at `pointer`, describes. It and all that it reads are
-    /// inputs, too: whoever doubts the pairs can measure them again.
-    fn calibration_experiment(&mut self, path: &str, pointer: &str) -> Option<Experiment> {
-        let source = self.text(path, pointer, InputKind::Calibration)?;
-        let written_in = self.faults.written_in(pointer);
-        let path = normalised(path);
-        let resolved =
-            resolve(&source, &[], &OfCalibration::new(&mut self.library, &path, written_in));
-        match resolved {
-            Ok((experiment, warnings)) => {
-                for Input { as_written, kind, .. } in &experiment.inputs {
-                    self.library.files.say(&joined(&path, as_written), written_in, *kind);
-                }
-                self.faults.extend(warnings);
-                Some(experiment)
-            }
-            Err(faults) => {
-                self.faults.extend(faults);
                 None
             }
         }
@@ -118,35 +102,4 @@ enum Unmeasured {
     Unread(String, CalibrationError),
     #[error(transparent)]
     Unfit(#[from] CalibrationError),
-}
-
-/// The files of the calibration manifest `manifest`, which are inputs of the manifest that names it, too.
-struct OfCalibration<'f, 'a> {
-    library: RefCell<&'f mut Library<'a>>,
-    manifest: String,
-    written_in: WrittenIn,
-}
-
-impl<'f, 'a> OfCalibration<'f, 'a> {
-    /// Creates the files beside `manifest`, which is [`normalised`] and was written in `written_in`.
-    fn new(library: &'f mut Library<'a>, manifest: &str, written_in: WrittenIn) -> Self {
-        Self { library: RefCell::new(library), manifest: manifest.to_owned(), written_in }
-    }
-}
-
-impl Inputs for OfCalibration<'_, '_> {
-    fn read(&self, as_written: &str, _: WrittenIn) -> Result<Vec<u8>, InputError> {
-        let path = joined(&self.manifest, as_written);
-        let files = &mut self.library.borrow_mut().files;
-        files.read(&path, self.written_in, InputKind::Calibration).map(|bytes| bytes.to_vec())
-    }
-
-    fn follows(&self, as_written: &str, _: WrittenIn) -> bool {
-        let path = joined(&self.manifest, as_written);
-        self.library.borrow().files.follows(&path, self.written_in)
-    }
-
-    fn calibrates(&self) -> Option<&str> {
-        Some(&self.manifest)
-    }
 }

@@ -36,6 +36,8 @@ pub enum FactorDoc {
     List(Levels),
     /// Other values for every value of an earlier factor.
     By(DependentFactor),
+    /// Draws of a posterior, numbered from 1.
+    Draws(DrawsFactor),
 }
 
 /// At least one value.
@@ -49,6 +51,18 @@ pub struct DependentFactor {
     pub by: String,
     /// The values for each of its values.
     pub values: BTreeMap<String, Levels>,
+}
+
+/// A factor whose values are draws of what an inference found, numbered from 1: each sets the parameters that were inferred, and
+/// the world where that is `{factor: NAME}`.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DrawsFactor {
+    /// The manifest of the inference. Its proposals are taken from the store or made first, and sealed.
+    pub posterior: String,
+    /// How many draws: the middle one of each of as many equal parts of its table `posterior`.
+    #[schemars(range(min = 1))]
+    pub n: u32,
 }
 
 /// A mapping in the order written.

@@ -1,12 +1,13 @@
 //! Factors crossed into conditions, with include and exclude as in CI matrices.
 
-use super::choice::FactorDoc;
+use super::choice::{DrawsFactor, FactorDoc};
 use super::document::ManifestDoc;
 use super::faults::{Faults, step};
 use super::names::{is_kebab, kebab};
 use crate::condition::Condition;
 use crate::factor::Factor;
 use crate::studies::FactorValue;
+use crate::studies::inference::InferenceDesign;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// More conditions than any study has: a crossing gone wrong.
@@ -78,6 +79,30 @@ pub(super) fn cross(doc: &ManifestDoc, faults: &mut Faults<'_>) -> (Vec<Factor>,
                     );
                 }
             }
+            FactorDoc::Draws(wanted) => {
+                let second = factors.iter().find(|factor| draws(doc, &factor.name).is_some());
+                if let Some(first) = second {
+                    let message = format!("`{name}` is a second factor of draws");
+                    let fault = faults.key_fault(&pointer, message);
+                    let fault = fault.label(format!("`{}` is one already", first.name));
+                    faults.push(fault.help("a trial has one draw: remove one of them"));
+                    continue;
+                }
+                if wanted.n > InferenceDesign::MOST {
+                    let message = format!(
+                        "the posterior of `{}` has {} draws",
+                        wanted.posterior,
+                        InferenceDesign::MOST
+                    );
+                    let label = "asked for more than there are";
+                    faults.at(&format!("{pointer}/n"), message, label);
+                    continue;
+                }
+                values.extend((1..=wanted.n).map(|draw| draw.to_string()));
+                for cell in &cells {
+                    next.extend(values.iter().map(|value| cell.clone().with(name, value)));
+                }
+            }
         }
         if next.len() > MOST_CONDITIONS {
             let message = format!("the factors cross to more than {MOST_CONDITIONS} conditions");
@@ -107,6 +132,14 @@ pub(super) fn cross(doc: &ManifestDoc, faults: &mut Faults<'_>) -> (Vec<Factor>,
         }
     }
     (factors, cells)
+}
+
+/// Returns what is written of the factor of draws `name`; `None` where it is no such factor.
+pub(super) fn draws<'d>(doc: &'d ManifestDoc, name: &str) -> Option<&'d DrawsFactor> {
+    doc.factors.0.iter().find_map(|(known, written)| match written {
+        FactorDoc::Draws(draws) if known == name => Some(draws),
+        _ => None,
+    })
 }
 
 fn check_name(name: &str, pointer: &str, faults: &mut Faults<'_>) {

@@ -98,8 +98,8 @@ pub struct ManifestDoc {
     /// trials are not in the store, and what they showed is sealed as an input.
     #[serde(default)]
     pub calibration: Option<String>,
-    /// A file with parameters that several manifests share, or one for every value of a factor; those written here go
-    /// before them.
+    /// A file with parameters that several manifests share, several of which the later go before the earlier, or one for every value
+    /// of a factor; those written here go before them.
     #[serde(default)]
     pub settings: Option<SettingsRef>,
     /// Everything else a trial needs; every value may be plain, `{value, why, range}`, `{factor, why}` or
@@ -133,12 +133,14 @@ pub struct ManifestDoc {
     pub claims_by: Option<String>,
 }
 
-/// Where settings are: in one file, or in one for every value of a factor.
+/// Where settings are: in one file or several, or in one for every value of a factor.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum SettingsRef {
     /// The same for all conditions.
     File(String),
+    /// Several, the later over the earlier.
+    Files(#[schemars(length(min = 1))] Vec<String>),
     /// One for every value of a factor: each sets what the others set, so that each is whole.
     By(SettingsBy),
 }

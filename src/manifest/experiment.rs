@@ -63,6 +63,8 @@ pub struct Experiment {
     pub multiverse: Option<JointDraws>,
     /// The experiment that measured what the planner expects, where one did.
     pub calibration: Option<Arc<CalibrationRun>>,
+    /// The inference whose draws are the values of a factor, where there is one.
+    pub inference: Option<InferenceRun>,
     /// `PATH=VALUE` from the command line, in order.
     pub overrides: Vec<String>,
     /// Every file that was read, once.
@@ -113,6 +115,19 @@ pub struct CalibrationRun {
     pub sealed_as: String,
 }
 
+/// An inference whose draws others run, and what it proposed.
+#[derive(Debug, Clone)]
+pub struct InferenceRun {
+    /// The experiment.
+    pub experiment: Arc<Experiment>,
+    /// The records of its trials, in plan order, each a line; `None` where draws stand in that nobody made.
+    pub proposals: Option<Arc<[String]>>,
+    /// The path by which bundles know them.
+    pub sealed_as: String,
+    /// The factor whose values are its draws.
+    pub factor: String,
+}
+
 /// A parameter that the paper leaves open.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Assumption {
@@ -142,5 +157,16 @@ impl Experiment {
     /// Returns the cells of the design and what their trials need, in crossed order.
     pub fn design(&self) -> impl Iterator<Item = (&Condition, &Setup)> + Clone {
         self.conditions.iter().map(|resolved| (&resolved.condition, &resolved.setup))
+    }
+
+    /// Returns the inference whose draws this experiment runs, or its calibration.
+    pub fn inference(&self) -> Option<&InferenceRun> {
+        let of_calibration = self.calibration.as_deref().map(|run| &run.experiment);
+        self.inference.as_ref().or_else(|| of_calibration?.inference.as_ref())
+    }
+
+    /// Returns the factor whose values are draws of a posterior, where there is one.
+    pub fn draws(&self) -> Option<&str> {
+        self.inference.as_ref().map(|run| run.factor.as_str())
     }
 }

@@ -15,6 +15,8 @@ pub enum WrittenIn {
     CommandLine,
     /// Nowhere: made from the calibration manifest.
     Calibration,
+    /// Nowhere: made from the manifest of an inference whose draws are run.
+    Inference,
     /// Nowhere: made by an exploration before the experiment's own.
     PreviousMap,
 }
@@ -42,6 +44,12 @@ pub enum InputKind {
     Passages,
     /// What follows from the passages: times and failures of every maneuver.
     Maneuvers,
+    /// The manifest of an inference, or what it reads, where that has not said what it is.
+    Inference,
+    /// The proposals of an inference: the record of every trial, a line each.
+    Proposals,
+    /// What follows from the proposals: the draws that are run, one row each.
+    Draws,
 }
 
 /// One file that was read.

@@ -12,7 +12,8 @@
 //! | `resolver` | those three and the manifest: what the rooms below work with |
 //! | `parts` `robots` `worlds` `models` | robot, world and start of a condition |
 //! | `knowledge` `priors` `previous` | its prior knowledge |
-//! | `calibration` `lint` | what trials rest on; what is wrong or suspicious about a condition |
+//! | `nested` `calibration` `posterior` | other manifests that trials rest on: what they expect, which draws they are of |
+//! | `lint` | what is wrong or suspicious about a condition |
 //! | `numbers` `requests` `figures` `claims` `sensitivity` `multiverse` | what the paper prints, and what is asked of results |
 //! | `infer` | what is not known, and the conditions that become proposals |
 //! | `settings` `overrides` `crossing` | the manifest before its conditions, and those |
@@ -36,11 +37,13 @@ mod lint;
 mod models;
 mod multiverse;
 mod names;
+mod nested;
 mod numbers;
 mod overrides;
 mod parameters;
 mod parts;
 mod pinned;
+mod posterior;
 mod previous;
 mod priors;
 mod readers;
@@ -53,7 +56,7 @@ mod sensitivity;
 mod settings;
 mod worlds;
 
-pub use choice::{By, Choice, DependentFactor, FactorDoc, Levels, Ordered};
+pub use choice::{By, Choice, DependentFactor, DrawsFactor, FactorDoc, Levels, Ordered};
 pub use document::{
     Alpha, Author, BoundingBoxOf, ChoicePriorDoc, Cite, DerivedFrom, FactorRef, FloorPlanOf,
     FootprintOf, GenerateDoc, GeneratedWorld, InferDoc, LeftOutDoc, ManifestDoc, MapPrior,
@@ -62,10 +65,12 @@ pub use document::{
     TopoMetricPrior, UnknownAs, WorldDoc, WorldFile,
 };
 pub use experiment::{
-    Assumption, CalibrationRun, Experiment, JointDraws, Meanings, ResolvedCondition, Robustness,
+    Assumption, CalibrationRun, Experiment, InferenceRun, JointDraws, Meanings, ResolvedCondition,
+    Robustness,
 };
 pub use input::{Input, InputKind, WrittenIn};
-pub use library::{CalibrationTrials, InputError, Inputs};
+pub use library::{CalibrationTrials, InputError, Inputs, ProposalTrials};
+pub use nested::Nested;
 pub use parameters::ParametersDoc;
 pub use pinned::{PinnedDoc, PinnedFileDoc};
 pub use previous::{ExploreError, explored, unexplored};

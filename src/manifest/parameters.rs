@@ -15,7 +15,7 @@ pub struct ParametersDoc(pub Map<String, Value>);
 
 /// Returns whether this is a value in one of the forms that [`Wrapped`] knows, not a group of parameters.
 pub(super) fn is_wrapped(node: &Node) -> bool {
-    ["value", "factor", "by"].iter().any(|key| node.get(key).is_some())
+    ["value", "factor", "by", "points"].iter().any(|key| node.get(key).is_some())
 }
 
 /// One value that is written with a reason or by a factor.
@@ -47,6 +47,77 @@ pub(super) enum WrappedValue<'a> {
     },
     /// The value of this factor itself.
     Factor(&'a str),
+    /// A number computed from one that was drawn.
+    Drawn(Computed<'a>),
+}
+
+/// A number that is computed from one that was drawn, which is named by its factor and path: `draw.graph.time-scale`.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Computed<'a> {
+    /// A value divided by it.
+    Divided {
+        /// The value.
+        value: f64,
+        /// The number that was drawn.
+        by: &'a str,
+    },
+    /// A line through points, read at it.
+    Read {
+        /// The points: numbers as drawn, increasing, each with the value there.
+        points: Vec<[f64; 2]>,
+        /// The number that was drawn.
+        at: &'a str,
+    },
+}
+
+impl Computed<'_> {
+    /// Returns the number that was drawn by its name, and the key at which that stands.
+    pub(super) fn reference(&self) -> (&str, &'static str) {
+        match self {
+            Self::Divided { by, .. } => (by, "divided-by"),
+            Self::Read { at, .. } => (at, "at"),
+        }
+    }
+
+    /// Computes it where this was `drawn`; `None` where there is no such number.
+    pub(super) fn at(&self, drawn: f64) -> Option<f64> {
+        let computed = match self {
+            Self::Divided { value, .. } => value / drawn,
+            Self::Read { points, .. } => {
+                let upper = points.iter().position(|[x, _]| drawn <= *x)?;
+                match (points[upper], upper.checked_sub(1).map(|lower| points[lower])) {
+                    ([x, y], _) if drawn == x => y,
+                    ([x1, y1], Some([x0, y0])) => y0 + (y1 - y0) * (drawn - x0) / (x1 - x0),
+                    (_, None) => return None,
+                }
+            }
+        };
+        computed.is_finite().then_some(computed)
+    }
+
+    /// Returns what stands in where it cannot be computed, which has been told: a parameter left out would be told once more.
+    fn undrawn(&self) -> f64 {
+        match self {
+            Self::Divided { value, .. } => *value,
+            Self::Read { points, .. } => points.first().map_or(0.0, |[_, value]| *value),
+        }
+    }
+
+    /// Returns it as a manifest writes it, without its reason.
+    pub(super) fn to_json(&self) -> Value {
+        match self {
+            Self::Divided { value, by } => json!({ "value": value, "divided-by": by }),
+            Self::Read { points, at } => json!({ "points": points, "at": at }),
+        }
+    }
+}
+
+/// What values are taken out by: what holds in one condition.
+pub(super) struct Here<'f, 'c> {
+    /// The value of a factor.
+    pub(super) level: &'f dyn Fn(&str) -> Option<&'c str>,
+    /// A number that was drawn, by its name.
+    pub(super) drawn: &'f dyn Fn(&str) -> Option<f64>,
 }
 
 impl ParametersDoc {
@@ -57,13 +128,9 @@ impl ParametersDoc {
         found
     }
 
-    /// Returns the parameters for one condition: wrapped values taken out by `value_of` (factor to its value).
-    pub(super) fn for_condition<'c>(
-        &self,
-        groups: &Groups,
-        value_of: &dyn Fn(&str) -> Option<&'c str>,
-    ) -> Value {
-        Value::Object(unwrap_all(&self.0, groups, value_of))
+    /// Returns the parameters for one condition: wrapped values taken out by what holds `here`.
+    pub(super) fn for_condition(&self, groups: &Groups, here: &Here<'_, '_>) -> Value {
+        Value::Object(unwrap_all(&self.0, groups, here))
     }
 }
 
@@ -82,6 +149,16 @@ fn wrap<'a>(value: &'a Value, pointer: &str) -> Option<Wrapped<'a>> {
     let map = value.as_object()?;
     let why = map.get("why").and_then(Value::as_str);
     let range = map.get("range").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
+    let text = |key: &str| map.get(key).and_then(Value::as_str);
+    if let (Some(value), Some(by)) = (map.get("value"), text("divided-by")) {
+        let value = WrappedValue::Drawn(Computed::Divided { value: value.as_f64()?, by });
+        return Some(Wrapped { pointer: pointer.to_owned(), why, range, value });
+    }
+    if let (Some(points), Some(at)) = (map.get("points"), text("at")) {
+        let points = serde_json::from_value(points.clone()).ok()?;
+        let value = WrappedValue::Drawn(Computed::Read { points, at });
+        return Some(Wrapped { pointer: pointer.to_owned(), why, range, value });
+    }
     let value = match (map.get("value"), map.get("factor"), map.get("by"), map.get("values")) {
         (Some(value), None, None, None) => WrappedValue::Plain(value),
         (None, Some(factor), None, None) => WrappedValue::Factor(factor.as_str()?),
@@ -116,7 +193,7 @@ fn collect_wrapped<'a>(value: &'a Value, pointer: &str, found: &mut Vec<Wrapped<
     let Some(wrapped) = wrap(value, pointer) else { return };
     let inner = match &wrapped.value {
         WrappedValue::By { values, .. } => Some(*values),
-        WrappedValue::Plain(_) | WrappedValue::Factor(_) => None,
+        WrappedValue::Plain(_) | WrappedValue::Factor(_) | WrappedValue::Drawn(_) => None,
     };
     found.push(wrapped);
     for (level, value) in inner.into_iter().flatten() {
@@ -124,18 +201,18 @@ fn collect_wrapped<'a>(value: &'a Value, pointer: &str, found: &mut Vec<Wrapped<
     }
 }
 
-fn unwrap_all<'c>(
+fn unwrap_all(
     written: &Map<String, Value>,
     groups: &Groups,
-    value_of: &dyn Fn(&str) -> Option<&'c str>,
+    here: &Here<'_, '_>,
 ) -> Map<String, Value> {
     let mut plain = Map::new();
     for (key, value) in written {
         let value = match (value, groups.get(key)) {
             (Value::Object(inner), Some(Value::Object(group))) => {
-                Some(Value::Object(unwrap_all(inner, group, value_of)))
+                Some(Value::Object(unwrap_all(inner, group, here)))
             }
-            _ => unwrap(value, value_of),
+            _ => unwrap(value, here),
         };
         plain.extend(value.map(|value| (key.clone(), value)));
     }
@@ -143,15 +220,19 @@ fn unwrap_all<'c>(
 }
 
 /// Returns what is wrapped in `value`, itself where nothing is; `None` where no value of a factor has one.
-fn unwrap<'c>(value: &Value, value_of: &dyn Fn(&str) -> Option<&'c str>) -> Option<Value> {
+fn unwrap(value: &Value, here: &Here<'_, '_>) -> Option<Value> {
     match wrap(value, "").map(|wrapped| wrapped.value) {
         None => Some(value.clone()),
         Some(WrappedValue::Plain(value)) => Some(value.clone()),
         Some(WrappedValue::By { factor, values, otherwise }) => {
-            let chosen = value_of(factor).and_then(|level| values.get(level)).or(otherwise);
-            chosen.and_then(|chosen| unwrap(chosen, value_of))
+            let chosen = (here.level)(factor).and_then(|level| values.get(level)).or(otherwise);
+            chosen.and_then(|chosen| unwrap(chosen, here))
         }
-        Some(WrappedValue::Factor(factor)) => value_of(factor).map(level_as_written),
+        Some(WrappedValue::Factor(factor)) => (here.level)(factor).map(level_as_written),
+        Some(WrappedValue::Drawn(computed)) => {
+            let drawn = (here.drawn)(computed.reference().0);
+            Some(drawn.and_then(|drawn| computed.at(drawn)).unwrap_or(computed.undrawn()).into())
+        }
     }
 }
 
@@ -227,21 +308,64 @@ impl ParametersSchema {
         }
         let name = found["$ref"].as_str().and_then(|r| r.strip_prefix(DEFINITIONS));
         let value = name.and_then(|name| self.values.get(name));
-        let types = match value.and_then(|value| value.pointer("/anyOf/0/type")) {
-            Some(Value::Array(types)) => types.clone(),
-            Some(one) => vec![one.clone()],
-            None => Vec::new(),
-        };
+        let types = value.and_then(|value| value.pointer("/anyOf/0")).map_or(Vec::new(), types_of);
         let has = |name: &str| types.iter().any(|known| known == name);
         has("integer") && !has("number")
     }
 }
 
+/// Returns the types that `schema` names.
+fn types_of(schema: &Value) -> Vec<Value> {
+    match schema.get("type") {
+        Some(Value::Array(types)) => types.clone(),
+        Some(one) => vec![one.clone()],
+        None => Vec::new(),
+    }
+}
+
+/// The name of the definition of numbers that are computed from one that was drawn.
+const COMPUTED: &str = "computed-from-a-draw";
+
+/// Returns the forms of a number that is computed from one that was drawn: `{value, divided-by, why}`, `{points, at, why}`.
+fn computed(why: &Value) -> Value {
+    let number = |what: &str| {
+        let description = format!(
+            "{what} of this name in the draw, by factor and path: `draw.graph.time-scale`."
+        );
+        json!({ "type": "string", "description": description })
+    };
+    let pair =
+        json!({ "type": "array", "items": { "type": "number" }, "minItems": 2, "maxItems": 2 });
+    let points = json!({
+        "type": "array",
+        "items": pair,
+        "minItems": 2,
+        "description": "What was drawn, increasing, each with the value there; lines between them.",
+    });
+    let divided = json!({
+        "type": "object",
+        "properties": {
+            "value": { "type": "number" },
+            "divided-by": number("The number"),
+            "why": why,
+        },
+        "required": ["value", "divided-by"],
+        "additionalProperties": false,
+    });
+    let read = json!({
+        "type": "object",
+        "properties": { "points": points, "at": number("Where the lines are read: the number"), "why": why },
+        "required": ["points", "at"],
+        "additionalProperties": false,
+    });
+    json!({ "anyOf": [divided, read] })
+}
+
 /// Where a schema refers to its definitions.
 const DEFINITIONS: &str = "#/$defs/";
 
-/// Lets every value below `schema`, which is called `name`, be plain, `{value, why, range}`, `{factor, why}` or
-/// `{by, values, otherwise, why}`, and writes to `values` what each may be: values by one factor may lie in those by another.
+/// Lets every value below `schema`, which is called `name`, be plain, `{value, why, range}`, `{factor, why}`,
+/// `{by, values, otherwise, why}` or, where it is a number, computed from one that was drawn, and writes to `values` what each may be: values by one factor may lie in those by another.
 fn wrap_values(schema: &mut Map<String, Value>, name: &str, values: &mut Map<String, Value>) {
     let Some(Value::Object(properties)) = schema.get_mut("properties") else { return };
     for (key, property) in properties {
@@ -289,8 +413,13 @@ fn wrap_values(schema: &mut Map<String, Value>, name: &str, values: &mut Map<Str
             "required": ["by", "values"],
             "additionalProperties": false,
         });
+        let mut forms = vec![plain, valued, of_a_factor, by_a_factor];
+        if types_of(&forms[0]).iter().any(|known| known == "number") {
+            forms.push(json!({ "$ref": format!("{DEFINITIONS}{COMPUTED}") }));
+            values.entry(COMPUTED).or_insert_with(|| computed(&why));
+        }
         *property = json!({ "description": description, "$ref": this["$ref"] });
-        values.insert(name, json!({ "anyOf": [plain, valued, of_a_factor, by_a_factor] }));
+        values.insert(name, json!({ "anyOf": forms }));
     }
 }
 
@@ -313,11 +442,23 @@ mod tests {
         let pointers: Vec<_> = doc.wrapped(kind).iter().map(|w| w.pointer.clone()).collect();
         assert_eq!(pointers, ["/parameters/mapping/resolution-m", "/parameters/sensing/range-m"]);
         let level = |factor: &str| (factor == "environment").then_some("office");
-        let parameters = doc.for_condition(&groups(kind), &level);
+        let here = Here { level: &level, drawn: &|_| None };
+        let parameters = doc.for_condition(&groups(kind), &here);
         let parameters: Parameters = serde_json::from_value(parameters).unwrap();
         assert_eq!(parameters.sensing.range_m, Some(30.0));
         assert_eq!(parameters.sensing.range_noise_sd_m, Some(0.1));
         assert_eq!(parameters.mapping.resolution_m, 0.05);
+    }
+
+    #[test]
+    fn numbers_are_computed_from_what_was_drawn() {
+        let divided = Computed::Divided { value: 0.45, by: "draw.graph.time-scale" };
+        assert_eq!((divided.at(1.5), divided.at(0.0)), (Some(0.3), None));
+        let points = vec![[1.0, 10.0], [2.0, 20.0], [4.0, 0.0]];
+        let read = Computed::Read { points, at: "draw.graph.entry-hazard" };
+        let at = [0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 4.5].map(|drawn| read.at(drawn));
+        let expected = [None, Some(10.0), Some(15.0), Some(20.0), Some(10.0), Some(0.0), None];
+        assert_eq!(at, expected, "lines between points, nothing beyond them");
     }
 
     #[test]
@@ -360,7 +501,8 @@ mod tests {
         let clip = |reading: &'static str, environment: &'static str| {
             let level =
                 |factor: &str| Some(if factor == "reading" { reading } else { environment });
-            let parameters = doc.for_condition(&groups(kind), &level);
+            let here = Here { level: &level, drawn: &|_| None };
+            let parameters = doc.for_condition(&groups(kind), &here);
             serde_json::from_value::<Parameters>(parameters).unwrap().mapping.clip_range_m
         };
         assert_eq!(clip("described", "office"), None);

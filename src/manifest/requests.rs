@@ -112,6 +112,15 @@ impl<'m> Requests<'m> {
         }
         self.check_only(&table.only, pointer, faults);
         self.check_columns(&table.by, &table.rows, pointer, faults);
+        if let Some(over) = &table.over {
+            let place = format!("{pointer}/over");
+            faults.check_factor(self.factors, over, &place, false);
+            if table.by == *over || table.rows.contains(over) {
+                let message = format!("no cell takes the values of `{over}` together");
+                let label = "it is in `by` or in `rows`, where each has cells of its own";
+                faults.at(&place, message, label);
+            }
+        }
         self.check_beside(table.published.as_ref(), &table.by, &table.rows, pointer, faults);
     }
 

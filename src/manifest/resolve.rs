@@ -75,6 +75,8 @@ pub fn resolve(
         started: BTreeSet::new(),
         groups: groups(doc.study),
         calibration_run: None,
+        draws: None,
+        inference_run: None,
     };
     let mut experiment = resolver.run(overrides);
     let Resolver { faults, library, .. } = resolver;
@@ -103,6 +105,7 @@ impl Resolver<'_> {
         let (factors, conditions) = cross(doc, &mut self.faults);
         self.factors.clone_from(&factors);
         labels::check(&doc.labels, &factors, &mut self.faults);
+        self.draws = Self::draws(self);
         self.check_shared_noise();
         self.check_prior_names();
         self.check_study_keys();
@@ -157,6 +160,7 @@ impl Resolver<'_> {
             sensitivity,
             multiverse,
             calibration: self.calibration_run.take(),
+            inference: self.inference_run.take(),
             overrides: overrides.to_vec(),
             inputs: Vec::new(),
             document: self.faults.tree.clone(),
@@ -227,6 +231,10 @@ impl Resolver<'_> {
                     self.faults.check_factor(&self.factors, factor, &place, false);
                     json!({ "factor": factor })
                 }
+                WrappedValue::Drawn(computed) => {
+                    self.check_computed(&computed, &wrapped.pointer);
+                    computed.to_json()
+                }
             };
             assumptions.extend(wrapped.why.map(|why| Assumption {
                 path: wrapped.pointer[1..].replace('/', "."),
@@ -234,6 +242,10 @@ impl Resolver<'_> {
                 why: why.to_owned(),
                 range: wrapped.range.to_vec(),
             }));
+        }
+        if let Some(draws) = &self.draws {
+            assumptions.retain(|assumption| !draws.replace(&assumption.path));
+            assumptions.extend(draws.assumptions());
         }
         assumptions.extend(previous::assumptions(self.doc));
         assumptions

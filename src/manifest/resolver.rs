@@ -2,11 +2,12 @@
 
 use super::choice::{By, Choice};
 use super::document::ManifestDoc;
-use super::experiment::CalibrationRun;
+use super::experiment::{CalibrationRun, InferenceRun};
 use super::faults::{Faults, step};
 use super::input::{InputKind, WrittenIn};
 use super::library::{Library, Made, Unread, joined, normalised, relative_to};
 use super::parameters::Groups;
+use super::posterior::Draws;
 use crate::condition::Condition;
 use crate::digest::MeaningDigest;
 use crate::document::{Diagnostic, Source};
@@ -31,6 +32,10 @@ pub(super) struct Resolver<'a> {
     pub(super) groups: Groups,
     /// The experiment that measured what planners expect, once it was asked for.
     pub(super) calibration_run: Option<Arc<CalibrationRun>>,
+    /// The draws that are the values of a factor, where there is one and they could be had.
+    pub(super) draws: Option<Draws>,
+    /// The inference that they are of.
+    pub(super) inference_run: Option<InferenceRun>,
 }
 
 impl<'a> Resolver<'a> {
@@ -121,9 +126,10 @@ impl<'a> Resolver<'a> {
         };
         let name = match self.faults.written_in(pointer) {
             WrittenIn::Manifest => joined(self.folder, path),
-            WrittenIn::CommandLine | WrittenIn::Calibration | WrittenIn::PreviousMap => {
-                normalised(path)
-            }
+            WrittenIn::CommandLine
+            | WrittenIn::Calibration
+            | WrittenIn::Inference
+            | WrittenIn::PreviousMap => normalised(path),
         };
         Some(Source::new(name, text))
     }

@@ -1,4 +1,4 @@
-//! `settings: FILE`, or one for every value of a factor: parameters that several manifests share, written once with
+//! `settings: FILE`, a list of files, or one for every value of a factor: parameters that several manifests share, written once with
 //! their reasons.
 
 use super::faults::step;
@@ -45,6 +45,14 @@ pub(super) fn underlay(
         let (source, _) = settings_file(&as_set, "/settings", &path, library)?;
         return tree.underlay(&source, "parameters", &is_wrapped);
     }
+    // The last one lies uppermost: what it says is there before the others are laid beneath.
+    let paths: Vec<Option<String>> = written.items().iter().map(Node::scalar_text).collect();
+    for (index, path) in paths.into_iter().enumerate().rev() {
+        let Some(path) = path else { return Ok(()) };
+        let pointer = format!("/settings/{index}");
+        let (source, _) = settings_file(&as_set, &pointer, &path, library)?;
+        tree.underlay(&source, "parameters", &is_wrapped)?;
+    }
     // What is no such mapping is told with the rest of the manifest, by its schema.
     let by = written.get("by").and_then(Node::scalar_text);
     let files = written.get("values").map_or(&[][..], Node::entries);
@@ -85,9 +93,10 @@ fn settings_file(
     })?;
     let name = match written_in {
         WrittenIn::Manifest => joined(&tree.sources[0].name, path),
-        WrittenIn::CommandLine | WrittenIn::Calibration | WrittenIn::PreviousMap => {
-            normalised(path)
-        }
+        WrittenIn::CommandLine
+        | WrittenIn::Calibration
+        | WrittenIn::Inference
+        | WrittenIn::PreviousMap => normalised(path),
     };
     let source = Source::new(name, text);
     let study_of = |tree: &Tree| tree.root.get("study").and_then(Node::scalar_text);

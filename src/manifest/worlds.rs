@@ -1,5 +1,6 @@
 //! The worlds of a manifest's conditions: which file, which layers; or which building of a family.
 
+use super::crossing::draws;
 use super::document::{
     Alpha, FactorRef, GenerateDoc, PlaceDoc, PoseDoc, SeedDoc, UpAxisDoc, WorldDoc, WorldFile,
 };
@@ -45,6 +46,9 @@ impl Resolver<'_> {
                 let pointer = format!("{pointer}/generate");
                 (self.generated_world(&doc.generate, &pointer, condition), &doc.place)
             }
+            WorldDoc::Drawn(FactorRef { factor }) => {
+                return self.drawn_world(factor, &format!("{pointer}/factor"), condition);
+            }
         };
         match place {
             Some(place) => self.placed(used?, place, &format!("{pointer}/place")),
@@ -52,8 +56,32 @@ impl Resolver<'_> {
         }
     }
 
+    /// Returns the world of the draw that `condition` has of `factor`, which is named at `pointer`.
+    fn drawn_world(
+        &mut self,
+        factor: &str,
+        pointer: &str,
+        condition: &Condition,
+    ) -> Option<UsedWorld> {
+        self.faults.check_factor(&self.factors, factor, pointer, false)?;
+        if draws(self.doc, factor).is_none() {
+            let fault =
+                self.faults.fault(pointer, format!("the values of `{factor}` are no draws"));
+            let fault = fault.label("expected a factor that is `{posterior: FILE, n: N}`");
+            self.faults.push(fault.help("docs/inference.md says how draws are run"));
+            return None;
+        }
+        // Draws that could not be had have been told.
+        self.draws.as_ref().filter(|draws| draws.are_of(factor))?.world(condition)
+    }
+
     /// Returns `used` with goal and starts where `doc`, written at `pointer`, puts them.
-    fn placed(&mut self, used: UsedWorld, doc: &PlaceDoc, pointer: &str) -> Option<UsedWorld> {
+    pub(super) fn placed(
+        &mut self,
+        used: UsedWorld,
+        doc: &PlaceDoc,
+        pointer: &str,
+    ) -> Option<UsedWorld> {
         let UsedWorld { world, mut described, .. } = used;
         let pose = |at: &PoseDoc| json!([at.x_m, at.y_m, at.heading_deg]);
         let starts: Map<String, Value> =

@@ -23,7 +23,7 @@ pub struct Provenance {
 #[derive(Debug, Clone, Default, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub struct InputRow {
-    /// What it is for: `world`, `robot`, `prior`, `published`, `calibration`.
+    /// What it is for: `world`, `robot`, `prior`, `published`, `calibration`, `posterior`.
     pub role: String,
     /// Its path as the manifest writes it.
     pub written: String,
@@ -84,6 +84,15 @@ fn facts(bundle: &Bundle, plan: &Plan) -> Vec<(String, String)> {
         );
         facts.push(("calibration", text));
     }
+    if plan.experiment.inference().is_some() {
+        let files = bundle.inputs().iter().filter(|input| role(&input.as_written) == "posterior");
+        let files: Vec<&str> = files.map(|input| input.path.as_str()).collect();
+        let text = format!(
+            "the draws that are run follow from the proposals of an inference, which are sealed as an input: {}",
+            files.join(", ")
+        );
+        facts.push(("posterior", text));
+    }
     if let Some(capsule) = bundle.capsule() {
         facts.push(("engine's source", format!("in the bundle, from {capsule}")));
     }
@@ -91,6 +100,9 @@ fn facts(bundle: &Bundle, plan: &Plan) -> Vec<(String, String)> {
 }
 
 fn role(as_written: &str) -> &'static str {
+    if as_written.ends_with(".draws.csv") || as_written.ends_with(".proposals.jsonl") {
+        return "posterior";
+    }
     if as_written.ends_with(".maneuvers.csv") || as_written.contains("calibration") {
         return "calibration";
     }
@@ -118,12 +130,22 @@ mod tests {
     fn tables_are_told_apart_by_what_made_them() {
         let files = [
             "a.maneuvers.csv",
+            "a-calibration.draws.csv",
+            "a.proposals.jsonl",
             "manifests/a.sensitivity.csv",
             "a.multiverse.csv",
             "reference/a.csv",
             "../robots/a.urdf",
         ];
-        let roles = ["calibration", "sensitivity", "multiverse", "published", "robot"];
+        let roles = [
+            "calibration",
+            "posterior",
+            "posterior",
+            "sensitivity",
+            "multiverse",
+            "published",
+            "robot",
+        ];
         assert_eq!(files.map(role), roles);
     }
 }

@@ -128,6 +128,9 @@ pub struct GridCell {
     /// How the two agree, or why they cannot be compared.
     #[serde(serialize_with = "by_name")]
     pub agreement: Agreement,
+    /// From 5 to 95 % of what each value of a factor has by itself, where the cell takes them together.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub band: Option<[f64; 2]>,
 }
 
 /// A mean over trials, in the unit of its table.

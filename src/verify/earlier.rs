@@ -1,6 +1,6 @@
-//! What a study rests on and runs before it made: the passages of its calibration, the runs behind its tables of
-//! robustness and of a multiverse. They are executed again like trials: a sample at level 4, all passages at level 5, rows of these
-//! tables as many as asked.
+//! What a study rests on and runs before it made: the passages of its calibration, the proposals of the inference whose draws it
+//! runs, the runs behind its tables of robustness and of a multiverse. They are executed again like trials: a sample at level 4, all
+//! passages and proposals at level 5, rows of these tables as many as asked.
 
 use super::asked::{Options, Rows};
 use super::{Level, Replanned, reexecution};
@@ -14,6 +14,8 @@ use serde::Serialize;
 pub enum Made {
     /// Isolated passages, from which the planner's expectations follow.
     Passages,
+    /// Proposals of an inference, from which the draws follow that are run.
+    Proposals,
     /// Verdicts at other values of the assumptions.
     Robustness,
     /// Verdicts at draws of all assumptions together.
@@ -21,10 +23,10 @@ pub enum Made {
 }
 
 impl Made {
-    /// Returns the name of the table, where it is one whose rows are runs of the whole study; passages are judged like records.
+    /// Returns the name of the table, where it is one whose rows are runs of the whole study; passages and proposals are judged like records.
     fn table(self) -> Option<&'static str> {
         match self {
-            Self::Passages => None,
+            Self::Passages | Self::Proposals => None,
             Self::Robustness => Some("robustness table"),
             Self::Multiverse => Some("multiverse table"),
         }
@@ -62,9 +64,10 @@ impl EarlierAgain {
     /// Says in words what it means.
     pub fn in_words(&self) -> String {
         let (executed, of, equal) = (self.executed, self.of, self.equal);
-        let what = match self.made.table() {
-            None => "passages of the calibration".to_owned(),
-            Some(table) => format!("rows of the {table}"),
+        let what = match (self.made, self.made.table()) {
+            (Made::Proposals, _) => "proposals of the inference".to_owned(),
+            (_, None) => "passages of the calibration".to_owned(),
+            (_, Some(table)) => format!("rows of the {table}"),
         };
         if equal == executed && executed == of {
             format!("all {of} {what} gave the same again")
@@ -94,7 +97,7 @@ pub(super) struct Again {
 }
 
 impl Earlier {
-    /// Says in words what is the author's word before anything is executed; passages are judged like records.
+    /// Says in words what is the author's word before anything is executed; passages and proposals are judged like records.
     pub(super) fn on_trust(&self) -> Option<String> {
         self.made.table().map(|table| format!("the {table} is the author's word"))
     }
@@ -113,6 +116,7 @@ impl Earlier {
         };
         let label = match self.made {
             Made::Passages => "verify-passages",
+            Made::Proposals => "verify-proposals",
             Made::Robustness => "verify-robustness",
             Made::Multiverse => "verify-multiverse",
         };

@@ -75,6 +75,12 @@ pub enum MakeAgainError {
     /// The calibration has no such passage.
     #[error("no passage {0}")]
     NoPassage(usize),
+    /// The study runs no draws, or of no proposals.
+    #[error("there are no proposals")]
+    NoInference,
+    /// The inference has no such proposal.
+    #[error("no proposal {0}")]
+    NoProposal(usize),
     /// The study has no robustness table.
     #[error("there is no such table")]
     NoTable,

@@ -12,7 +12,9 @@ use crate::bundle::{Bundle, BundleContent, BundlePath, Fault, Forgetful, Gathere
 use crate::claims::multiverse::Found;
 use crate::digest::Sha256Digest;
 use crate::document::Source;
-use crate::manifest::{self, CalibrationTrials, Experiment, InputError, Inputs, WrittenIn};
+use crate::manifest::{
+    self, CalibrationTrials, Experiment, InputError, Inputs, ProposalTrials, WrittenIn,
+};
 use crate::plan::{ENGINE_VERSION, Plan, Selection, engine_version};
 use crate::rng::Seeds;
 use crate::runner::{Observer, RunError, Scheduler, Silent, TrialStore};
@@ -149,6 +151,10 @@ impl Inputs for Sealed<'_> {
         self.read(sealed_as, WrittenIn::Calibration).map(CalibrationTrials::Csv)
     }
 
+    fn propose(&self, _: &Experiment, sealed_as: &str) -> Result<ProposalTrials, InputError> {
+        self.read(sealed_as, WrittenIn::Inference).map(ProposalTrials::Lines)
+    }
+
     fn explore(&self, _: &TrialSpec, sealed_as: &[String; 2]) -> Result<[Vec<u8>; 2], InputError> {
         let [descriptor, image] = sealed_as;
         let read = |name: &str| self.read(name, WrittenIn::PreviousMap);
@@ -200,6 +206,11 @@ impl Inputs for Afresh<'_> {
         let plan = Plan::of(seeded);
         let records = study.run(&plan.trials).map_err(InputError::other)?;
         CalibrationTrials::shown_by(&plan.experiment, &records).map_err(InputError::other)
+    }
+
+    /// Returns the sealed ones, with fresh seeds too: other draws would be another study.
+    fn propose(&self, inference: &Experiment, sealed: &str) -> Result<ProposalTrials, InputError> {
+        self.sealed.propose(inference, sealed)
     }
 
     fn explore(
@@ -269,6 +280,32 @@ impl Study<'_> {
     }
 }
 
+impl Study<'_> {
+    /// Makes the proposals at `indices` again.
+    fn propose_again(&self, indices: &[usize]) -> Result<Vec<Option<Fault>>, MakeAgainError> {
+        let run = self.plan.experiment.inference().ok_or(MakeAgainError::NoInference)?;
+        let sealed = run.proposals.as_ref().ok_or(MakeAgainError::NoInference)?;
+        let path = BundlePath::input(file_name(&run.sealed_as));
+        let plan = Plan::of(Experiment::clone(&run.experiment));
+        let spec = |&i: &usize| plan.trials.get(i).cloned().ok_or(MakeAgainError::NoProposal(i));
+        let trials = indices.iter().map(spec).collect::<Result<Vec<TrialSpec>, _>>()?;
+        let records = self.run(&trials)?;
+        let compared = indices.iter().zip(&records).map(|(&index, record)| {
+            let found = sealed.get(index).ok_or(MakeAgainError::NoProposal(index))?;
+            let expected = record.to_line();
+            let digest = |line: &str| format!("sha256:{}", Sha256Digest::of(line).short());
+            let fault = Fault::new(
+                path.line(index + 1),
+                format!("{} as the proposal is made again", digest(&expected)),
+                digest(found),
+            );
+            let hint = "the draws that the study runs rest on proposals that were not made so";
+            Ok((expected != *found).then(|| fault.hint(hint)))
+        });
+        compared.collect()
+    }
+}
+
 /// Returns the last part of a path.
 fn file_name(path: &str) -> &str {
     path.rsplit('/').next().unwrap_or(path)
@@ -330,6 +367,10 @@ impl Replanned for Study<'_> {
             let units = vec![1; run.showed.as_ref()?.trials()];
             Some(Earlier { made: Made::Passages, path: path(&run.sealed_as), units })
         });
+        let proposals = self.plan.experiment.inference().and_then(|run| {
+            let units = vec![1; run.proposals.as_ref()?.len()];
+            Some(Earlier { made: Made::Proposals, path: path(&run.sealed_as), units })
+        });
         let robustness = self.plan.experiment.sensitivity.iter().map(|known| {
             let conditions = self.plan.experiment.conditions.len() as u64;
             let runs = known.table.runs();
@@ -346,7 +387,7 @@ impl Replanned for Study<'_> {
             let path = path(&known.as_written);
             Earlier { made: Made::Multiverse, path, units: units.collect() }
         });
-        passages.chain(robustness).chain(multiverse).collect()
+        passages.chain(proposals).chain(robustness).chain(multiverse).collect()
     }
 
     fn make_again(
@@ -356,6 +397,7 @@ impl Replanned for Study<'_> {
     ) -> Result<Vec<Option<Fault>>, MakeAgainError> {
         match made {
             Made::Passages => self.drive_again(indices),
+            Made::Proposals => self.propose_again(indices),
             Made::Robustness => self.vary_again(indices),
             Made::Multiverse => self.draw_again(indices),
         }

@@ -6,6 +6,7 @@ use crate::cli::exit::{Exit, Failure};
 use crate::cli::load;
 use crate::cli::terminal::{Terminal, counted};
 use crate::digest::TrialKey;
+use crate::manifest::Experiment;
 use crate::plan::Plan;
 use crate::provenance::Environment;
 use crate::runner::StoreError;
@@ -144,12 +145,15 @@ fn export(
 ) -> Result<(), Failure> {
     let mut wanted: Vec<TrialKey> = Vec::new();
     for manifest in &args.manifests {
-        // What a calibration measured is part of the trials' keys.
+        // What a calibration measured is part of the trials' keys, and draws are what an inference proposed.
         let given = load::Given { set: &args.set, allow: &args.allow };
         let loaded = load::manifest(manifest, given, Calibrator::Stored(store), terminal)?;
         let calibration =
             loaded.experiment.calibration.as_deref().map(|run| run.experiment.clone());
-        let plans = [Some(loaded.experiment), calibration].into_iter().flatten().map(Plan::of);
+        let inference = loaded.experiment.inference();
+        let inference = inference.map(|run| Experiment::clone(&run.experiment));
+        let experiments = [Some(loaded.experiment), calibration, inference];
+        let plans = experiments.into_iter().flatten().map(Plan::of);
         wanted.extend(plans.flat_map(|plan| plan.trials).map(|spec| spec.key));
     }
     let keys = (!args.manifests.is_empty()).then_some(&wanted[..]);

@@ -222,6 +222,7 @@ mod tests {
                 rows: vec!["start".to_owned(), "deadline-s".to_owned()],
                 only: BTreeMap::new(),
                 published: Some("success".to_owned()),
+                over: None,
             }),
         };
         let exhibit = request.exhibit(&findings, &[]);

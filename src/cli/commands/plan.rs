@@ -3,7 +3,7 @@
 mod power;
 
 use crate::cli::args::{DataFormat, PlanArgs};
-use crate::cli::calibrate::Calibrator;
+use crate::cli::calibrate::{Calibrator, Unmeasured};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::forecast::Forecast;
 use crate::cli::load;
@@ -95,7 +95,11 @@ pub(in crate::cli) fn run(
         .to_string(),
     });
     if let Some(missing) = missing {
-        terminal.note(&format!("note: keys depend on what the calibration measures; {missing}"));
+        let on = match &missing {
+            Unmeasured::NotRun { trials: "proposals", .. } => "what the inference proposes",
+            _ => "what the calibration measures",
+        };
+        terminal.note(&format!("note: keys depend on {on}; {missing}"));
     }
     Ok(Exit::Yes)
 }

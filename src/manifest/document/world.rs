@@ -16,6 +16,8 @@ pub enum WorldDoc {
     File(WorldFile),
     /// A building of a family.
     Generated(GeneratedWorld),
+    /// The building of a draw, with its goal and starts.
+    Drawn(FactorRef),
 }
 
 /// A building of a family of buildings.

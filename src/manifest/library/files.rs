@@ -1,9 +1,10 @@
 //! The files a manifest names: asked for once each, by their path as written.
 
-use super::inputs::{CalibrationTrials, InputError, Inputs};
+use super::inputs::{CalibrationTrials, InputError, Inputs, ProposalTrials};
 use crate::digest::{FileDigest, Sha256Digest};
 use crate::manifest::experiment::Experiment;
 use crate::manifest::input::{Input, InputKind, WrittenIn};
+use crate::manifest::nested::Nested;
 use crate::studies::TrialSpec;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -18,9 +19,9 @@ struct File {
 }
 
 impl File {
-    /// Sets the file's kind where it is known only as a calibration's.
+    /// Sets the file's kind where it is known only as one that another manifest reads.
     fn say(&mut self, kind: InputKind) {
-        if self.kind == InputKind::Calibration {
+        if matches!(self.kind, InputKind::Calibration | InputKind::Inference) {
             self.kind = kind;
         }
     }
@@ -60,7 +61,7 @@ impl<'a> InputFiles<'a> {
         self.source.follows(path, written_in)
     }
 
-    /// Notes that the file `path`, which a calibration read, is a `kind`.
+    /// Notes that the file `path`, which another manifest read, is a `kind`.
     pub(in crate::manifest) fn say(&mut self, path: &str, written_in: WrittenIn, kind: InputKind) {
         if let Some(file) = self.files.get_mut(&(path.to_owned(), written_in)) {
             file.say(kind);
@@ -80,15 +81,37 @@ impl<'a> InputFiles<'a> {
         Ok(measured)
     }
 
-    /// Keeps what was made from a calibration as the input `sealed_as`.
+    /// Returns what the experiment `inference` proposes; it is kept as the input `sealed_as`.
+    pub(in crate::manifest) fn propose(
+        &mut self,
+        inference: &Experiment,
+        sealed_as: &str,
+    ) -> Result<ProposalTrials, InputError> {
+        // A manifest and its calibration may run the same draws.
+        let key = (sealed_as.to_owned(), WrittenIn::Inference);
+        if let Some(File { bytes: Ok(bytes), .. }) = self.files.get(&key) {
+            return Ok(ProposalTrials::Lines(bytes.to_vec()));
+        }
+        let proposed = self.source.propose(inference, sealed_as)?;
+        if let ProposalTrials::Lines(bytes) = &proposed {
+            self.made(sealed_as, InputKind::Proposals, bytes);
+        }
+        Ok(proposed)
+    }
+
+    /// Keeps what was made from a calibration or an inference as the input `sealed_as`.
     pub(in crate::manifest) fn made(&mut self, sealed_as: &str, kind: InputKind, bytes: &[u8]) {
-        let key = (sealed_as.to_owned(), WrittenIn::Calibration);
+        let written_in = match kind {
+            InputKind::Proposals | InputKind::Draws => WrittenIn::Inference,
+            _ => WrittenIn::Calibration,
+        };
+        let key = (sealed_as.to_owned(), written_in);
         self.files.insert(key, File { bytes: Ok(bytes.into()), kind });
     }
 
-    /// Returns the manifest on whose behalf these files are read, where that is a calibration.
-    pub(in crate::manifest) fn calibrates(&self) -> Option<&str> {
-        self.source.calibrates()
+    /// Returns the manifest on whose behalf these files are read, where another names it, and as what.
+    pub(in crate::manifest) fn read_as(&self) -> Option<(Nested, &str)> {
+        self.source.read_as()
     }
 
     /// Returns what the robot of `spec` mapped, kept as the inputs `sealed_as`.

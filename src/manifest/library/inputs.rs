@@ -2,6 +2,7 @@
 
 use crate::manifest::experiment::Experiment;
 use crate::manifest::input::WrittenIn;
+use crate::manifest::nested::Nested;
 use crate::studies::{CalibrationError, TrialRecord, TrialSpec, planned_calibration};
 use std::error::Error;
 use std::sync::Arc;
@@ -15,6 +16,9 @@ pub enum InputError {
     /// Nobody here runs calibrations.
     #[error("this program cannot run `{0}`")]
     NoCalibration(String),
+    /// Nobody here makes proposals.
+    #[error("this program cannot make the proposals of `{0}`")]
+    NoInference(String),
     /// Nobody here runs explorations.
     #[error("this program cannot run the exploration {0}")]
     NoExploration(String),
@@ -58,8 +62,21 @@ pub trait Inputs {
         Err(InputError::NoCalibration(calibration.name.clone()))
     }
 
-    /// Returns the manifest on whose behalf these files are read, where that is a calibration: it has none of its own.
-    fn calibrates(&self) -> Option<&str> {
+    /// Returns what every trial of the experiment `inference` proposed; in bundles they are sealed as `sealed_as`.
+    ///
+    /// # Errors
+    /// Why there are none.
+    fn propose(
+        &self,
+        inference: &Experiment,
+        sealed_as: &str,
+    ) -> Result<ProposalTrials, InputError> {
+        let _ = sealed_as;
+        Err(InputError::NoInference(inference.name.clone()))
+    }
+
+    /// Returns the manifest on whose behalf these files are read, where another names it, and as what: it names none of its own.
+    fn read_as(&self) -> Option<(Nested, &str)> {
         None
     }
 
@@ -99,5 +116,22 @@ impl CalibrationTrials {
         planned_calibration(calibration.kind, calibration.design(), calibration.trials)
             .and_then(|planned| planned.showed(records))
             .map(|showed| Self::Csv(showed.to_csv().into_bytes()))
+    }
+}
+
+/// The trials of an inference.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum ProposalTrials {
+    /// Their records in plan order, each a line.
+    Lines(Vec<u8>),
+    /// Nothing was proposed: draws stand in that enter no result.
+    StandIn,
+}
+
+impl ProposalTrials {
+    /// Returns what holds `records`, all of an inference's in plan order.
+    pub fn of(records: &[TrialRecord]) -> Self {
+        let lines = records.iter().map(|record| record.to_line() + "\n");
+        Self::Lines(lines.collect::<String>().into_bytes())
     }
 }

@@ -8,7 +8,7 @@ mod inputs;
 mod paths;
 mod pins;
 
-pub use inputs::{CalibrationTrials, InputError, Inputs};
+pub use inputs::{CalibrationTrials, InputError, Inputs, ProposalTrials};
 pub(super) use paths::{joined, normalised, relative_to};
 
 use super::faults::Faults;

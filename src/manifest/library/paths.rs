@@ -31,9 +31,10 @@ pub(in crate::manifest) fn joined(beside: &str, path: &str) -> String {
 pub(in crate::manifest) fn relative_to(written_in: WrittenIn) -> &'static str {
     match written_in {
         WrittenIn::Manifest => "paths are relative to the file they are written in",
-        WrittenIn::CommandLine | WrittenIn::Calibration | WrittenIn::PreviousMap => {
-            "paths in `--set` are relative to the current directory"
-        }
+        WrittenIn::CommandLine
+        | WrittenIn::Calibration
+        | WrittenIn::Inference
+        | WrittenIn::PreviousMap => "paths in `--set` are relative to the current directory",
     }
 }
 

@@ -10,6 +10,7 @@ mod hold_out;
 mod likelihood;
 mod measures;
 mod observed;
+mod picked;
 mod posterior;
 mod proposal;
 mod requests;
@@ -22,6 +23,7 @@ pub use hold_out::HoldOut;
 pub use likelihood::{GRID, Likelihoods, Place};
 pub use measures::measure;
 pub use observed::{LeftOut, Observed, ObservedCell, Printed};
+pub use picked::{InferenceDesign, PickedDraw, PickedPlace};
 pub use posterior::Posterior;
 pub use proposal::{Below, Drawn, Proposal};
 pub use requests::{InferenceTable, Shown};
@@ -142,6 +144,9 @@ pub trait Proposing: Sync {
 
     /// Returns the name and the position (m) of the place `number` in the building of `setup`.
     fn place(&self, setup: &Setup, number: f64) -> Option<(String, [f64; 2])>;
+
+    /// Returns whether the parameter of this `path` is about the model that proposes alone, so that no trial in physics has it.
+    fn is_of_the_model(&self, path: &str) -> bool;
 
     /// Makes a draw of the prior in the building of `setup`, and what it predicts.
     ///

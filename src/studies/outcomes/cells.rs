@@ -4,7 +4,7 @@ use super::{OutcomeTable, Percent, Quantity};
 use crate::condition::Condition;
 use crate::stats::compatibility::{Agreement, Ours, Printed, printed_share};
 use crate::stats::proportion::{Proportion, wilson};
-use crate::stats::summary::Summary;
+use crate::stats::summary::{Summary, quantile};
 use crate::studies::{Entry, Findings, Outcome};
 use crate::table::Value;
 
@@ -24,10 +24,33 @@ pub struct OutcomeCell {
     pub trials: u64,
     /// What was found; `None` where no trial has the quantity.
     pub ours: Option<Estimate>,
+    /// How it differs over the values of a factor, where that is asked for and they have it.
+    pub band: Option<Band>,
     /// The paper's number, and the trials behind it where it says.
     pub published: Option<(f64, Option<u64>)>,
     /// How the two agree, or why they cannot.
     pub agreement: Agreement,
+}
+
+/// How a quantity differs over the values of a factor: quantiles of what each has by itself, all counted alike.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Band {
+    /// 5 % of them are below.
+    pub low: f64,
+    /// Half of them are below.
+    pub median: f64,
+    /// 95 % of them are below.
+    pub high: f64,
+    /// How many values have the quantity.
+    pub of: u64,
+}
+
+impl Band {
+    fn of(values: &[f64]) -> Option<Self> {
+        let at = |share: f64| quantile(values, share);
+        let of = values.len() as u64;
+        (of > 0).then(|| Self { low: at(0.05), median: at(0.5), high: at(0.95), of })
+    }
 }
 
 /// A quantity with its spread.
@@ -99,11 +122,20 @@ impl Findings<'_> {
         });
         let found = compared(&request.show, &trials).ok_or_else(|| self.absence(fixed, ran));
         let paper = published.map(|(value, n)| Printed { value, sd: None, n });
+        let band = request.over.as_ref().and_then(|over| {
+            let of_value = |value: &String| {
+                let own = |trial: &&Entry<'_>| trial.condition().value(over) == Some(value);
+                let own: Vec<Entry<'_>> = trials.iter().filter(own).copied().collect();
+                estimate(&request.show, &own).map(|estimate| estimate.value)
+            };
+            Band::of(&self.values_of(over).iter().filter_map(of_value).collect::<Vec<f64>>())
+        });
         OutcomeCell {
             rows,
             by,
             trials: trials.len() as u64,
             ours: estimate(&request.show, &trials),
+            band,
             published,
             agreement: Agreement::between(found, paper),
         }

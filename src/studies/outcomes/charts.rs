@@ -74,17 +74,26 @@ impl OutcomeTable {
         if chart.is_empty() {
             return None;
         }
-        let (kind, caption) = if chart.boxes.is_empty() {
-            (
+        let (kind, caption) = match (chart.boxes.is_empty(), self.over.is_none()) {
+            (true, true) => (
                 "Bar chart",
                 "Bars are ours; hollow diamonds under them the paper's. Lines are 95 % intervals.",
-            )
-        } else {
-            (
+            ),
+            (false, true) => (
                 "Dot chart",
                 "Dots are our means with 95 % intervals, boxes the middle half of our trials, n their number; hollow \
                  diamonds under them are the paper's means.",
-            )
+            ),
+            (true, false) => (
+                "Bar chart",
+                "Bars are ours, all trials together; narrow boxes span 5 to 95 % of what each value of a factor has by itself, \
+                 ticks are its median. Hollow diamonds under them are the paper's with 95 % intervals.",
+            ),
+            (false, false) => (
+                "Dot chart",
+                "Dots are our means, all trials together; narrow boxes span 5 to 95 % of what each value of a factor has by \
+                 itself, ticks are its median, n is the number of trials. Hollow diamonds under them are the paper's means.",
+            ),
         };
         let (svg, data) = (chart.to_svg_on(medium), chart.data());
         Some(Drawn::new((kind, title), svg, chart.in_words(), caption, data))
@@ -127,6 +136,9 @@ impl Findings<'_> {
             quantity: request.show.axis_title(),
             interval: "95 % interval".to_owned(),
             boxes: if is_mean { "middle half of trials".to_owned() } else { String::new() },
+            band: request.over.as_ref().map_or_else(String::new, |over| {
+                format!("5 to 95 % over {}, median", self.labels.factor(over))
+            }),
             mark: if by_deadline { "deadline".to_owned() } else { String::new() },
             names,
             lines,
@@ -136,7 +148,7 @@ impl Findings<'_> {
 
     fn estimate(&self, request: &OutcomeTable, cell: &OutcomeCell) -> Estimate {
         let middle_half = match &request.show {
-            Quantity::Mean(measure) => {
+            Quantity::Mean(measure) if request.over.is_none() => {
                 let only: Condition = request.only.iter().map(|(f, v)| (f, &v.0)).collect();
                 let fixed = only.and(&cell.rows).with(&request.by, &cell.by);
                 let mut trials = self.matching(&fixed);
@@ -144,14 +156,15 @@ impl Findings<'_> {
                 let values = measured(&trials, measure);
                 (values.len() > 3).then(|| (quantile(&values, 0.25), quantile(&values, 0.75)))
             }
-            Quantity::Share(_) | Quantity::Percent(_) => None,
+            Quantity::Mean(_) | Quantity::Share(_) | Quantity::Percent(_) => None,
         };
         let is_share = matches!(request.show, Quantity::Share(_));
         let published_interval =
             cell.published.filter(|_| is_share).and_then(|(value, n)| published_share(value, n?));
         Estimate {
             value: cell.ours.map(|e: Found| e.value),
-            interval: cell.ours.and_then(|e| e.interval),
+            interval: cell.ours.and_then(|e| e.interval).filter(|_| request.over.is_none()),
+            band: cell.band.map(|band| [band.low, band.median, band.high]),
             middle_half,
             n: Some(cell.ours.map_or(0, |e| e.n)),
             published: cell.published.map(|p| p.0),
@@ -168,6 +181,7 @@ impl Findings<'_> {
             rows: request.rows.clone(),
             only: request.only.clone(),
             published: None,
+            over: None,
         };
         let names = self.shown_columns(&table);
         let cells = self.outcome_cells(&table);
@@ -298,6 +312,7 @@ mod tests {
             by: "strategy".to_owned(),
             rows: vec!["start".to_owned(), "deadline-s".to_owned()],
             only: BTreeMap::new(),
+            over: None,
             published: published.map(str::to_owned),
         }
     }

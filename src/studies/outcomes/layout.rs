@@ -1,6 +1,6 @@
 //! What is shown of the cells of an outcome table.
 
-use super::{OutcomeCell, OutcomeTable, Percent, Quantity};
+use super::{Band, OutcomeCell, OutcomeTable, Percent, Quantity};
 use crate::stats::compatibility::Agreement;
 use crate::studies::columns::{Columns, whole};
 use crate::studies::exhibit::{Abreast, Grid, GridCell, Layout, Lines, Measured, Set, Source};
@@ -31,7 +31,7 @@ impl Layout for OutcomeTable {
             Column { least, most, ..column }.empty_where(empty)
         };
         let few = "no trial, or too few for an interval";
-        Columns::<OutcomeCell>::none()
+        let columns = Columns::<OutcomeCell>::none()
             .factors(&self.rows, findings, |cell| &cell.rows)
             .with(findings.factor_column(&self.by), |cell| cell.by.clone())
             .number(
@@ -68,7 +68,21 @@ impl Layout for OutcomeTable {
                     .empty_where("the paper does not say"),
                 |cell| cell.published.and_then(|(_, n)| n).map(whole),
             )
-            .agreement(unit, |cell| cell.agreement)
+            .agreement(unit, |cell| cell.agreement);
+        let Some(over) = &self.over else { return columns };
+        let none = "no trial of the cell has the quantity";
+        let quantile = |name: &str, share: &str| {
+            let meaning =
+                format!("{share} of what each value of `{over}` has by itself, all counted alike");
+            number(name, &meaning, none)
+        };
+        columns
+            .number(quantile("over-5", "5 % quantile"), |cell| cell.band.map(|band| band.low))
+            .number(quantile("over-50", "Median"), |cell| cell.band.map(|band| band.median))
+            .number(quantile("over-95", "95 % quantile"), |cell| cell.band.map(|band| band.high))
+            .count("over-n", &format!("Values of `{over}` that have the quantity"), |cell| {
+                cell.band.map_or(0, |band| band.of)
+            })
     }
 
     /// Sets the values side by side; where the paper's are asked for, they stand in columns of their own in a document, in the
@@ -92,9 +106,13 @@ impl Layout for OutcomeTable {
             std::iter::once(cell.in_print()).chain(published)
         });
         let lines = abreast.table(with(side_by_side.clone()), |cell| {
-            [if is_published { cell.in_line() } else { whole_number(cell.value()) }]
+            [if is_published { cell.in_line() } else { cell.ours_in_line() }]
         });
         let is_alone = |cell: &OutcomeCell| cell.agreement.mark().is_empty();
+        let over = self.over.as_ref().map(|over| labels.factor(over));
+        let band = over.map(|over| {
+            format!("in parentheses from 5 to 95 % of what each value of {over} has by itself")
+        });
         let legend = is_published.then(|| {
             if cells.iter().any(is_alone) {
                 "ours, then the paper's, after \u{b7} where there is nothing to compare"
@@ -104,7 +122,13 @@ impl Layout for OutcomeTable {
         });
         Set {
             grid: Grid {
-                quantity: self.show.describe(),
+                quantity: match over {
+                    Some(over) => format!(
+                        "{}; small, from 5 to 95 % of what each value of {over} has by itself",
+                        self.show.describe()
+                    ),
+                    None => self.show.describe(),
+                },
                 beside: "paper",
                 source: Source::of(self.published.as_ref()),
                 decimals: 1,
@@ -115,7 +139,7 @@ impl Layout for OutcomeTable {
             },
             print: Some(print),
             lines: Lines::all(lines, self.rows.len(), []),
-            legend: legend.map(str::to_owned).into_iter().collect(),
+            legend: legend.map(str::to_owned).into_iter().chain(band).collect(),
             more: 0,
         }
     }
@@ -134,6 +158,9 @@ impl OutcomeCell {
                 _ => format!("none of {}", self.trials),
             };
         };
+        if let Some(Band { low, median, high, .. }) = self.band {
+            return format!("{:.1} ({low:.1} to {high:.1}, median {median:.1})", ours.value);
+        }
         let mut text = match (ours.sd, ours.interval) {
             (Some(sd), _) => format!("{:.1} ± {sd:.1}", ours.value),
             (None, Some((low, high))) => format!("{:.1} [{low:.1}, {high:.1}]", ours.value),
@@ -161,7 +188,16 @@ impl OutcomeCell {
             mark => mark,
         };
         let papers = whole_number(self.published.map(|(value, _)| value));
-        format!("{} {mark} {papers:>2}", whole_number(self.value()))
+        format!("{} {mark} {papers:>2}", self.ours_in_line())
+    }
+
+    /// Returns ours in whole numbers, with its band where it has one.
+    fn ours_in_line(&self) -> String {
+        let value = whole_number(self.value());
+        match self.band {
+            Some(Band { low, high, .. }) => format!("{value} ({low:.0}-{high:.0})"),
+            None => value,
+        }
     }
 }
 
@@ -174,6 +210,7 @@ fn grid_cell(cell: &OutcomeCell) -> GridCell {
         ours: cell.ours.map(|e| Measured { mean: e.value, sd: e.sd, n: Some(e.n) }),
         published: cell.published.map(|(mean, n)| Measured { mean, sd: None, n }),
         agreement: cell.agreement,
+        band: cell.band.map(|band| [band.low, band.high]),
         ..GridCell::default()
     }
 }

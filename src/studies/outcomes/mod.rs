@@ -5,7 +5,7 @@ mod cells;
 mod charts;
 mod layout;
 
-pub use cells::{Estimate, OutcomeCell};
+pub use cells::{Band, Estimate, OutcomeCell};
 pub(super) use cells::{measured, published_share};
 
 use crate::studies::{FactorValue, Outcome};
@@ -30,6 +30,10 @@ pub struct OutcomeTable {
     /// A key of `published`: the paper's own numbers, to stand beside.
     #[serde(default)]
     pub published: Option<String>,
+    /// A factor whose values every cell takes together: the cell also shows the band from 5 to 95 % of what each of them has by
+    /// itself, and their median.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub over: Option<String>,
 }
 
 /// How the ways in which trials ended add up to all of them, by condition.

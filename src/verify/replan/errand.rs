@@ -7,13 +7,15 @@
 use super::{Reenactment, Study, plan_of};
 use crate::bundle::Bundle;
 use crate::digest::TrialKey;
+use crate::manifest::Experiment;
 use crate::plan::Plan;
 use crate::runner::{StoreError, TrialStore};
 use crate::studies::{self, TrialRecord, TrialSpec};
 use crate::verify::{Made, Options, ReplanError, Replanned, reexecution};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The trials that a climb executes, each once: of the study, of its calibration, of rows of its tables at other values. What is
+/// The trials that a climb executes, each once: of the study, of its calibration, of the inference whose draws it runs, of rows of
+/// its tables at other values. What is
 /// explored or measured with fresh seeds is not among them.
 #[derive(Debug)]
 pub struct Errand {
@@ -95,6 +97,11 @@ impl Study<'_> {
             Made::Passages => {
                 let Some(run) = experiment.calibration.as_deref() else { return Vec::new() };
                 let plan = Plan::of(run.experiment.clone());
+                indices.iter().filter_map(|&i| plan.trials.get(i).cloned()).collect()
+            }
+            Made::Proposals => {
+                let Some(run) = experiment.inference() else { return Vec::new() };
+                let plan = Plan::of(Experiment::clone(&run.experiment));
                 indices.iter().filter_map(|&i| plan.trials.get(i).cloned()).collect()
             }
             Made::Robustness => {

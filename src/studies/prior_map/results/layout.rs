@@ -201,6 +201,7 @@ fn grid_cell(cell: &CoverageCell) -> GridCell {
         published: cell.published.map(|published| printed(published).into()),
         published_difference_percent: cell.published_difference_percent,
         agreement: cell.agreement,
+        band: None,
     }
 }
 

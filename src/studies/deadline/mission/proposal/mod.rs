@@ -49,6 +49,10 @@ impl Proposing for AtGraphLevel {
         Some((tag, [at.x, at.y]))
     }
 
+    fn is_of_the_model(&self, path: &str) -> bool {
+        path.starts_with("graph.")
+    }
+
     fn predict(
         &self,
         setup: &AnySetup,
