@@ -156,6 +156,25 @@ pub(crate) fn bar_chart() -> EstimateChart {
     estimates(&names, &["deadline 680 s", "deadline 68 s"], &["start A", "start B"], false)
 }
 
+#[test]
+fn a_band_stands_in_the_place_of_an_interval_and_is_told_by_more_than_colour() {
+    let mut chart = estimates(&["random", "frontier"], &["A"], &[""], false);
+    let without = (count(&chart.to_svg(), "rect"), chart.data().columns.len());
+    chart.band = "5 to 95 % over draw, median".to_owned();
+    for row in chart.lines.iter_mut().flat_map(|line| &mut line.panels).flat_map(|p| &mut p.rows) {
+        (row.interval, row.band) = (None, row.value.map(|value| [value - 9.0, value, value + 9.0]));
+    }
+    let svg = chart.to_svg();
+    // A box in each row and in the key.
+    assert_eq!(count(&svg, "rect"), without.0 + 3, "{svg}");
+    assert!(svg.contains("ours, 5 to 95 % over draw, median"), "{svg}");
+    let data = chart.data();
+    assert_eq!(data.columns[without.1..], ["band-low", "band-median", "band-high"]);
+    let row = &chart.lines[0].panels[0].rows[0];
+    let [low, ..] = row.band.unwrap();
+    assert_eq!(data.value(&data.rows[0], "band-low").as_f64(), Some(low));
+}
+
 pub(crate) fn share_chart() -> ShareChart {
     let part = |name: &str, look| Part { name: name.into(), look };
     let row =

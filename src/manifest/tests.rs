@@ -57,6 +57,16 @@ fn the_command_line_goes_over_both_and_can_name_other_settings() {
     assert_eq!((parameters.sensing.range_m, parameters.mapping.resolution_m), (Some(7.0), 0.1));
 }
 
+#[test]
+fn of_several_settings_the_later_go_over_the_earlier() {
+    let both = |files: &str| {
+        let (parameters, _) = with_settings(&[&format!("settings={files}")]);
+        (parameters.sensing.range_m, parameters.mapping.resolution_m)
+    };
+    assert_eq!(both("[shared.yaml, other.yaml]"), (Some(7.0), 0.2));
+    assert_eq!(both("[other.yaml, shared.yaml]"), (Some(10.0), 0.2));
+}
+
 /// Returns what becomes of a manifest with one file of settings for each of two readings, or its first fault.
 fn with_readings(described: &str, released: &str) -> Result<(Experiment, Vec<Diagnostic>), String> {
     struct Two([String; 2]);

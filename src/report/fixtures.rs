@@ -141,6 +141,7 @@ pub(super) fn content() -> ReportContent {
                     if missing { Err(Silence::NotReached) } else { Ok(Ours::Mean(found)) },
                     Some(Printed { value: base * paper, sd: Some(3.46), n: Some(10) }),
                 ),
+                band: None,
             }
         });
         GridRow { label: format!("{coverage} %"), cells: cells.collect() }
