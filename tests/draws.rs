@@ -149,7 +149,7 @@ fn draws_are_run_and_shown_in_bands_and_are_what_the_same_values_by_hand_give() 
     assert!(middle < 1e-3, "of two draws with as many trials the median is the mean");
 
     let claims = text("data/results/claims.json");
-    assert!(claims.contains("% of the values of draw ("), "{claims}");
+    assert!(claims.contains("% of draws ("), "{claims}");
 
     // The same by hand.
     let world = |draw: &std::collections::BTreeMap<&str, &str>| {

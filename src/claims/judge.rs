@@ -167,9 +167,9 @@ fn over_draws<'c>(claim: &Claim, context: &Context<'c>, comparisons: usize) -> O
 }
 
 /// Says in what share of draws a claim holds.
-pub fn share_of(draws: &str, hold: usize, of: usize) -> String {
+pub fn share_of_draws(hold: usize, of: usize) -> String {
     let percent = 100.0 * real(hold as u64) / real(of.max(1) as u64);
-    format!("holds in {percent:.0} % of the values of {draws} ({hold} of {of})")
+    format!("holds in {percent:.0} % of draws ({hold} of {of})")
 }
 
 /// Sums up the judgements of a claim's comparisons: the claim's own, and a sentence for it.
@@ -222,7 +222,7 @@ fn sum_up(
         }
         _ if over.is_some() => format!(
             "{}, the other way in {contradicted}, {untestable} cannot be tested; {required} must hold, at alpha {}",
-            share_of(over.unwrap_or_default(), supported, total),
+            share_of_draws(supported, total),
             terms.alpha
         ),
         _ => format!(

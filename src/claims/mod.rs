@@ -42,7 +42,7 @@ pub use compared::compared;
 pub use context::Context;
 pub use faults::{ClaimFault, Known};
 pub use forms::Expect;
-pub use judge::{judge, judge_observations, not_measured, share_of};
+pub use judge::{judge, judge_observations, not_measured, share_of_draws};
 pub use multiverse::Multiverse;
 pub use observations::Observations;
 pub use score::Score;

@@ -7,7 +7,7 @@ use crate::claims::published::PublishedCell;
 use crate::claims::statement::{Statement, cell_in_words};
 use crate::claims::terms::Correction;
 use crate::claims::verdict::{CellNumbers, ComparisonVerdict, agreement_in_words, rounded};
-use crate::claims::{self, Claim, ClaimVerdict, Judgement, PaperTable, share_of};
+use crate::claims::{self, Claim, ClaimVerdict, Judgement, PaperTable, share_of_draws};
 use crate::labels::Labels;
 use crate::math::exp;
 use forest::{Quantity, Strip};
@@ -194,8 +194,8 @@ fn numbers(verdict: &ClaimVerdict) -> String {
         all => {
             let count = |judgement| all.iter().filter(|c| c.judgement == judgement).count();
             let hold = count(Judgement::Supported);
-            let mut words = vec![match &verdict.over {
-                Some(draws) => share_of(draws, hold, all.len()),
+            let mut words = vec![match verdict.over {
+                Some(_) => share_of_draws(hold, all.len()),
                 None => format!("{hold} of {} comparisons hold", all.len()),
             }];
             for (judgement, rest) in [
