@@ -199,6 +199,7 @@ pub fn findings<'a>(plan: &'a Plan, ledger: &'a Ledger) -> Findings<'a> {
     Findings::new(&experiment.factors, ledger, &experiment.published)
         .designed(experiment.design())
         .labelled(&experiment.labels)
+        .inferring(experiment.from_trials.as_ref())
 }
 
 /// Writes an author's ORCID iD, in whatever form a manifest gives it, as the address that identifies a person.

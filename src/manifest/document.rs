@@ -5,7 +5,7 @@ mod prior;
 mod robot;
 mod world;
 
-pub use infer::{ChoicePriorDoc, InferDoc, LeftOutDoc};
+pub use infer::{ChoiceDoc, ChoicePriorDoc, FromTrialsDoc, InferDoc, InferenceDoc, LeftOutDoc};
 pub use prior::{
     Alpha, BoundingBoxOf, DerivedFrom, FloorPlanOf, FootprintOf, MapPrior, OriginDoc, OwnWorld,
     PreviousMapDoc, PreviousMapOf, PriorDoc, PriorFrame, TopoMetricPrior, UnknownAs,
@@ -109,10 +109,11 @@ pub struct ManifestDoc {
     /// What `reenact vary` wrote: the claims' verdicts at the other values that the parameters' `range` states.
     #[serde(default)]
     pub sensitivity: Option<String>,
-    /// What is to be inferred from which of the paper's tables: `reenact infer` runs such a manifest. Its trials are proposals at
-    /// graph level, so it asks for no tables, figures and claims of its own.
+    /// What is to be inferred from which of the paper's tables: `reenact infer` runs such a manifest. Inferred from counts, its trials
+    /// are proposals at graph level, so that it asks for no tables, figures and claims of its own; with `choices` they are trials
+    /// like any other.
     #[serde(default)]
-    pub infer: Option<InferDoc>,
+    pub infer: Option<InferenceDoc>,
     /// What `reenact vary --joint` wrote: the claims' verdicts at draws of all those ranges together.
     #[serde(default)]
     pub multiverse: Option<String>,

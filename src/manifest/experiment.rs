@@ -8,6 +8,7 @@ use crate::digest::MeaningDigest;
 use crate::document::Tree;
 use crate::factor::Factor;
 use crate::labels::Labels;
+use crate::studies::inference::from_trials::FromTrials;
 use crate::studies::{Calibrated, Setup, StudyKind};
 use crate::studies::{FigureRequest, TableRequest};
 use crate::table::Table;
@@ -51,6 +52,8 @@ pub struct Experiment {
     pub published_files: BTreeMap<String, String>,
     /// Tables to produce.
     pub tables: Vec<TableRequest>,
+    /// What is inferred from the trials, where something is.
+    pub from_trials: Option<FromTrials>,
     /// Figures to produce.
     pub figures: Vec<FigureRequest>,
     /// Claims; `/claims/N` in `document` says where, and how they are written.

@@ -1,23 +1,24 @@
 //! `infer:`: the table that is to be explained, the priors, and the conditions that become proposals.
 
-use super::document::{ChoicePriorDoc, InferDoc};
+use super::document::{ChoicePriorDoc, InferDoc, InferenceDoc};
 use super::experiment::ResolvedCondition;
 use super::faults::{Faults, step};
+use super::observed;
 use super::resolver::Resolver;
 use crate::digest::Sha256Digest;
 use crate::factor::Factor;
 use crate::json;
 use crate::studies::Setup;
 use crate::studies::inference::{
-    Distribution, HoldOut, Inference, InferenceSetup, LeftOut, Observed, ObservedCell, Prior,
-    Shared, Times,
+    Cells, Distribution, HoldOut, Inference, InferenceSetup, Observed, ObservedCell, Prior, Shared,
+    Times,
 };
 use crate::table::Table;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-const PLACE: &str = "/infer";
+const PLACE: &str = observed::PLACE;
 
 /// Returns the columns of the observed table as factors without values: no condition varies them.
 pub(super) fn columns(doc: &InferDoc) -> impl Iterator<Item = Factor> + '_ {
@@ -30,7 +31,8 @@ pub(super) fn propose(
     published: &BTreeMap<String, Table>,
     conditions: Vec<ResolvedCondition>,
 ) -> Vec<ResolvedCondition> {
-    let Some(doc) = &resolver.doc.infer else { return conditions };
+    let doc = resolver.doc.infer.as_ref().and_then(InferenceDoc::from_counts);
+    let Some(doc) = doc else { return conditions };
     let (study, seed) = (resolver.doc.study, resolver.doc.seed);
     let faults = &mut resolver.faults;
     let Some(proposing) = study.proposing() else {
@@ -86,26 +88,13 @@ fn inference(
     faults: &mut Faults<'_>,
 ) -> Option<Inference> {
     // Each part is read whatever the others are, so that all faults are told at once.
-    let observed = observed(doc, published, faults);
+    let observed = counts(doc, published, faults);
     let priors: Vec<Option<Prior>> =
         doc.priors.0.iter().map(|(path, prior)| self::prior(path, prior, faults)).collect();
     let columns: Vec<&str> = doc.by.iter().map(String::as_str).collect();
-    let kinds: Vec<&str> = std::iter::once(HoldOut::CHEQUERBOARD).chain(columns.clone()).collect();
-    for (index, kind) in doc.hold_out.iter().enumerate() {
-        if !kinds.contains(&kind.as_str()) {
-            let message = format!("nothing is held out by `{kind}`");
-            let place = format!("{PLACE}/hold-out/{index}");
-            let label = "neither `chequerboard` nor one of `by`";
-            faults.unknown(&place, message, label, kind, &kinds);
-        }
-    }
-    for (index, name) in doc.baseline.iter().enumerate() {
-        if !columns.contains(&name.as_str()) {
-            let message = format!("the observed table has no column `{name}`");
-            let place = format!("{PLACE}/baseline/{index}");
-            faults.unknown(&place, message, "not one of `by`", name, &columns);
-        }
-    }
+    let kinds = [HoldOut::CHEQUERBOARD];
+    observed::check_hold_outs(&doc.hold_out, &kinds, (&columns, "one of `by`"), faults);
+    observed::check_baseline(&doc.baseline, (&columns, "one of `by`"), faults);
     let mut observed = observed?;
     let times = times(doc, published, &mut observed, faults)?;
     let priors: Vec<Prior> = priors.into_iter().collect::<Option<_>>()?;
@@ -132,7 +121,7 @@ fn inference(
 }
 
 /// Reads the counts of the observed table, cell by cell.
-fn observed(
+fn counts(
     doc: &InferDoc,
     published: &BTreeMap<String, Table>,
     faults: &mut Faults<'_>,
@@ -196,40 +185,11 @@ fn observed(
         let counts = [a, b, all - a - b];
         cells.push(ObservedCell { levels: own, counts, time_s: None, left_out: false });
     }
-    let mut left_out = Vec::new();
-    for (index, out) in doc.left_out.iter().enumerate() {
-        let place = format!("{PLACE}/left-out/{index}/where");
-        let mut only = Vec::new();
-        for (name, value) in &out.only {
-            let Some(factor) = doc.by.iter().position(|by| by == name) else {
-                let known: Vec<&str> = doc.by.iter().map(String::as_str).collect();
-                let message = format!("the observed table has no column `{name}`");
-                let place = step(&place, name);
-                faults.unknown_key(&place, message, "not one of `by`", name, &known);
-                continue;
-            };
-            only.push((factor, value.0.clone()));
-        }
-        let fits = |cell: &ObservedCell| only.iter().all(|(f, value)| cell.levels[*f] == *value);
-        let found = cells.iter_mut().filter(|cell| fits(cell));
-        let count = found.map(|cell| cell.left_out = true).count();
-        if count == 0 && only.len() == out.only.len() {
-            let has = only.iter().map(|(factor, _)| {
-                let mut levels: Vec<&str> = Vec::new();
-                for cell in &cells {
-                    if !levels.contains(&cell.levels[*factor].as_str()) {
-                        levels.push(&cell.levels[*factor]);
-                    }
-                }
-                format!("`{}`: {}", doc.by[*factor], levels.join(", "))
-            });
-            let help = format!("the table has {}", has.collect::<Vec<_>>().join("; "));
-            let fault = faults.fault(&place, "nothing is left out by this");
-            let fault = fault.label("expected values of a cell of the observed table");
-            faults.push(fault.help(help));
-        }
-        let only = out.only.iter().map(|(name, value)| (name.clone(), value.0.clone())).collect();
-        left_out.push(LeftOut { only, why: out.why.clone() });
+    let rows: Vec<&[String]> = cells.iter().map(|cell| &cell.levels[..]).collect();
+    let (left_out, is_out) =
+        observed::leave_out(&doc.left_out, (&doc.by, "one of `by`"), &rows, faults);
+    for (cell, left_out) in cells.iter_mut().zip(is_out) {
+        cell.left_out = left_out;
     }
     let outcomes = [(*first).clone(), (*second).clone()];
     Some(Observed { outcomes, factors: doc.by.clone(), cells, left_out })

@@ -16,6 +16,8 @@
 //! | `lint` | what is wrong or suspicious about a condition |
 //! | `numbers` `requests` `figures` `claims` `sensitivity` `multiverse` | what the paper prints, and what is asked of results |
 //! | `infer` | what is not known, and the conditions that become proposals |
+//! | `from_trials` | factors that are not known, and the table of means that their trials are held against |
+//! | `observed` | parts of such tables, by name |
 //! | `settings` `overrides` `crossing` | the manifest before its conditions, and those |
 //! | `resolve` | the way through all of them, to an `experiment` |
 
@@ -28,6 +30,7 @@ mod document;
 mod experiment;
 mod faults;
 mod figures;
+mod from_trials;
 mod infer;
 mod input;
 mod knowledge;
@@ -39,6 +42,7 @@ mod multiverse;
 mod names;
 mod nested;
 mod numbers;
+mod observed;
 mod overrides;
 mod parameters;
 mod parts;
@@ -58,11 +62,11 @@ mod worlds;
 
 pub use choice::{By, Choice, DependentFactor, DrawsFactor, FactorDoc, Levels, Ordered};
 pub use document::{
-    Alpha, Author, BoundingBoxOf, ChoicePriorDoc, Cite, DerivedFrom, FactorRef, FloorPlanOf,
-    FootprintOf, GenerateDoc, GeneratedWorld, InferDoc, LeftOutDoc, ManifestDoc, MapPrior,
-    OriginDoc, OwnWorld, PlaceDoc, PointDoc, PoseDoc, PreviousMapDoc, PreviousMapOf, PriorDoc,
-    PriorFrame, PublishedDoc, PublishedFile, RobotDoc, RobotFile, SeedDoc, StartDoc,
-    TopoMetricPrior, UnknownAs, WorldDoc, WorldFile,
+    Alpha, Author, BoundingBoxOf, ChoiceDoc, ChoicePriorDoc, Cite, DerivedFrom, FactorRef,
+    FloorPlanOf, FootprintOf, FromTrialsDoc, GenerateDoc, GeneratedWorld, InferDoc, InferenceDoc,
+    LeftOutDoc, ManifestDoc, MapPrior, OriginDoc, OwnWorld, PlaceDoc, PointDoc, PoseDoc,
+    PreviousMapDoc, PreviousMapOf, PriorDoc, PriorFrame, PublishedDoc, PublishedFile, RobotDoc,
+    RobotFile, SeedDoc, StartDoc, TopoMetricPrior, UnknownAs, WorldDoc, WorldFile,
 };
 pub use experiment::{
     Assumption, CalibrationRun, Experiment, InferenceRun, JointDraws, Meanings, ResolvedCondition,

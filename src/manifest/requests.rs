@@ -66,7 +66,7 @@ impl<'m> Requests<'m> {
                 TableLayout::OutcomeTable(table) => {
                     self.check_outcomes(table, &pointer, faults);
                 }
-                TableLayout::InferenceTable(_) => {
+                TableLayout::InferenceTable(_) | TableLayout::FromTrialsTable(_) => {
                     let message = "only a manifest with `infer` has what an inference found, and has it without asking";
                     faults.at_key(&pointer, message, "remove this table");
                 }
@@ -326,7 +326,7 @@ impl<'m> Requests<'m> {
 }
 
 /// Returns the measures that are columns of numbers: success and outcomes are not.
-fn numeric(kind: StudyKind) -> Vec<String> {
+pub(super) fn numeric(kind: StudyKind) -> Vec<String> {
     let mut known = measures(kind);
     known.retain(|name| name != "success" && !name.starts_with("outcome:"));
     known

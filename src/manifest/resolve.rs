@@ -2,7 +2,7 @@
 
 use super::asked::Asked;
 use super::crossing::cross;
-use super::document::ManifestDoc;
+use super::document::{InferenceDoc, ManifestDoc};
 use super::experiment::{Assumption, Experiment, Meanings, ResolvedCondition};
 use super::faults::{Faults, step};
 use super::input::InputKind;
@@ -15,12 +15,14 @@ use super::requests::{self, Requests};
 use super::resolver::Resolver;
 use super::schema::schema;
 use super::{
-    claims, infer, labels, lint, multiverse, numbers, overrides, previous, sensitivity, settings,
+    claims, from_trials, infer, labels, lint, multiverse, numbers, overrides, previous,
+    sensitivity, settings,
 };
 use crate::condition::Condition;
 use crate::document::{Diagnostic, Node, Parsed, Source, parse_tree_by, read};
 use crate::studies::StudyKind;
 use crate::studies::inference::Shown;
+use crate::studies::inference::from_trials::Part;
 use crate::table::Table;
 use serde_json::json;
 use std::collections::{BTreeMap, BTreeSet};
@@ -125,6 +127,7 @@ impl Resolver<'_> {
             self.check_unread();
         }
         let conditions = infer::propose(self, &published, conditions);
+        let from_trials = from_trials::read(self, &published, &conditions);
         claims::check(self, &conditions);
         let is_model = conditions.iter().any(|resolved| resolved.setup.is_model());
         if is_model {
@@ -151,9 +154,11 @@ impl Resolver<'_> {
                 .map(|(name, file)| (name.clone(), normalised(file.path())))
                 .collect(),
             tables: match &doc.infer {
-                Some(infer) => Shown::requests(infer.times.is_some()),
+                Some(InferenceDoc::FromCounts(infer)) => Shown::requests(infer.times.is_some()),
+                Some(InferenceDoc::FromTrials(_)) => [&Part::requests()[..], &doc.tables].concat(),
                 None => doc.tables.clone(),
             },
+            from_trials,
             figures: doc.figures.clone(),
             claims: claims::as_judged(self),
             assumptions,
@@ -254,7 +259,8 @@ impl Resolver<'_> {
     fn published(&mut self) -> BTreeMap<String, Table> {
         let mut tables = BTreeMap::new();
         let mut factors = self.factors.clone();
-        factors.extend(self.doc.infer.iter().flat_map(infer::columns));
+        let counts = self.doc.infer.as_ref().and_then(InferenceDoc::from_counts);
+        factors.extend(counts.into_iter().flat_map(infer::columns));
         for (name, file) in &self.doc.published {
             let pointer = step("/published", name);
             for (i, factor) in file.for_all().iter().enumerate() {

@@ -76,6 +76,9 @@ pub struct ResolvedStudy {
     /// Tables to produce.
     #[serde(skip_serializing_if = "AsWritten::is_absent")]
     pub tables: AsWritten<Vec<TableRequest>>,
+    /// What is inferred from the trials; absent where nothing is, as it was before there was this key.
+    #[serde(skip_serializing_if = "AsWritten::is_absent")]
+    pub inference: AsWritten<Value>,
     /// Figures to produce.
     #[serde(skip_serializing_if = "AsWritten::is_absent")]
     pub figures: AsWritten<Vec<FigureRequest>>,
@@ -202,6 +205,9 @@ impl ResolvedStudy {
         }
         if !experiment.labels.is_empty() {
             study.labels = AsWritten::of(&experiment.labels);
+        }
+        if let Some(inference) = &experiment.from_trials {
+            study.inference = AsWritten::of(&json::value_of(inference));
         }
         if let Some(known) = &experiment.sensitivity {
             study.sensitivity = AsWritten::of(&known.as_written);

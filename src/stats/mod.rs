@@ -15,6 +15,7 @@ pub mod equivalence;
 pub mod importance;
 pub mod latin_hypercube;
 pub mod means;
+pub mod multinormal;
 pub mod multiple;
 pub mod proportion;
 pub mod rank;

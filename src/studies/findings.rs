@@ -1,6 +1,7 @@
 //! From records to what a reader sees, as far as all studies share it: the trials table and how cells are chosen.
 
 use super::columns::of_factor;
+use super::inference::from_trials::FromTrials;
 use super::{Entry, Group, Ledger, Setup};
 use crate::condition::Condition;
 use crate::factor::Factor;
@@ -22,6 +23,8 @@ pub struct Findings<'a> {
     pub published: &'a BTreeMap<String, Table>,
     /// What readers see for factors and their values.
     pub labels: &'a Labels,
+    /// What is inferred from the trials, where something is.
+    pub from_trials: Option<&'a FromTrials>,
 }
 
 impl<'a> Findings<'a> {
@@ -31,7 +34,8 @@ impl<'a> Findings<'a> {
         ledger: &'a Ledger,
         published: &'a BTreeMap<String, Table>,
     ) -> Self {
-        Self { factors, design: Vec::new(), ledger, published, labels: &labels::NONE }
+        let labels = &labels::NONE;
+        Self { factors, design: Vec::new(), ledger, published, labels, from_trials: None }
     }
 
     /// Returns the same with the conditions of the whole `design`.
@@ -45,6 +49,13 @@ impl<'a> Findings<'a> {
     #[must_use]
     pub fn labelled(mut self, labels: &'a Labels) -> Self {
         self.labels = labels;
+        self
+    }
+
+    /// Returns the same with what is inferred from the trials.
+    #[must_use]
+    pub fn inferring(mut self, from_trials: Option<&'a FromTrials>) -> Self {
+        self.from_trials = from_trials;
         self
     }
 

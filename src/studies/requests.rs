@@ -65,6 +65,8 @@ table_layouts! {
     ManeuverTable "maneuver-table" (deadline::ManeuverTable),
     /// What an inference found; every manifest with `infer` has all of them.
     InferenceTable "inference-table" (inference::InferenceTable),
+    /// What an inference from trials found; every manifest whose `infer` has choices has all of them.
+    FromTrialsTable "inference-from-trials-table" (inference::from_trials::FromTrialsTable),
 }
 
 /// Returns the coverage tables among `tables`, each with its id.

@@ -315,6 +315,7 @@ mod tests {
                 TableLayout::AgreementTable(_)
                 | TableLayout::ReadingsTable(_)
                 | TableLayout::InferenceTable(_)
+                | TableLayout::FromTrialsTable(_)
                 | TableLayout::ManeuverTable(_) => {
                     assert_eq!(page.rows.len(), exhibit.tidy.rows.len(), "{id}");
                     return;

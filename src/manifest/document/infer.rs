@@ -7,6 +7,88 @@ use serde::Deserialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
+/// What is to be inferred: from counts of outcomes, of which a study makes proposals, or from ordinary trials of every combination
+/// of `choices`.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum InferenceDoc {
+    /// From trials.
+    FromTrials(FromTrialsDoc),
+    /// From counts.
+    FromCounts(InferDoc),
+}
+
+impl InferenceDoc {
+    /// Returns what is inferred from counts, where that is asked for.
+    pub fn from_counts(&self) -> Option<&InferDoc> {
+        match self {
+            Self::FromCounts(doc) => Some(doc),
+            Self::FromTrials(_) => None,
+        }
+    }
+
+    /// Returns what is inferred from trials, where that is asked for.
+    pub fn from_trials(&self) -> Option<&FromTrialsDoc> {
+        match self {
+            Self::FromTrials(doc) => Some(doc),
+            Self::FromCounts(_) => None,
+        }
+    }
+}
+
+/// What is to be inferred of factors, from trials of all their combinations and a table of means that the paper prints.
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct FromTrialsDoc {
+    /// The settings that are not known: factors. All combinations of their values are as likely before.
+    #[schemars(extend("minProperties" = 1))]
+    pub choices: Ordered<ChoiceDoc>,
+    /// The table that is to be explained: measures of trials, each with the published numbers that are its means. Where those are by
+    /// coverage, the measure is the one at that coverage: `distance-m` is `distance-m-at-70`.
+    #[schemars(extend("minProperties" = 1))]
+    pub observed: Ordered<String>,
+    /// The factors that tell its arms apart: cells of one arm are of the same runs.
+    #[schemars(length(min = 1))]
+    pub by: Vec<String>,
+    /// Cells that are left out of the likelihood, with the reason for it.
+    #[serde(default)]
+    pub left_out: Vec<LeftOutDoc>,
+    /// What sampling does not explain of a cell and is its own: relative standard deviations, all as likely before.
+    #[serde(default = "model_error")]
+    #[schemars(length(min = 1, max = 20), inner(range(min = 0.001, max = 2.0)))]
+    pub model_error: Vec<f64>,
+    /// What it does not explain of all cells of an arm together, likewise.
+    #[serde(default = "arm_error")]
+    #[schemars(length(min = 1, max = 20), inner(range(min = 0.0, max = 2.0)))]
+    pub arm_error: Vec<f64>,
+    /// What it does not explain of all cells of the table together, likewise.
+    #[serde(default = "table_error")]
+    #[schemars(length(min = 1, max = 20), inner(range(min = 0.0, max = 2.0)))]
+    pub table_error: Vec<f64>,
+    /// Tables made by known combinations, to check the inference by, and as many replicates of the printed one.
+    #[serde(default)]
+    #[schemars(range(max = 1000))]
+    pub simulated_tables: u32,
+    /// Which parts of the table are held out in turn: `chequerboard`, `arm`, or a column of which one level is held out at a time.
+    #[serde(default)]
+    pub hold_out: Vec<String>,
+    /// The columns by whose means a baseline predicts what is held out.
+    #[serde(default)]
+    pub baseline: Vec<String>,
+}
+
+/// A factor that is not known.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+pub struct ChoiceDoc {
+    /// The value that is the paper's own words.
+    #[serde(default)]
+    pub literal: Option<FactorValue>,
+    /// Why it is not known.
+    #[serde(default)]
+    pub why: Option<String>,
+}
+
 /// What is to be inferred from which of the paper's tables.
 #[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
@@ -114,6 +196,18 @@ pub struct ChoicePriorDoc {
     /// Why it is not known.
     #[serde(default)]
     pub why: Option<String>,
+}
+
+fn model_error() -> Vec<f64> {
+    vec![0.02, 0.05, 0.1, 0.15, 0.2, 0.3]
+}
+
+fn arm_error() -> Vec<f64> {
+    vec![0.0, 0.1, 0.2, 0.3]
+}
+
+fn table_error() -> Vec<f64> {
+    vec![0.0, 0.1, 0.2]
 }
 
 fn concentration() -> Vec<f64> {

@@ -5,7 +5,9 @@
 //! observed table ([`Proposal`]). It is recorded, stored and executed again like any trial; what is inferred follows from all of
 //! them together ([`Posterior`]), like any table. How a study proposes is its own ([`Proposing`]).
 
+mod cells;
 mod columns;
+pub mod from_trials;
 mod hold_out;
 mod likelihood;
 mod measures;
@@ -14,12 +16,14 @@ mod picked;
 mod posterior;
 mod proposal;
 mod requests;
+mod rows;
 mod setup;
 mod tables;
 mod times;
 mod words;
 
-pub use hold_out::HoldOut;
+pub use cells::Cells;
+pub use hold_out::{Guesses, HoldOut};
 pub use likelihood::{GRID, Likelihoods, Place};
 pub use measures::measure;
 pub use observed::{LeftOut, Observed, ObservedCell, Printed};

@@ -1,5 +1,6 @@
 //! The table that is to be explained: counts of three outcomes in every cell.
 
+use super::Cells;
 use serde::Serialize;
 
 /// Counts by cell.
@@ -73,46 +74,20 @@ impl ObservedCell {
     }
 }
 
-impl Observed {
-    /// Returns the place of the factor `name` among the levels of a cell.
-    pub fn factor(&self, name: &str) -> Option<usize> {
-        self.factors.iter().position(|factor| factor == name)
+impl Cells for Observed {
+    fn factors(&self) -> &[String] {
+        &self.factors
     }
 
-    /// Returns the levels of a factor, in order of appearance.
-    pub fn levels(&self, factor: usize) -> Vec<&str> {
-        let mut levels: Vec<&str> = Vec::new();
-        for cell in &self.cells {
-            if !levels.contains(&cell.levels[factor].as_str()) {
-                levels.push(&cell.levels[factor]);
-            }
-        }
-        levels
+    fn count(&self) -> usize {
+        self.cells.len()
     }
 
-    /// Returns for every cell the rank of its level of `factor`, in order of appearance among the cells that share its level of the
-    /// first factor: deadlines that differ from start to start have ranks nevertheless.
-    pub fn ranks(&self, factor: usize) -> Vec<usize> {
-        let mut known: Vec<(&str, Vec<&str>)> = Vec::new();
-        let mut ranks = Vec::with_capacity(self.cells.len());
-        let overall = self.levels(0);
-        for cell in &self.cells {
-            let (group, level) = (cell.levels[0].as_str(), cell.levels[factor].as_str());
-            if factor == 0 {
-                ranks.push(overall.iter().position(|known| *known == level).unwrap_or(0));
-                continue;
-            }
-            if !known.iter().any(|(name, _)| *name == group) {
-                known.push((group, Vec::new()));
-            }
-            let here = known.iter_mut().find(|(name, _)| *name == group);
-            let Some((_, levels)) = here else { continue };
-            let rank = levels.iter().position(|known| *known == level).unwrap_or_else(|| {
-                levels.push(level);
-                levels.len() - 1
-            });
-            ranks.push(rank);
-        }
-        ranks
+    fn levels_at(&self, index: usize) -> &[String] {
+        &self.cells[index].levels
+    }
+
+    fn is_left_out(&self, index: usize) -> bool {
+        self.cells[index].left_out
     }
 }

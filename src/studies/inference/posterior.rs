@@ -200,38 +200,16 @@ impl<'a> Posterior<'a> {
             }
         }
         let tests = |cell: usize| part.tests(observed, cell);
-        let trained: Vec<usize> =
-            (0..observed.cells.len()).filter(|cell| part.trains(observed, *cell)).collect();
-        let mean = |like: &dyn Fn(usize) -> bool| {
-            let shares: Vec<f64> = trained
-                .iter()
-                .filter(|cell| like(**cell))
-                .map(|cell| observed.cells[*cell].percent())
-                .collect();
-            (!shares.is_empty()).then(|| shares.iter().sum::<f64>() / length(&shares))
-        };
-        let factors: Vec<usize> =
-            self.inference().baseline.iter().filter_map(|name| observed.factor(name)).collect();
-        let means: Vec<Option<f64>> = (0..observed.cells.len())
-            .map(|cell| {
-                mean(&|other| {
-                    let same = |f: &usize| {
-                        observed.cells[other].levels[*f] == observed.cells[cell].levels[*f]
-                    };
-                    factors.iter().all(same)
-                })
-            })
-            .collect();
-        let known = (0..observed.cells.len()).filter(|c| tests(*c)).all(|c| means[c].is_some());
-        let constant = mean(&|_| true);
+        let printed = |cell: usize| observed.cells[cell].percent();
+        let guesses = part.guesses(observed, &self.inference().baseline, printed);
         Held {
             kind: part.kind.clone(),
             name: part.name.clone(),
             cells: (0..observed.cells.len()).filter(|cell| tests(*cell)).count(),
             rmse: self
                 .rmse(|cell| (weight[cell] > 0.0).then(|| expected[cell] / weight[cell]), tests),
-            constant: self.rmse(|_| constant, tests),
-            means: (known && !factors.is_empty()).then(|| self.rmse(|cell| means[cell], tests)),
+            constant: self.rmse(|_| guesses.constant, tests),
+            means: guesses.means.map(|means| self.rmse(|cell| means[cell], tests)),
             effective: effective_size(&weights),
         }
     }

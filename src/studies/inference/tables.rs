@@ -2,16 +2,14 @@
 
 use super::columns::declared;
 use super::posterior::{Held, Predicted, PredictedTime};
+use super::rows::{Row, Shape, odds, of_rows, rounded};
 use super::words;
-use super::{InferenceTable, Posterior, Shown, shown};
+use super::{InferenceTable, Posterior, Prior, Shown, shown};
 use crate::stats::importance::quantile;
 use crate::stats::{length, real};
-use crate::studies::exhibit::{Grid, GridCell, GridRow, Layout, Lines, Measured, Set};
+use crate::studies::exhibit::{Layout, Set};
 use crate::studies::{Columns, Findings, TableRequest};
-use crate::table::{Column, Table, Value};
-
-/// One row: what stands in the columns that the table declares.
-pub(super) type Row = Vec<Value>;
+use crate::table::Value;
 
 impl Layout for InferenceTable {
     type Cell = Row;
@@ -31,68 +29,19 @@ impl Layout for InferenceTable {
     }
 
     fn columns<'a>(&'a self, findings: &Findings<'_>) -> Columns<'a, Row> {
-        let declared = declared(self.show, findings);
-        let each = |columns: Columns<'a, Row>, (at, column): (usize, Column)| {
-            columns.with(column, move |row: &Row| row.get(at).cloned().unwrap_or(Value::Missing))
-        };
-        declared.into_iter().enumerate().fold(Columns::none(), each)
+        of_rows(declared(self.show, findings))
     }
 
     fn set(&self, cells: &[Row], findings: &Findings<'_>) -> Set {
-        let declared = declared(self.show, findings);
-        let keys = keys(self.show, findings);
-        let mut lines = Table::new(declared.iter().map(|column| column.name.clone()));
         let most = if self.show == Shown::Posterior { 5 } else { usize::MAX };
-        for row in cells.iter().take(most) {
-            lines.push(row.iter().map(brief).collect());
-        }
-        let left: Vec<usize> = (0..declared.len())
-            .filter(|at| cells.iter().any(|row| matches!(row.get(*at), Some(Value::Text(_)))))
-            .collect();
-        // A page has numbers in its cells, so that all words name the row.
-        let naming: Vec<usize> =
-            (0..declared.len()).filter(|at| *at < keys || left.contains(at)).collect();
-        let numeric: Vec<usize> = (keys..declared.len())
-            .filter(|at| cells.iter().any(|row| row[*at].as_f64().is_some()))
-            .collect();
-        let row = |row: &Row| GridRow {
-            label: naming
-                .iter()
-                .filter(|at| row[**at] != Value::Missing)
-                .map(|at| in_label(&declared[*at].name, &row[*at]))
-                .collect::<Vec<_>>()
-                .join(", "),
-            cells: numeric
-                .iter()
-                .map(|at| GridCell {
-                    ours: row[*at].as_f64().map(|mean| Measured { mean, sd: None, n: None }),
-                    ..GridCell::default()
-                })
-                .collect(),
-        };
-        let meanings = numeric.iter().map(|at| {
-            let Column { name, meaning, .. } = &declared[*at];
-            format!("; {name}: {}{}", meaning[..1].to_lowercase(), &meaning[1..])
-        });
-        let grid = Grid {
-            quantity: std::iter::once("At graph level".to_owned()).chain(meanings).collect(),
+        Shape {
+            declared: declared(self.show, findings),
+            keys: keys(self.show, findings),
+            most,
+            about: "At graph level",
             decimals: if matches!(self.show, Shown::Numbers | Shown::Posterior) { 4 } else { 2 },
-            row_header: naming
-                .iter()
-                .map(|at| declared[*at].name.as_str())
-                .collect::<Vec<_>>()
-                .join(", "),
-            columns: numeric.iter().map(|at| declared[*at].name.clone()).collect(),
-            rows: cells.iter().take(most).map(row).collect(),
-            ..Grid::default()
-        };
-        Set {
-            grid,
-            print: None,
-            lines: Lines::all(lines, keys, left),
-            legend: Vec::new(),
-            more: cells.len().saturating_sub(most),
         }
+        .set(cells)
     }
 
     fn answer(&self, cells: &[Row]) -> Option<String> {
@@ -105,24 +54,6 @@ impl Layout for InferenceTable {
             Shown::Simulated => words::simulated_in_words(cells),
             Shown::Numbers | Shown::Posterior => None,
         }
-    }
-}
-
-/// Returns a word as it stands in the name of a row: a bare `yes` says what is so.
-fn in_label(column: &str, value: &Value) -> String {
-    let word = value.to_string();
-    if word == "yes" { column.to_owned() } else { word }
-}
-
-fn brief(value: &Value) -> Value {
-    match value.as_f64() {
-        Some(number) if number.fract() == 0.0 => value.clone(),
-        // Hazards are small: two digits of them rather than none.
-        Some(number) if number.abs() < 0.1 => {
-            format!("{number:.1e}").parse::<f64>().unwrap_or(number).into()
-        }
-        Some(number) => format!("{number:.3}").into(),
-        None => value.clone(),
     }
 }
 
@@ -179,26 +110,14 @@ fn summary(posterior: &Posterior<'_>) -> Vec<Row> {
 }
 
 fn choices(posterior: &Posterior<'_>) -> Vec<Row> {
-    let mut rows = Vec::new();
-    for (index, prior) in posterior.inference().priors.iter().enumerate() {
-        let before = 1.0 / length(prior.values()).max(1.0);
-        for (at, (value, after)) in
-            prior.values().iter().zip(posterior.probabilities(index)).enumerate()
-        {
-            let odds = (after / (1.0 - after)) / (before / (1.0 - before));
-            let literal = (prior.literal == Some(at)).then(|| "yes".to_owned());
-            let number = |x: f64| x.is_finite().then(|| crate::studies::findings::rounded(x));
-            rows.push(vec![
-                prior.path.as_str().into(),
-                shown(value).into(),
-                number(before).into(),
-                number(after).into(),
-                number(odds).into(),
-                literal.into(),
-            ]);
-        }
-    }
-    rows
+    let priors = posterior.inference().priors.iter().enumerate();
+    let rows = |(index, prior): (usize, &Prior)| {
+        let values: Vec<String> = prior.values().iter().map(shown).collect();
+        let before = vec![1.0 / length(&values).max(1.0); values.len()];
+        let after = posterior.probabilities(index);
+        odds(&prior.path, &values, &before, &after, prior.literal)
+    };
+    priors.flat_map(rows).collect()
 }
 
 fn numbers(posterior: &Posterior<'_>) -> Vec<Row> {
@@ -219,10 +138,6 @@ fn numbers(posterior: &Posterior<'_>) -> Vec<Row> {
         rows.push(row);
     }
     rows
-}
-
-fn rounded(number: f64) -> Value {
-    number.is_finite().then(|| crate::studies::findings::rounded(number)).into()
 }
 
 fn cells(posterior: &Posterior<'_>) -> Vec<Row> {

@@ -1,6 +1,6 @@
 //! What the tables of an inference say in sentences.
 
-use super::tables::Row;
+use super::rows::Row;
 use crate::table::Value;
 
 /// Below this many buildings' worth, a posterior is a handful of draws.
@@ -8,9 +8,9 @@ const HANDFUL: f64 = 10.0;
 /// Largest weight of one building that goes without a word.
 const HEAVY: f64 = 0.25;
 /// Tail below which a cell counts as never matched.
-const NEVER: f64 = 0.02;
+pub(super) const NEVER: f64 = 0.02;
 
-fn value_of(rows: &[Row], what: &str) -> Option<f64> {
+pub(super) fn value_of(rows: &[Row], what: &str) -> Option<f64> {
     rows.iter().find(|row| row[0].to_string() == what)?.get(1)?.as_f64()
 }
 
@@ -81,6 +81,11 @@ fn matched(rows: &[Row], what: &str, numbers: usize, told: fn(f64, f64) -> Strin
             (tail < NEVER).then(|| format!("{} ({})", name.join(" "), told(printed, expected)))
         })
         .collect();
+    unmatched(what, &never)
+}
+
+/// Says which of `what`, cells or times, `never` have been matched.
+pub(super) fn unmatched(what: &str, never: &[String]) -> String {
     if never.is_empty() {
         format!("Every {what} is matched: none has a tail below {NEVER}.")
     } else {
@@ -88,16 +93,18 @@ fn matched(rows: &[Row], what: &str, numbers: usize, told: fn(f64, f64) -> Strin
     }
 }
 
-pub(super) fn held_in_words(rows: &[Row]) -> Option<String> {
+/// Returns in how many of how many parts that were held out the inference is better than a constant; `None` where none compares.
+pub(super) fn better_than_a_constant(rows: &[Row]) -> Option<(usize, usize)> {
     let compared: Vec<&Row> = rows.iter().filter(|row| row[3].as_f64().is_some()).collect();
-    if compared.is_empty() {
-        return None;
-    }
     let better = compared.iter().filter(|row| row[3].as_f64() < row[4].as_f64()).count();
+    (!compared.is_empty()).then_some((better, compared.len()))
+}
+
+pub(super) fn held_in_words(rows: &[Row]) -> Option<String> {
+    let (better, of) = better_than_a_constant(rows)?;
     Some(format!(
         "Rules, numbers, buildings and placements were all learned from the other cells alone. Better than a constant in {better} \
-         of {} parts.",
-        compared.len()
+         of {of} parts."
     ))
 }
 

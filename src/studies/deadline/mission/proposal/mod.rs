@@ -17,7 +17,9 @@ use crate::rng::{Seeds, Stream};
 use crate::stats::{length, real};
 use crate::studies::Setup as AnySetup;
 use crate::studies::deadline::Parameters;
-use crate::studies::inference::{Drawn, Inference, Likelihoods, Proposal, Proposing, stratified};
+use crate::studies::inference::{
+    Cells, Drawn, Inference, Likelihoods, Proposal, Proposing, stratified,
+};
 
 use model::{Bears, Model};
 use rounds::{Group, Near, importance};

@@ -10,7 +10,7 @@ use crate::studies::deadline::mission::graph_level;
 use crate::studies::deadline::rules::Rules;
 use crate::studies::deadline::strategy::Strategy;
 use crate::studies::deadline::{Parameters, Setup};
-use crate::studies::inference::Inference;
+use crate::studies::inference::{Cells, Inference};
 use crate::world::RegionKind;
 use crate::world::topology::{Opening, Topology};
 use serde_json::{Map, Value, json};
