@@ -18,6 +18,7 @@ mod foreign;
 mod hand_drawn;
 mod hostile;
 mod inference;
+mod inference_from_trials;
 mod interrupted;
 mod large;
 mod maneuvers;
