@@ -189,7 +189,9 @@ impl EstimateChart {
         let banded = !self.band.is_empty();
         if dots {
             if banded {
-                band([-12.0, 3.0, 12.0], 0.0).into_iter().for_each(|part| mark.push(part));
+                for part in band([-12.0, 3.0, 12.0], 0.0) {
+                    mark.push(part);
+                }
             } else {
                 mark.push(spread(-12.0, 12.0, 0.0));
                 mark.push(whisker(-8.0, 8.0, 0.0));
@@ -198,7 +200,9 @@ impl EstimateChart {
         } else {
             mark.push(bar(-14.0, 6.0, 0.0));
             if banded {
-                band([-4.0, 4.0, 13.0], 0.0).into_iter().for_each(|part| mark.push(part));
+                for part in band([-4.0, 4.0, 13.0], 0.0) {
+                    mark.push(part);
+                }
             } else {
                 mark.push(whisker(-1.0, 13.0, 0.0));
             }

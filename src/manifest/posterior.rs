@@ -33,7 +33,7 @@ pub(super) struct Draws {
     parameters: Vec<String>,
     /// Paths of the numbers that were inferred.
     numbers: Vec<String>,
-    draws: Vec<Draw>,
+    each: Vec<Draw>,
 }
 
 struct Draw {
@@ -50,7 +50,7 @@ impl Draws {
 
     fn of(&self, condition: &Condition) -> Option<&Draw> {
         let number: usize = condition.value(&self.factor)?.parse().ok()?;
-        self.draws.get(number.checked_sub(1)?)
+        self.each.get(number.checked_sub(1)?)
     }
 
     /// Returns the building of the draw of `condition`, with its goal and starts.
@@ -77,7 +77,7 @@ impl Draws {
     /// Returns what `reference` names in each draw, from the first.
     pub(super) fn each(&self, reference: &str) -> Vec<f64> {
         let Some(path) = self.path(reference) else { return Vec::new() };
-        self.draws.iter().filter_map(|draw| draw.values.get(path)?.as_f64()).collect()
+        self.each.iter().filter_map(|draw| draw.values.get(path)?.as_f64()).collect()
     }
 
     /// Puts what the draw of `condition` sets into `parameters`, over what settings say.
@@ -108,7 +108,7 @@ impl Draws {
     /// Returns what the draws set, as values with a reason.
     pub(super) fn assumptions(&self) -> impl Iterator<Item = Assumption> + '_ {
         self.parameters.iter().map(|path| {
-            let drawn = self.draws.iter().zip(1..).filter_map(|(draw, number): (_, u32)| {
+            let drawn = self.each.iter().zip(1..).filter_map(|(draw, number): (_, u32)| {
                 Some((number.to_string(), draw.values.get(path)?.clone()))
             });
             Assumption {
@@ -228,8 +228,8 @@ impl Resolver<'_> {
             let world = self.placed(used, &place(&draw.places), pointer)?;
             Some(Draw { world, values: draw.values.into_iter().collect() })
         });
-        let draws = made.collect::<Option<Vec<Draw>>>()?;
-        Some(Draws { factor, file: wanted.posterior.clone(), parameters, numbers, draws })
+        let each = made.collect::<Option<Vec<Draw>>>()?;
+        Some(Draws { factor, file: wanted.posterior.clone(), parameters, numbers, each })
     }
 
     /// Collects the faults of a parameter at `pointer` that is computed from a number that was drawn.

@@ -55,7 +55,7 @@ pub struct InferenceDesign<'a> {
 
 impl<'a> InferenceDesign<'a> {
     /// The most draws that can be picked: as many as the table `posterior` has.
-    pub const MOST: u32 = DRAWS as u32;
+    pub const MOST: u32 = DRAWS;
 
     /// Reads the design of an experiment; `None` where it is no inference.
     pub fn of(factors: &'a [Factor], conditions: &'a [(&'a Condition, &'a Setup)]) -> Option<Self> {
@@ -183,9 +183,10 @@ impl<'a> InferenceDesign<'a> {
         }
         columns.extend(self.inference().priors.iter().map(|prior| {
             let meaning = "The parameter of this path";
-            match prior.is_continuous() {
-                true => Column::number(&prior.path, "", meaning).empty_where(missing),
-                false => Column::text(&prior.path, meaning),
+            if prior.is_continuous() {
+                Column::number(&prior.path, "", meaning).empty_where(missing)
+            } else {
+                Column::text(&prior.path, meaning)
             }
         }));
         columns

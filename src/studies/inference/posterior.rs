@@ -9,7 +9,7 @@ use crate::stats::{length, real};
 use crate::studies::{Entry, Findings, Setup};
 
 /// Posterior draws that are kept.
-pub(super) const DRAWS: usize = 200;
+pub(super) const DRAWS: u32 = 200;
 
 /// Counts that are drawn for each of them, where a table is predicted.
 const REPLICATES: usize = 5;
@@ -113,7 +113,7 @@ impl<'a> Posterior<'a> {
             .map(|(t, _)| self.weights[*t] / length(&self.tried[*t].proposal.draws))
             .collect();
         let mut stream = Seeds::new(0, Vec::new()).stream("posterior");
-        let places = resample(&each, DRAWS, &mut stream);
+        let places = resample(&each, DRAWS as usize, &mut stream);
         let kept = |place: usize| {
             let (t, d) = spread[place];
             let Tried { condition, setup, proposal } = &self.tried[t];
