@@ -1,9 +1,8 @@
 //! `calibration: FILE`: the manifest whose trials measure what the mind of another expects.
 
 use super::experiment::{CalibrationRun, Experiment};
-use super::input::InputKind;
+use super::input::{InputKind, Nested};
 use super::library::{CalibrationTrials, InputError, normalised};
-use super::nested::Nested;
 use super::resolver::Resolver;
 use crate::studies::{CalibrationError, Expectations, planned_calibration};
 use std::string::FromUtf8Error;

@@ -70,3 +70,22 @@ pub struct Input {
     /// Its licence, where the manifest states one.
     pub license: Option<String>,
 }
+
+/// What a manifest is to the one that names it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Nested {
+    /// Its calibration.
+    Calibration,
+    /// The inference whose draws it runs.
+    Inference,
+}
+
+impl Nested {
+    /// Returns what its file is as an input.
+    pub(super) fn kind(self) -> InputKind {
+        match self {
+            Self::Calibration => InputKind::Calibration,
+            Self::Inference => InputKind::Inference,
+        }
+    }
+}

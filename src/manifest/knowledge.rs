@@ -1,7 +1,7 @@
 //! Prior knowledge as conditions use it, and what it means.
 
 use super::document::UnknownAs;
-use super::worlds::UsedWorld;
+use super::used_world::UsedWorld;
 use crate::condition::Condition;
 use crate::digest::{Hasher, MeaningDigest};
 use crate::geometry::Pose;

@@ -9,7 +9,8 @@
 //! | `document` `choice` `parameters` `pinned` `schema` | what someone wrote, and its JSON Schema |
 //! | `faults` `names` | every fault once; factors, values and near misses |
 //! | `library/` | every file read once, held against its pin, and what was made of it |
-//! | `resolver` | those three and the manifest: what the rooms below work with |
+//! | `drawn` `used_world` | draws of a posterior; a world as a condition uses it |
+//! | `resolver` | all these and the manifest: what the rooms below work with |
 //! | `parts` `robots` `worlds` `models` | robot, world and start of a condition |
 //! | `knowledge` `priors` `previous` | its prior knowledge |
 //! | `nested` `calibration` `posterior` | other manifests that trials rest on: what they expect, which draws they are of |
@@ -27,6 +28,7 @@ mod choice;
 mod claims;
 mod crossing;
 mod document;
+mod drawn;
 mod experiment;
 mod faults;
 mod figures;
@@ -58,6 +60,7 @@ mod robots;
 mod schema;
 mod sensitivity;
 mod settings;
+mod used_world;
 mod worlds;
 
 pub use choice::{By, Choice, DependentFactor, DrawsFactor, FactorDoc, Levels, Ordered};
@@ -72,9 +75,8 @@ pub use experiment::{
     Assumption, CalibrationRun, Experiment, InferenceRun, JointDraws, Meanings, ResolvedCondition,
     Robustness,
 };
-pub use input::{Input, InputKind, WrittenIn};
+pub use input::{Input, InputKind, Nested, WrittenIn};
 pub use library::{CalibrationTrials, InputError, Inputs, ProposalTrials};
-pub use nested::Nested;
 pub use parameters::ParametersDoc;
 pub use pinned::{PinnedDoc, PinnedFileDoc};
 pub use previous::{ExploreError, explored, unexplored};

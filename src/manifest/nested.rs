@@ -2,7 +2,7 @@
 //! read are inputs, too, so that whoever doubts what follows from their trials can run these again.
 
 use super::experiment::Experiment;
-use super::input::{Input, InputKind, WrittenIn};
+use super::input::{Input, Nested, WrittenIn};
 use super::library::{
     CalibrationTrials, InputError, Inputs, Library, ProposalTrials, joined, normalised,
 };
@@ -10,24 +10,6 @@ use super::resolve::resolve;
 use super::resolver::Resolver;
 use crate::document::{Source, read};
 use std::cell::RefCell;
-
-/// What a manifest is to the one that names it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Nested {
-    /// Its calibration.
-    Calibration,
-    /// The inference whose draws it runs.
-    Inference,
-}
-
-impl Nested {
-    fn kind(self) -> InputKind {
-        match self {
-            Self::Calibration => InputKind::Calibration,
-            Self::Inference => InputKind::Inference,
-        }
-    }
-}
 
 impl Resolver<'_> {
     /// Returns the experiment that the manifest `path`, written at `pointer`, describes.

@@ -2,7 +2,7 @@
 
 use super::document::{FactorRef, StartDoc};
 use super::resolver::Resolver;
-use super::worlds::UsedWorld;
+use super::used_world::UsedWorld;
 use crate::condition::Condition;
 use crate::digest::MeaningDigest;
 use crate::geometry::Pose;

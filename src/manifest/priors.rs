@@ -11,7 +11,7 @@ use super::library::{Known, joined, normalised};
 use super::previous;
 use super::readers::{self, Derived};
 use super::resolver::Resolver;
-use super::worlds::UsedWorld;
+use super::used_world::UsedWorld;
 use crate::condition::Condition;
 use crate::document::{Source, suggestion};
 use crate::geometry::{Point, Pose};

@@ -2,12 +2,12 @@
 
 use super::choice::{By, Choice};
 use super::document::ManifestDoc;
+use super::drawn::Draws;
 use super::experiment::{CalibrationRun, InferenceRun};
 use super::faults::{Faults, step};
 use super::input::{InputKind, WrittenIn};
 use super::library::{Library, Made, Unread, joined, normalised, relative_to};
 use super::parameters::Groups;
-use super::posterior::Draws;
 use crate::condition::Condition;
 use crate::digest::MeaningDigest;
 use crate::document::{Diagnostic, Source};

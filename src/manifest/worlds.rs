@@ -9,8 +9,8 @@ use super::library::{Known, normalised};
 use super::models::{Roots, Shelf};
 use super::readers;
 use super::resolver::Resolver;
+use super::used_world::UsedWorld;
 use crate::condition::Condition;
-use crate::digest::MeaningDigest;
 use crate::document::Source;
 use crate::geometry::{Point, Pose};
 use crate::units::Radians;
@@ -22,15 +22,6 @@ use std::sync::Arc;
 
 /// The layer of a world that always stands.
 pub(super) const WALLS: &str = "walls";
-
-/// A world as a condition uses it.
-#[derive(Clone)]
-pub(super) struct UsedWorld {
-    pub(super) world: Arc<World>,
-    pub(super) meaning: MeaningDigest,
-    /// File and layers as written, or family and seed.
-    pub(super) described: Value,
-}
 
 impl Resolver<'_> {
     /// Returns the world that `doc`, written at `pointer`, is for `condition`.

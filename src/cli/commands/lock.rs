@@ -2,7 +2,7 @@
 
 use super::execution::{Execution, Times, jobs};
 use super::locked::{account_of, path_of, read};
-use crate::bundle::{Circumstance, Moment, assemble, seal};
+use crate::bundle::{Additions, Circumstance, Limits, Moment, assemble, seal_with};
 use crate::cli::args::{DataFormat, LockArgs};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::terminal::{Terminal, counted};
@@ -50,7 +50,11 @@ fn lock_one(
     let whole = Selection::default();
     let content = assemble::assemble(&plan, loaded.source.text.as_bytes(), &whole, &records)
         .map_err(Failure::failed)?;
-    let sealed = seal(&content, &Circumstance::reproducible(Moment(0))).map_err(Failure::failed)?;
+    // Nobody is handed this bundle: what readers take does not bind it, and its records are in memory as they are.
+    let unbound = Limits { held: u64::MAX, ..Limits::default() };
+    let additions = Additions { source: None, limits: unbound };
+    let sealed = seal_with(&content, &Circumstance::reproducible(Moment(0)), additions)
+        .map_err(Failure::failed)?;
     let account = account_of(&sealed)?;
     let lock = Lock::of(&account).map_err(|problem| {
         Failure::failed(format!("{}: cannot lock: {problem}", manifest.display()))

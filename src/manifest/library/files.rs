@@ -3,8 +3,7 @@
 use super::inputs::{CalibrationTrials, InputError, Inputs, ProposalTrials};
 use crate::digest::{FileDigest, Sha256Digest};
 use crate::manifest::experiment::Experiment;
-use crate::manifest::input::{Input, InputKind, WrittenIn};
-use crate::manifest::nested::Nested;
+use crate::manifest::input::{Input, InputKind, Nested, WrittenIn};
 use crate::studies::TrialSpec;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;

@@ -1,8 +1,7 @@
 //! Who hands over files and what is simulated before a manifest is resolved: the file system, or a bundle.
 
 use crate::manifest::experiment::Experiment;
-use crate::manifest::input::WrittenIn;
-use crate::manifest::nested::Nested;
+use crate::manifest::input::{Nested, WrittenIn};
 use crate::studies::{CalibrationError, TrialRecord, TrialSpec, planned_calibration};
 use std::error::Error;
 use std::sync::Arc;

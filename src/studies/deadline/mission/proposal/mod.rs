@@ -22,7 +22,7 @@ use crate::studies::inference::{
 };
 
 use model::{Bears, Model};
-use rounds::{Group, Near, importance};
+use rounds::{Group, Near, importance, round};
 use score::Scores;
 use timing::{Cuts, Hazards, Sums, Timing};
 use walk::{Site, Walk};
@@ -146,7 +146,7 @@ impl Proposing for AtGraphLevel {
         let paces = stratified(paced.len(), timings, &mut stream);
         let others = stratified(hazards.len() + 1, points, &mut stream);
         let even = paces.into_iter().zip(others.chunks(HAZARDS));
-        let mut groups: Vec<Group> =
+        let first: Vec<Group> =
             even.map(|(pace, others)| Group { pace, others: others.to_vec() }).collect();
         let mut scores = Scores::new(&model, &variants, likelihoods, truths, points, seeds);
         let deadlines: Vec<f64> = model.columns.iter().map(|(_, deadline)| *deadline).collect();
@@ -176,38 +176,43 @@ impl Proposing for AtGraphLevel {
                 parameters.iter().map(|parameters| Hazards::of(&model.pace(parameters))).collect();
             Ok((supposed, walks.timed(&model, &timed, &hazards)))
         };
-        let mut nearer = seeds.stream("rounds");
-        let mut rounds: Vec<Option<Near>> = Vec::new();
-        let mut explained: Vec<Vec<f64>> = Vec::new();
-        for _ in 1..inference.rounds {
-            for group in &groups[explained.len()..] {
-                let (supposed, sums) = suppose(group)?;
-                let each = supposed.iter().zip(&sums);
-                explained.push(each.map(|(one, sums)| scores.explains(one, sums)).collect());
-            }
-            let weights: Vec<Vec<f64>> = groups
-                .iter()
-                .zip(&explained)
-                .map(|(group, own)| {
-                    let each = group.others.iter().zip(own);
-                    each.map(|(other, own)| own * importance(&rounds, &group.pace, other)).collect()
-                })
-                .collect();
-            let near = Near::of(&groups, &weights);
-            match &near {
-                Some(near) => {
-                    groups.extend((0..timings).map(|_| near.draw(HAZARDS, &mut nearer)));
-                }
-                // Nothing explains the table: the prior once more.
-                None => groups.extend_from_within(..timings),
-            }
-            rounds.push(near);
-        }
-        for (number, group) in groups.iter().enumerate() {
+        // Simulated tables are held against the first round, for the others lie where the observed one is explained.
+        for (number, group) in first.iter().enumerate() {
             let (supposed, sums) = suppose(group)?;
             for (place, (supposed, sums)) in supposed.iter().zip(&sums).enumerate() {
-                let weight = importance(&rounds, &group.pace, &group.others[place]);
-                scores.add(number * HAZARDS + place, supposed, sums, weight);
+                let number = Some(number * HAZARDS + place);
+                if inference.rounds == 1 {
+                    scores.simulate(None, supposed, sums);
+                    scores.add(number, supposed, sums, 1.0);
+                } else {
+                    scores.simulate(number, supposed, sums);
+                }
+            }
+        }
+        let mut stream = seeds.stream("rounds");
+        let (mut groups, mut near) = (first, None);
+        for left in (1..inference.rounds).rev() {
+            let mut weights = Vec::with_capacity(groups.len());
+            for group in &groups {
+                let (supposed, sums) = suppose(group)?;
+                let each = supposed.iter().zip(&sums).zip(&group.others);
+                let weight = |((one, sums), other): ((&Supposed, &Vec<Vec<Sums>>), &Vec<f64>)| {
+                    scores.explains(one, sums) * importance(near.as_ref(), &group.pace, other)
+                };
+                weights.push(each.map(weight).collect::<Vec<f64>>());
+            }
+            near = Near::of(&groups, &weights);
+            let each = (paced.len(), hazards.len() + 1);
+            groups = round(near.as_ref(), each, (timings, HAZARDS), &mut stream);
+            if left > 1 {
+                continue;
+            }
+            for group in &groups {
+                let (supposed, sums) = suppose(group)?;
+                for ((supposed, sums), other) in supposed.iter().zip(&sums).zip(&group.others) {
+                    let weight = importance(near.as_ref(), &group.pace, other);
+                    scores.add(None, supposed, sums, weight);
+                }
             }
         }
         Ok(scores.finish())

@@ -34,9 +34,7 @@ pub(super) struct Scores<'a> {
     prior: Vec<(usize, usize)>,
     prior_draws: Vec<Drawn>,
     count: f64,
-    /// Points of the first round, and how many of those with their goals were added.
-    first_round: usize,
-    in_first_round: f64,
+    count_simulated: f64,
 }
 
 /// A point of the prior with what it predicts.
@@ -103,8 +101,7 @@ impl<'a> Scores<'a> {
             prior,
             prior_draws: Vec::new(),
             count: 0.0,
-            first_round: points,
-            in_first_round: 0.0,
+            count_simulated: 0.0,
         }
     }
 
@@ -121,11 +118,11 @@ impl<'a> Scores<'a> {
         (0..goals).map(of_goal).sum::<f64>() / real(goals as u64)
     }
 
-    /// Adds the point `number`, which was drawn `weight` times less likely than by the prior: every goal with every start. Simulated
-    /// tables are held against the first round alone, for the others lie where the observed one is explained.
+    /// Adds a point that was drawn `weight` times less likely than by the prior: every goal with every start. Where it is the point
+    /// `of_prior` of the prior itself, it may be one of those that are handed on.
     pub(super) fn add(
         &mut self,
-        number: usize,
+        of_prior: Option<usize>,
         supposed: &Supposed,
         sums: &[Vec<Sums>],
         weight: f64,
@@ -135,21 +132,39 @@ impl<'a> Scores<'a> {
             let point = Point { values, concentration: *concentration, goal, sums, weight };
             let places = self.places(&point);
             self.observed(&point, &places);
-            if number < self.first_round {
-                for table in 0..self.truths.len() {
-                    self.simulated(&point, &places, table);
-                }
-                self.in_first_round += 1.0;
-            }
             self.count += 1.0;
-            if self.prior.contains(&(number, goal)) {
-                let combination = self.any(self.combinations.len());
-                let vertices = self.model.topology.vertices.len();
-                let starts: Vec<usize> = (0..self.model.starts)
-                    .map(|_| super::any_but(self.model.goals[goal], self.any(vertices - 1)))
-                    .collect();
-                self.prior_draws.push(self.drawn(&point, combination, &starts));
+            self.keep_of_prior(of_prior, &point);
+        }
+    }
+
+    /// Holds the simulated tables against a point of the prior, as [`Self::add`] the observed one.
+    pub(super) fn simulate(
+        &mut self,
+        of_prior: Option<usize>,
+        supposed: &Supposed,
+        sums: &[Vec<Sums>],
+    ) {
+        let Supposed { values, concentration } = supposed;
+        for goal in 0..self.model.goals.len() {
+            let point = Point { values, concentration: *concentration, goal, sums, weight: 1.0 };
+            let places = self.places(&point);
+            for table in 0..self.truths.len() {
+                self.simulated(&point, &places, table);
             }
+            self.count_simulated += 1.0;
+            self.keep_of_prior(of_prior, &point);
+        }
+    }
+
+    fn keep_of_prior(&mut self, number: Option<usize>, point: &Point<'_>) {
+        if number.is_some_and(|number| self.prior.contains(&(number, point.goal))) {
+            let combination = self.any(self.combinations.len());
+            let vertices = self.model.topology.vertices.len();
+            let goal = self.model.goals[point.goal];
+            let starts: Vec<usize> = (0..self.model.starts)
+                .map(|_| super::any_but(goal, self.any(vertices - 1)))
+                .collect();
+            self.prior_draws.push(self.drawn(point, combination, &starts));
         }
     }
 
@@ -369,8 +384,8 @@ impl<'a> Scores<'a> {
                 .simulated
                 .iter()
                 .map(|(sum, below)| Below {
-                    ln_evidence: ln(*sum, self.in_first_round),
-                    below: below.iter().map(|below| ln(*below, self.in_first_round)).collect(),
+                    ln_evidence: ln(*sum, self.count_simulated),
+                    below: below.iter().map(|below| ln(*below, self.count_simulated)).collect(),
                 })
                 .collect(),
             draws: std::mem::take(&mut self.kept[0]),
