@@ -308,10 +308,10 @@ fn every_shipped_manifest_has_a_lock_that_is_current() {
         let study = source.lines().find_map(|line| line.strip_prefix("study: "));
         let kind = StudyKind::named(study.unwrap()).unwrap();
         assert_eq!(account.engine, engine_version(kind), "{name}: another engine; {advice}");
-        // What a calibration or an earlier exploration showed is made by running it, and is no file beside the manifest.
+        // What a calibration, an inference or an earlier exploration showed is made by running it, and is no file beside the manifest.
         let made = |path: &str| {
-            [".maneuvers.csv", ".passages.csv"].iter().any(|ending| path.ends_with(ending))
-                || path.starts_with("previous-map-")
+            let endings = [".maneuvers.csv", ".passages.csv", ".proposals.jsonl", ".draws.csv"];
+            endings.iter().any(|ending| path.ends_with(ending)) || path.starts_with("previous-map-")
         };
         let files = account.inputs.iter().filter(|(path, _)| !made(path));
         for (input, locked) in files {

@@ -80,7 +80,7 @@ fn documents(desk: &Sandbox, stdout: &str) -> String {
     tables
         .map(|id| {
             let path = format!("data/results/tables/{id}.md");
-            String::from_utf8(tree.get(&path).unwrap().to_vec()).unwrap()
+            String::from_utf8(tree.get(&path).unwrap().clone()).unwrap()
         })
         .join("\n")
 }

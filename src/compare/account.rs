@@ -4,7 +4,8 @@ use super::Settings;
 use crate::bundle::{Bundle, BundlePath, Fault};
 use crate::claims::{ClaimVerdict, Judgement};
 use crate::digest::{FileDigest, Hasher, ResultsDigest, Sha256Digest, TrialKey};
-use crate::studies::{Measures, TrialRecord};
+use crate::studies::inference::of_draws;
+use crate::studies::{Measures, Outcome, TrialRecord};
 use serde::Deserialize;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
@@ -92,6 +93,10 @@ pub(super) const SIM_SECONDS: &str = "sim-seconds";
 impl Told {
     fn of(record: TrialRecord) -> Self {
         let mut measures = record.measures;
+        if record.outcome == Outcome::PROPOSED {
+            // Hundreds of proposals would say more than a lock can hold; the digest of the record pins all of it.
+            measures.retain(|name| !of_draws(name));
+        }
         measures.insert(SIM_SECONDS, Some(record.sim_seconds));
         let outcome = record.outcome.name().to_owned();
         Self { outcome, cause: record.cause, measures, chain: record.chain }

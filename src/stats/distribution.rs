@@ -98,7 +98,8 @@ pub fn student_t_two_sided(t: f64, df: f64) -> f64 {
 ///
 /// Newton's method on the logarithm of the tail, kept inside a bracket that is halved where a step leaves it.
 pub fn student_t_quantile(p: f64, df: f64) -> f64 {
-    if !(0.0..=1.0).contains(&p) {
+    // Without a degree of freedom the tails never end.
+    if !(0.0..=1.0).contains(&p) || df.is_nan() || df <= 0.0 {
         return f64::NAN;
     }
     if p == 0.5 {

@@ -52,6 +52,11 @@ impl Measures {
         self.0.insert(kept(name.into()), value);
     }
 
+    /// Keeps those whose name `is_kept`.
+    pub fn retain(&mut self, is_kept: impl Fn(&str) -> bool) {
+        self.0.retain(|name, _| is_kept(name));
+    }
+
     /// Returns all names, sorted.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.0.keys().map(AsRef::as_ref)

@@ -189,6 +189,13 @@ fn student_f_chi_square_and_binomial() {
     assert_eq!(binomial_sf_inclusive(6, 5, 0.5), 0.0);
 }
 
+#[test]
+fn without_a_degree_of_freedom_there_is_no_quantile_and_no_search_for_one() {
+    for df in [0.0, -1.0, f64::NAN] {
+        assert!(student_t_quantile(0.975, df).is_nan(), "{df}");
+    }
+}
+
 proptest! {
     #[test]
     fn tails_agree_with_statrs(t in -30.0_f64..30.0, df in 1.0_f64..300.0, f in 0.01_f64..60.0, df2 in 2.0_f64..300.0) {

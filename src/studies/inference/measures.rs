@@ -56,6 +56,11 @@ pub fn measure(name: &str) -> Option<Column> {
     )
 }
 
+/// Returns whether the measure `name` of a proposal is one of the many of its draws and tables.
+pub fn of_draws(name: &str) -> bool {
+    ["draw-", "prior-", "held-", "simulated-"].iter().any(|beginning| name.starts_with(beginning))
+}
+
 impl Proposal {
     /// Returns it as measures.
     pub(super) fn measures(&self) -> Measures {

@@ -25,7 +25,7 @@ mod words;
 pub use cells::Cells;
 pub use hold_out::{Guesses, HoldOut};
 pub use likelihood::{GRID, Likelihoods, Place};
-pub use measures::measure;
+pub use measures::{measure, of_draws};
 pub use observed::{LeftOut, Observed, ObservedCell, Printed};
 pub use picked::{InferenceDesign, PickedDraw, PickedPlace};
 pub use posterior::Posterior;

@@ -30,6 +30,9 @@ use walk::{Site, Walk};
 /// Points of the prior that share their times: hazards cost less to suppose.
 const HAZARDS: usize = 8;
 
+/// What a point of the prior gives, by variant and start.
+type Reached = Vec<Vec<Sums>>;
+
 /// Proposals at graph level.
 #[derive(Debug)]
 pub(in crate::studies::deadline) struct AtGraphLevel;
@@ -150,7 +153,7 @@ impl Proposing for AtGraphLevel {
             even.map(|(pace, others)| Group { pace, others: others.to_vec() }).collect();
         let mut scores = Scores::new(&model, &variants, likelihoods, truths, points, seeds);
         let deadlines: Vec<f64> = model.columns.iter().map(|(_, deadline)| *deadline).collect();
-        let suppose = |group: &Group| -> Result<(Vec<Supposed>, Vec<Vec<Vec<Sums>>>), String> {
+        let suppose = |group: &Group| -> Result<(Vec<Supposed>, Vec<Reached>), String> {
             let supposed: Vec<Supposed> = group
                 .others
                 .iter()
@@ -196,7 +199,7 @@ impl Proposing for AtGraphLevel {
             for group in &groups {
                 let (supposed, sums) = suppose(group)?;
                 let each = supposed.iter().zip(&sums).zip(&group.others);
-                let weight = |((one, sums), other): ((&Supposed, &Vec<Vec<Sums>>), &Vec<f64>)| {
+                let weight = |((one, sums), other): ((&Supposed, &Reached), &Vec<f64>)| {
                     scores.explains(one, sums) * importance(near.as_ref(), &group.pace, other)
                 };
                 weights.push(each.map(weight).collect::<Vec<f64>>());
