@@ -61,24 +61,46 @@ impl Walk {
 
     /// Returns the offsets of its cells from the index of the first one, but for the last one.
     pub fn offsets(self) -> impl Iterator<Item = isize> {
-        self.first(self.long)
+        self.offsets_of(0, self.long)
     }
 
-    /// Returns the same as far as the line stays within `columns` columns and `rows` rows, counted from its first cell
-    /// forward.
-    pub fn offsets_within(self, columns: i32, rows: i32) -> impl Iterator<Item = isize> {
-        let (along, across) = if self.is_wide { (columns, rows) } else { (rows, columns) };
-        let limit = (i64::from(across) << 32) - HALF;
-        let until = if self.slope > 0 { (limit + self.slope - 1) / self.slope } else { i64::MAX };
-        self.first(self.long.min(along).min(i32::try_from(until).unwrap_or(i32::MAX)))
-    }
-
-    fn first(self, steps: i32) -> impl Iterator<Item = isize> {
-        (0..i64::from(steps)).map(move |k| {
+    /// Returns the offsets of its cells from the index of the first one, from one step to before another.
+    pub fn offsets_of(self, from: i32, to: i32) -> impl Iterator<Item = isize> {
+        (i64::from(from)..i64::from(to)).map(move |k| {
             #[expect(clippy::cast_possible_truncation, reason = "steps are few")]
             let (k, turns) = (k as isize, ((k * self.slope + HALF) >> 32) as isize);
             k * self.along + turns * self.across
         })
+    }
+
+    /// Returns how many steps it stays within `columns` columns and `rows` rows, counted from its first cell forward, before
+    /// the last one.
+    pub fn steps_within(self, columns: i32, rows: i32) -> i32 {
+        let (along, across) = if self.is_wide { (columns, rows) } else { (rows, columns) };
+        let steps = self.long.min(along);
+        let limit = (i64::from(across) << 32) - HALF;
+        // Most lines do not leave aside.
+        if self.slope == 0 || i64::from(steps) * self.slope <= limit {
+            return steps;
+        }
+        let until = (limit + self.slope - 1) / self.slope;
+        steps.min(i32::try_from(until).unwrap_or(i32::MAX))
+    }
+
+    /// Returns a number of first steps at each of which it is in one cell with `one` or `other`, walks from the same cell that
+    /// go on for as long.
+    ///
+    /// Between two lines that are less than a cell apart there is no room for a third one.
+    pub fn steps_between(self, one: Self, other: Self) -> i32 {
+        let octant = |walk: Self| (walk.is_wide, walk.along, walk.across);
+        let (low, high) = (one.slope.min(other.slope), one.slope.max(other.slope));
+        let is_between = (low..=high).contains(&self.slope);
+        if !is_between || octant(one) != octant(self) || octant(other) != octant(self) {
+            return 0;
+        }
+        let apart = u32::try_from(high - low).unwrap_or(u32::MAX);
+        let steps = u32::MAX.checked_div(apart).unwrap_or(u32::MAX);
+        i32::try_from(steps).unwrap_or(i32::MAX)
     }
 }
 
@@ -112,7 +134,23 @@ mod tests {
             let is_within = |cell: &Cell| cell.x.abs() < columns && cell.y.abs() < rows;
             let within = line(from, to).filter(|&cell| cell != to).take_while(is_within);
             let expected: Vec<_> = within.map(index).collect();
-            prop_assert_eq!(walk.offsets_within(columns, rows).collect::<Vec<_>>(), expected);
+            let steps = walk.steps_within(columns, rows);
+            prop_assert_eq!(walk.offsets_of(0, steps).collect::<Vec<_>>(), expected);
+        }
+
+        #[test]
+        fn a_walk_between_two_is_in_their_cells_at_first(
+            to in prop::collection::vec((-150..150_i32, -150..150_i32), 3), near: bool,
+        ) {
+            let far = |&(x, y): &(i32, i32)| if near { (x / 40 + 120, y / 40 + 70) } else { (x, y) };
+            let walks: Vec<Walk> =
+                to.iter().map(far).map(|(x, y)| Walk::new(Cell::new(0, 0), Cell::new(x, y), 1000)).collect();
+            let steps = walks[0].steps_between(walks[1], walks[2]);
+            prop_assert!(!near || steps > 0 || walks[0].slope != walks[1].slope);
+            let at = |walk: usize| walks[walk].offsets_of(0, steps.min(200));
+            for (cell, beside) in at(0).zip(at(1).zip(at(2))) {
+                prop_assert!(cell == beside.0 || cell == beside.1);
+            }
         }
     }
 

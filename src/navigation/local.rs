@@ -71,6 +71,8 @@ pub struct LocalMap {
     metres: Vec<f64>,
     directions: BeamDirections,
     ends: Vec<Cell>,
+    /// Lines that beams clear, in the order of the beams: each with its steps in the window.
+    lines: Vec<(Walk, i32)>,
     ranges: Vec<f64>,
     /// Memory for the medians.
     windows: Vec<[f64; LANES]>,
@@ -106,6 +108,7 @@ impl LocalMap {
             metres: metres.collect(),
             directions: BeamDirections::default(),
             ends: Vec::new(),
+            lines: Vec::new(),
             ranges: Vec::new(),
             windows: Vec::new(),
             window: Vec::new(),
@@ -132,7 +135,7 @@ impl LocalMap {
             let to = self.lattice(sensor.position() + turned * reach);
             // Neighbouring beams often end in one cell.
             if cleared != Some(to) {
-                self.clear_line(from, to);
+                self.lines.push(self.line(from, to));
                 cleared = Some(to);
             }
             if range < self.rule.obstacle_range.min(self.rule.size) {
@@ -140,6 +143,7 @@ impl LocalMap {
             }
         }
         self.directions = directions;
+        self.clear_lines(from);
         for i in 0..self.ends.len() {
             if let Some(index) = self.index(self.ends[i]) {
                 self.seen[index] = Seen::Obstacle;
@@ -195,16 +199,35 @@ impl LocalMap {
         }
     }
 
-    /// Marks the cells between `from` and `to` as free, as far as they are within the window.
-    fn clear_line(&mut self, from: Cell, to: Cell) {
-        let Some(first) = self.index(from) else { return };
+    /// Returns the walk from `from`, a cell of the window, to `to`, and how many of its steps are in the window.
+    fn line(&self, from: Cell, to: Cell) -> (Walk, i32) {
         // How many cells of the window lie ahead, with the first one.
         let room = |at: i32, forward: bool| if forward { self.side - at } else { at + 1 };
         let columns = room(from.x - self.corner.x, to.x >= from.x);
         let rows = room(from.y - self.corner.y, to.y >= from.y);
-        for offset in Walk::new(from, to, self.side).offsets_within(columns, rows) {
-            self.seen[first.wrapping_add_signed(offset)] = Seen::Free;
+        let walk = Walk::new(from, to, self.side);
+        (walk, walk.steps_within(columns, rows))
+    }
+
+    /// Marks the cells of the lines from `from` on as free. A line is passed over as far as it has no cell for itself between the
+    /// one before it and the one after; these two as far as the same is true of lines twice as far from them, and so on.
+    fn clear_lines(&mut self, from: Cell) {
+        let first = self.index(from);
+        for (i, &(walk, steps)) in self.lines.iter().enumerate() {
+            let Some(first) = first else { break };
+            let stride = if i == 0 { self.lines.len() } else { 1 << i.trailing_zeros() };
+            let shared = match (i.checked_sub(stride), self.lines.get(i + stride)) {
+                (Some(before), Some(&(after, until))) => {
+                    let (before, til) = self.lines[before];
+                    walk.steps_between(before, after).min(til).min(until)
+                }
+                _ => 0,
+            };
+            for offset in walk.offsets_of(shared, steps) {
+                self.seen[first.wrapping_add_signed(offset)] = Seen::Free;
+            }
         }
+        self.lines.clear();
     }
 
     fn lattice(&self, point: Point) -> Cell {
@@ -357,17 +380,29 @@ mod tests {
         }
 
         #[test]
-        fn lines_are_cleared_up_to_their_end_or_the_windows(x in -90..90_i32, y in -90..90_i32) {
+        fn lines_are_cleared_up_to_their_end_or_the_windows(
+            ends in prop::collection::vec((-3.2..3.2, 0..130_u8), 1..90), is_sorted: bool, is_far: bool,
+        ) {
+            let mut ends: Vec<(f64, u8)> = ends;
+            if is_sorted {
+                ends.sort_by(|a, b| a.0.total_cmp(&b.0));
+            }
             let mut map = LocalMap::new(LocalRule::default());
-            let to = Cell::new(x, y);
-            map.clear_line(Cell::new(0, 0), to);
-            let mut expected = LocalMap::new(LocalRule::default());
-            for cell in line(Cell::new(0, 0), to) {
-                let Some(index) = expected.index(cell) else { break };
-                if cell != to {
-                    expected.seen[index] = Seen::Free;
+            let mut expected = map.clone();
+            for (angle, length) in ends {
+                let (sin, cos) = math::sin_cos(angle);
+                let length = if is_far { 130.0 } else { f64::from(length) };
+                #[expect(clippy::cast_possible_truncation, reason = "small")]
+                let to = Cell::new((length * cos) as i32, (length * sin) as i32);
+                map.lines.push(map.line(Cell::new(0, 0), to));
+                for cell in line(Cell::new(0, 0), to) {
+                    let Some(index) = expected.index(cell) else { break };
+                    if cell != to {
+                        expected.seen[index] = Seen::Free;
+                    }
                 }
             }
+            map.clear_lines(Cell::new(0, 0));
             prop_assert_eq!(map.seen, expected.seen);
         }
     }
