@@ -51,13 +51,12 @@ impl Fires {
         let mut front: Vec<Fire> = Vec::new();
         for (y, row) in map.values().chunks((width - 2).max(1)).enumerate() {
             let first = (y + 1) * width + 1;
-            // Two loops that have no branch in most cells: what a cell holds cannot be foreseen.
+            // Two loops that have no branch in most cells: what a cell holds cannot be foreseen. This one computes without a
+            // table, so that many cells are computed at once.
             for (cost, value) in costs[first..].iter_mut().zip(row) {
-                *cost = match value {
-                    Occupancy::Occupied => 100,
-                    Occupancy::Free => 0,
-                    Occupancy::Unknown => UNKNOWN,
-                };
+                let is_unknown = u8::from(*value == Occupancy::Unknown);
+                let is_occupied = u8::from(*value == Occupancy::Occupied);
+                *cost = (is_unknown * UNKNOWN) | (is_occupied * 100);
             }
             for (i, cells) in row.chunks(LOT).enumerate() {
                 let is_occupied = |value: &Occupancy| *value == Occupancy::Occupied;
