@@ -98,39 +98,15 @@ impl Wavefront {
     ) -> Self {
         let Ground { costs, moment } = ground;
         let frame = *costs.frame();
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "small and positive"
-        )]
-        let step = |plain: u32, cost: u8| {
-            (f64::from(plain) * FINE * (1.0 + weight * f64::from(cost) / 100.0)).round() as u32
+        let mut wave = match earlier {
+            Some(earlier) => earlier.emptied(weight),
+            None => Self::without_memory(&frame, weight),
         };
-        let diagonal: Vec<u32> = (0..=100).map(|cost| step(DIAGONAL, cost)).collect();
-        let distances = match earlier {
-            Some(mut earlier) if earlier.distances.len() == padded_len(&frame) => {
-                for index in earlier.reached {
-                    earlier.distances[index as usize] = UNREACHED;
-                }
-                earlier.distances
-            }
-            _ => vec![UNREACHED; padded_len(&frame)],
-        };
-        let mut wave = Self {
-            distances,
-            reached: Vec::new(),
-            straight: (0..=100).map(|cost| step(STRAIGHT, cost)).collect(),
-            buckets: vec![Vec::new(); (diagonal[100] as usize + 1).next_power_of_two()],
-            diagonal,
-            waiting: 0,
-            level: 0,
-            units_per_metre: f64::from(STRAIGHT) * FINE / frame.resolution,
-            goal,
-            lethal,
-            weight,
-            costs,
-            moment,
-        };
+        if wave.distances.len() != padded_len(&frame) {
+            wave.distances = vec![UNREACHED; padded_len(&frame)];
+        }
+        wave.units_per_metre = f64::from(STRAIGHT) * FINE / frame.resolution;
+        (wave.costs, wave.moment, wave.goal, wave.lethal) = (costs, moment, goal, lethal);
         if wave.costs.is_below(goal, lethal) {
             wave.seed(goal);
         } else {
@@ -141,6 +117,51 @@ impl Wavefront {
             }
         }
         wave
+    }
+
+    /// Creates a wave that has not come anywhere.
+    fn without_memory(frame: &GridFrame, weight: f64) -> Self {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "small and positive"
+        )]
+        let step = |plain: u32, cost: u8| {
+            (f64::from(plain) * FINE * (1.0 + weight * f64::from(cost) / 100.0)).round() as u32
+        };
+        let diagonal: Vec<u32> = (0..=100).map(|cost| step(DIAGONAL, cost)).collect();
+        let nothing = GridFrame { width: 0, height: 0, ..*frame };
+        Self {
+            costs: Arc::new(CostGrid::unknown(nothing)),
+            moment: None,
+            goal: Cell::new(0, 0),
+            lethal: 0,
+            weight,
+            distances: Vec::new(),
+            straight: (0..=100).map(|cost| step(STRAIGHT, cost)).collect(),
+            buckets: vec![Vec::new(); (diagonal[100] as usize + 1).next_power_of_two()],
+            diagonal,
+            reached: Vec::new(),
+            waiting: 0,
+            level: 0,
+            units_per_metre: 0.0,
+        }
+    }
+
+    /// Forgets where it came, and keeps the memory as far as it is of use with `weight`.
+    fn emptied(mut self, weight: f64) -> Self {
+        for index in self.reached.drain(..) {
+            self.distances[index as usize] = UNREACHED;
+        }
+        if self.weight != weight {
+            let Self { distances, reached, .. } = self;
+            return Self { distances, reached, ..Self::without_memory(self.costs.frame(), weight) };
+        }
+        if self.waiting > 0 {
+            self.buckets.iter_mut().for_each(Vec::clear);
+        }
+        (self.waiting, self.level) = (0, 0);
+        self
     }
 
     fn seed(&mut self, cell: Cell) {
@@ -170,16 +191,24 @@ impl Wavefront {
         distance as usize & (self.buckets.len() - 1)
     }
 
+    /// Spreads the wave for as long as it `goes_on`, and there is anything left to reach.
+    fn spread_while(&mut self, goes_on: impl Fn(&Self) -> bool) {
+        if self.waiting > 0 && goes_on(self) {
+            let costs = Arc::clone(&self.costs);
+            while self.waiting > 0 && goes_on(self) {
+                self.spread(costs.padded());
+            }
+        }
+    }
+
     /// Spreads the wave by one unit of distance.
-    fn spread(&mut self) {
+    fn spread(&mut self, costs: &[u8]) {
         let slot = self.slot(self.level);
         if self.buckets[slot].is_empty() {
             self.level += 1;
             return;
         }
         let width = padded_width(self.costs.frame());
-        let costs = Arc::clone(&self.costs);
-        let costs = costs.padded();
         let mut current = std::mem::take(&mut self.buckets[slot]);
         self.waiting -= current.len();
         let mut kept = 0;
@@ -306,9 +335,7 @@ impl Wavefront {
     /// Returns the distance of `cell` in wave units; [`UNREACHED`] where the wave does not come.
     pub fn distance(&mut self, cell: Cell) -> u32 {
         let Some(index) = self.crossable(cell) else { return UNREACHED };
-        while self.distances[index] >= self.level && self.waiting > 0 {
-            self.spread();
-        }
+        self.spread_while(|wave| wave.distances[index] >= wave.level);
         self.distances[index]
     }
 
@@ -323,9 +350,7 @@ impl Wavefront {
     /// Returns whether the wave comes to `cell`.
     pub fn reaches(&mut self, cell: Cell) -> bool {
         let Some(index) = self.crossable(cell) else { return false };
-        while self.distances[index] == UNREACHED && self.waiting > 0 {
-            self.spread();
-        }
+        self.spread_while(|wave| wave.distances[index] == UNREACHED);
         self.distances[index] != UNREACHED
     }
 
