@@ -126,6 +126,25 @@ impl CellSet {
         });
     }
 
+    /// Adds the first and the last coordinate of the members of `run` that are side by side to `runs`, which is
+    /// empty, in ascending order.
+    pub fn runs(&self, run: Run, runs: &mut Vec<(i32, i32)>) {
+        self.lines(run.axis).words_of(run, |start, mut bits| {
+            while bits != 0 {
+                let first = bits.trailing_zeros();
+                let length = (!(bits >> first)).trailing_zeros();
+                let from = start + first.cast_signed();
+                let to = from + length.cast_signed() - 1;
+                match runs.last_mut() {
+                    Some(last) if last.1 + 1 == from => last.1 = to,
+                    _ => runs.push((from, to)),
+                }
+                // Adding to the lowest bit carries through all beside it.
+                bits &= bits.wrapping_add(1 << first);
+            }
+        });
+    }
+
     fn lines(&self, axis: Axis) -> &Lines {
         match axis {
             Axis::X => &self.by_row,
@@ -217,6 +236,11 @@ mod tests {
                 let starts = CellSet::word_start(from);
                 let expected = (0..64).filter(|i| cells.contains(&(starts + i, line))).fold(0, |bits, i| bits | 1 << i);
                 prop_assert_eq!(word.unwrap_or(0), expected);
+                let mut runs = Vec::new();
+                set.runs(run, &mut runs);
+                prop_assert!(runs.windows(2).all(|w| w[0].1 + 1 < w[1].0));
+                let along: Vec<i32> = runs.iter().flat_map(|&(first, last)| first..=last).collect();
+                prop_assert_eq!(along, members);
                 prop_assert_eq!(found, inside);
             }
         }

@@ -9,7 +9,7 @@ mod visibility;
 
 pub use cell_set::{Axis, CellSet, Run};
 pub use line::{Walk, line};
-pub use visibility::{examine_runs, visible_runs};
+pub use visibility::{QUADRANTS, examine_quadrant, examine_runs, visible_runs};
 
 use crate::geometry::{Bounds, Point};
 use serde::{Deserialize, Serialize};

@@ -8,9 +8,9 @@
 //! Each quadrant is swept row by row, keeping the slopes hidden so far as a sorted list of intervals:
 //! 1. Blocking neighbours beside the origin touch the diagonals with a corner: two first intervals.
 //! 2. Stop where one interval hides the whole quadrant.
-//! 3. In each gap between the intervals, find the blocking squares of the row that reach into it.
+//! 3. In each gap between the intervals, find the blocking squares of the row that reach into it: those side by side as one.
 //! 4. Report the cells of the gap that the squares of their own row leave visible.
-//! 5. Add the squares' shadows to the intervals before the next row.
+//! 5. Add the squares' shadows to the intervals, whose ends go on to the next row by sums (Bresenham 1965), without dividing.
 
 use super::{Axis, Cell, CellSet, Run};
 use std::cmp::Ordering;
@@ -34,21 +34,34 @@ pub fn examine_runs(
     let own = Run { axis: Axis::X, line: origin.y, from: origin.x, to: origin.x };
     examine(own);
     see(own);
-    for quadrant in [
-        Quadrant { origin, axis: Axis::X, columns: 1, rows: 1 },
-        Quadrant { origin, axis: Axis::Y, columns: -1, rows: 1 },
-        Quadrant { origin, axis: Axis::X, columns: -1, rows: -1 },
-        Quadrant { origin, axis: Axis::Y, columns: 1, rows: -1 },
-    ] {
-        let blocks = |row, from, to, found: &mut Vec<i32>| {
-            let run = quadrant.run(row, from, to);
-            examine(run);
-            found.clear();
-            blocking.members(run, found);
-            quadrant.to_columns(found);
-        };
-        sweep(radius, blocks, |row, from, to| see(quadrant.run(row, from, to)));
+    for quadrant in 0..QUADRANTS {
+        examine_quadrant(quadrant, origin, radius, blocking, &mut examine, &mut see);
     }
+}
+
+/// How many quadrants a disc has.
+pub const QUADRANTS: usize = 4;
+
+/// Does the same for one quadrant of the disc, counted from the upper one counter-clockwise; the origin is in none.
+pub fn examine_quadrant(
+    quadrant: usize,
+    origin: Cell,
+    radius: i32,
+    blocking: &CellSet,
+    mut examine: impl FnMut(Run),
+    mut see: impl FnMut(Run),
+) {
+    let (axis, columns, rows) =
+        [(Axis::X, 1, 1), (Axis::Y, -1, 1), (Axis::X, -1, -1), (Axis::Y, 1, -1)][quadrant];
+    let quadrant = Quadrant { origin, axis, columns, rows };
+    let blocks = |row, from, to, found: &mut Vec<(i32, i32)>| {
+        let run = quadrant.run(row, from, to);
+        examine(run);
+        found.clear();
+        blocking.runs(run, found);
+        quadrant.to_columns(found);
+    };
+    sweep(radius, blocks, |row, from, to| see(quadrant.run(row, from, to)));
 }
 
 /// One of four quadrants: its columns and rows count along the two axes, up or down.
@@ -81,11 +94,12 @@ impl Quadrant {
         }
     }
 
-    /// Converts coordinates along the axis to columns, still ascending.
-    fn to_columns(self, found: &mut [i32]) {
+    /// Converts first and last coordinates along the axis to columns, still ascending.
+    fn to_columns(self, found: &mut [(i32, i32)]) {
         let (along, _) = self.start();
-        for column in &mut *found {
-            *column = (*column - along) * self.columns;
+        for (first, last) in &mut *found {
+            let columns = [(*first - along) * self.columns, (*last - along) * self.columns];
+            (*first, *last) = (columns[0].min(columns[1]), columns[0].max(columns[1]));
         }
         if self.columns < 0 {
             found.reverse();
@@ -106,42 +120,71 @@ impl Slope {
             .cmp(&(i64::from(other.over) * i64::from(self.under)))
     }
 
-    /// Returns the last column of `row` that is not beyond the slope.
-    fn floor(self, row: i32) -> i32 {
-        (self.over * row).div_euclid(self.under)
-    }
-
-    /// Returns the first column of `row` that is not before the slope.
-    fn ceil(self, row: i32) -> i32 {
-        -(-self.over * row).div_euclid(self.under)
-    }
-
     fn at_most(self, other: Self) -> bool {
         self.compare(other) != Ordering::Greater
+    }
+}
+
+/// A slope and where it is in the present row.
+#[derive(Debug, Clone, Copy)]
+struct Edge {
+    slope: Slope,
+    /// The last column that is not beyond the slope, and how far that is beyond it, in parts of the slope's denominator.
+    column: i32,
+    rest: i32,
+    /// What a row adds to both.
+    columns: i32,
+    rests: i32,
+}
+
+impl Edge {
+    fn new(slope: Slope, row: i32) -> Self {
+        let Slope { over, under } = slope;
+        Self {
+            slope,
+            column: (over * row).div_euclid(under),
+            rest: (over * row).rem_euclid(under),
+            columns: over.div_euclid(under),
+            rests: over.rem_euclid(under),
+        }
+    }
+
+    /// Goes on to the next row.
+    fn advance(&mut self) {
+        self.rest += self.rests;
+        let carry = i32::from(self.rest >= self.slope.under);
+        self.rest -= carry * self.slope.under;
+        self.column += self.columns + carry;
+    }
+
+    /// Returns the first column that is not before the slope.
+    fn ceil(&self) -> i32 {
+        self.column + i32::from(self.rest > 0)
     }
 }
 
 /// A closed interval of hidden slopes.
 #[derive(Debug, Clone, Copy)]
 struct Shadow {
-    low: Slope,
-    high: Slope,
+    low: Edge,
+    high: Edge,
 }
 
 impl Shadow {
     fn hides_the_quadrant(&self) -> bool {
-        self.low.at_most(Slope { over: -1, under: 1 })
-            && Slope { over: 1, under: 1 }.at_most(self.high)
+        self.low.slope.at_most(Slope { over: -1, under: 1 })
+            && Slope { over: 1, under: 1 }.at_most(self.high.slope)
     }
 }
 
 /// Sweeps one quadrant: rows 1..=radius, columns -row < c <= row (each diagonal belongs to one quadrant). `blocks`
-/// finds the blocking columns of a row from one column to another in ascending order.
+/// finds the blocking columns of a row from one column to another: the first and the last of each that are side by side, in
+/// ascending order.
 ///
 /// Only the gaps between shadows are examined: a square within a shadow adds none.
 fn sweep(
     radius: i32,
-    mut blocks: impl FnMut(i32, i32, i32, &mut Vec<i32>),
+    mut blocks: impl FnMut(i32, i32, i32, &mut Vec<(i32, i32)>),
     mut see: impl FnMut(i32, i32, i32),
 ) {
     let mut earlier: Vec<Shadow> = Vec::new();
@@ -150,7 +193,7 @@ fn sweep(
     for side in [-1, 1] {
         blocks(0, side, side, &mut found);
         if !found.is_empty() {
-            let corner = Slope { over: side, under: 1 };
+            let corner = Edge::new(Slope { over: side, under: 1 }, 1);
             add(&mut earlier, Shadow { low: corner, high: corner });
         }
     }
@@ -164,67 +207,74 @@ fn sweep(
         // 3. Squares just outside of the quadrant, or of the disc, reach into it with a corner.
         let reach = (half_width + MARGIN).min(row + 1);
         whole.clear();
+        let mut before = None;
         for i in 0..=earlier.len() {
-            let before = i.checked_sub(1).map(|i| earlier[i].high.floor(row));
-            let after = earlier.get(i).map(|shadow| shadow.low.ceil(row));
-            let first = before.map_or(-reach, |column| (column - MARGIN).max(-reach));
+            let after = earlier.get(i).map(|shadow| shadow.low.ceil());
+            let first = before.map_or(-reach, |column: i32| (column - MARGIN).max(-reach));
             let last = after.map_or(reach, |column| (column + MARGIN).min(reach));
+            let mut from = before.map_or(low, |column: i32| (column + 1).max(low));
+            let to = after.map_or(high, |column| (column - 1).min(high));
+            before = earlier.get(i).map(|shadow| shadow.high.column);
             if first > last {
                 continue;
             }
-            let mut from = before.map_or(low, |column| (column + 1).max(low));
-            let to = after.map_or(high, |column| (column - 1).min(high));
             blocks(row, first, last, &mut found);
-            for &column in &found {
-                let (within, beyond) = shadows(column, row);
-                // 4. Of its own row a square hides what lies before the row's middle.
-                let hidden = within.low.ceil(row)..=within.high.floor(row);
-                let seen = (hidden.start() - 1).min(to);
+            for &(first, last) in &found {
+                whole.push(shadow(first, last, row));
+                // 4. Of its own row a square hides what lies before the row's middle: itself, and the diagonal beside it.
+                let seen = (first - 1).min(to);
                 if from <= seen {
                     see(row, from, seen);
                 }
-                from = from.max(hidden.end() + 1);
-                whole.push(beyond);
+                from = from.max(if last == row - 1 { row + 1 } else { last + 1 });
             }
             if from <= to {
                 see(row, from, to);
             }
         }
         // 5. The shadows of this row hold from the next one on.
+        for shadow in &mut earlier {
+            shadow.low.advance();
+            shadow.high.advance();
+        }
         for &shadow in &whole {
             add(&mut earlier, shadow);
         }
     }
 }
 
-/// A square's shadow, and the part of its own row that it hides, reach less than this many columns beyond its own.
+/// What a square hides of later rows reaches less than this many columns beyond its own.
 const MARGIN: i32 = 3;
 
-/// Returns the slopes that the square of `column` hides of its own row, and of later ones.
-fn shadows(column: i32, row: i32) -> (Shadow, Shadow) {
+/// Returns the slopes that the squares of `row` from the column `first` to `last` hide of later rows, from the next one on.
+fn shadow(first: i32, last: i32, row: i32) -> Shadow {
     // Doubled coordinates keep corners whole.
-    let (near, middle, far) = (2 * row - 1, 2 * row, 2 * row + 1);
-    let (left, right) = (2 * column - 1, 2 * column + 1);
-    let low = |inner| Slope { over: left, under: if left < 0 { near } else { inner } };
-    let high = |inner| Slope { over: right, under: if right > 0 { near } else { inner } };
-    let shadow = |inner| Shadow { low: low(inner), high: high(inner) };
-    (shadow(middle), shadow(far))
+    let (near, far) = (2 * row - 1, 2 * row + 1);
+    let (left, right) = (2 * first - 1, 2 * last + 1);
+    let low = Slope { over: left, under: if left < 0 { near } else { far } };
+    let high = Slope { over: right, under: if right > 0 { near } else { far } };
+    Shadow { low: Edge::new(low, row + 1), high: Edge::new(high, row + 1) }
 }
 
 /// Adds a shadow to the sorted list, merging what it meets.
 fn add(shadows: &mut Vec<Shadow>, mut new: Shadow) {
-    let first = shadows.partition_point(|s| s.high.compare(new.low) == Ordering::Less);
+    let is_before = |a: &Edge, b: &Edge| a.slope.compare(b.slope) == Ordering::Less;
+    let first = shadows.partition_point(|s| is_before(&s.high, &new.low));
     let mut end = first;
-    while end < shadows.len() && shadows[end].low.at_most(new.high) {
-        if shadows[end].low.compare(new.low) == Ordering::Less {
+    while end < shadows.len() && shadows[end].low.slope.at_most(new.high.slope) {
+        if is_before(&shadows[end].low, &new.low) {
             new.low = shadows[end].low;
         }
-        if shadows[end].high.compare(new.high) == Ordering::Greater {
+        if is_before(&new.high, &shadows[end].high) {
             new.high = shadows[end].high;
         }
         end += 1;
     }
-    shadows.splice(first..end, [new]);
+    if end == first + 1 {
+        shadows[first] = new;
+    } else {
+        shadows.splice(first..end, [new]);
+    }
 }
 
 #[cfg(test)]

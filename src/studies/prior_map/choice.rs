@@ -10,7 +10,7 @@ use super::terrain::cost;
 use super::tour::Tour;
 use super::utility::{Appraisal, utilities};
 use crate::geometry::Pose;
-use crate::grid::{Cell, GridFrame, Occupancy};
+use crate::grid::{Cell, GridFrame, Occupancy, QUADRANTS};
 use crate::mapping::OccupancyMap;
 use crate::math;
 use crate::navigation::CostGrid;
@@ -153,11 +153,14 @@ impl Chooser {
         let occlude = exploration.known_obstacles_occlude;
         let gain = InformationGain::new(map, offset, prior, self.range, occlude);
         match (self.view, &self.headings) {
-            (None, _) => self.memory.gains(gain, candidates, InformationGain::at),
+            (None, _) => {
+                self.memory.gains(gain, candidates, QUADRANTS, InformationGain::in_quadrant)
+            }
             (Some(_), Some(headings)) => {
-                let best =
-                    |gain: &InformationGain, p, examined: &mut _| gain.best(p, headings, examined);
-                self.memory.gains(gain, candidates, best)
+                let best = |gain: &InformationGain, _, p, examined: &mut _| {
+                    gain.best(p, headings, examined)
+                };
+                self.memory.gains(gain, candidates, 1, best)
             }
             (Some(view), None) => {
                 let one = |&p: &Cell| {

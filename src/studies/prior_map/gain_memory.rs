@@ -1,7 +1,7 @@
 //! Information gains that still hold, because nothing that decided them has changed: far from the robot most do.
 
 use super::information_gain::InformationGain;
-use crate::grid::{Cell, Run};
+use crate::grid::{Cell, CellSet, Run};
 
 /// The gains of the last choice, and the map on which they were estimated.
 #[derive(Debug, Default)]
@@ -14,41 +14,61 @@ pub(super) struct GainMemory {
 struct Known {
     /// The lattice cell of the location p.
     p: Cell,
-    /// I(p).
-    gain: f64,
+    /// What is known of each part of what is seen from there.
+    parts: Vec<Option<Part>>,
+}
+
+#[derive(Debug)]
+struct Part {
+    /// How many cells count.
+    cells: u32,
     /// The lattice cells whose state decided it.
     examined: Box<[Run]>,
 }
 
 impl GainMemory {
-    /// Returns I(p) of every location of `locations`, cells of the map of `state`, as `estimate` gives it.
+    /// Returns I(p) of every location of `locations`, cells of the map of `state`, as `count` gives it: the cells that count, part
+    /// by part, of `parts`.
     ///
-    /// An estimate is a function of the location and of the cells that it adds to the list it gets. It is asked for where one
-    /// of these changed, or where the location was none at the last choice.
+    /// A count is a function of the location, of the part and of the cells that it adds to the list it gets. It is asked for
+    /// where one of these changed, or where the location was none at the last choice.
     pub(super) fn gains(
         &mut self,
         state: InformationGain,
         locations: &[Cell],
-        estimate: impl Fn(&InformationGain, Cell, &mut Vec<Run>) -> f64,
+        parts: usize,
+        count: impl Fn(&InformationGain, usize, Cell, &mut Vec<Run>) -> u32,
     ) -> Vec<f64> {
         let changes = self.last.as_ref().map(|last| state.changes_since(last));
-        let mut known = std::mem::take(&mut self.known);
-        if let Some(changes) = changes {
-            known.retain(|known| !known.examined.iter().any(|&run| changes.has_any(run)));
-        }
-        for &location in locations {
+        let holds = |part: &mut Part| {
+            let has_changed =
+                |changes: &CellSet| part.examined.iter().any(|&run| changes.has_any(run));
+            !changes.as_ref().is_some_and(has_changed)
+        };
+        let mut earlier = std::mem::take(&mut self.known);
+        let mut examined = Vec::new();
+        let mut gain = |&location: &Cell| {
             let p = state.lattice(location);
-            let one = if let Some(i) = known.iter().position(|known| known.p == p) {
-                known.swap_remove(i)
-            } else {
-                let mut examined = Vec::new();
-                let gain = estimate(&state, location, &mut examined);
-                Known { p, gain, examined: examined.into_boxed_slice() }
+            let mut known = match earlier.iter().position(|known| known.p == p) {
+                Some(i) => earlier.swap_remove(i),
+                None => Known { p, parts: (0..parts).map(|_| None).collect() },
             };
-            self.known.push(one);
-        }
+            let mut cells = 0;
+            for (number, part) in known.parts.iter_mut().enumerate() {
+                let kept = part.take_if(holds);
+                let part = part.insert(kept.unwrap_or_else(|| {
+                    examined.clear();
+                    let cells = count(&state, number, location, &mut examined);
+                    Part { cells, examined: examined.as_slice().into() }
+                }));
+                cells += part.cells;
+            }
+            self.known.push(known);
+            state.area(cells)
+        };
+        let gains = locations.iter().map(&mut gain).collect();
         self.last = Some(state);
-        self.known.iter().map(|known| known.gain).collect()
+        gains
     }
 }
 
@@ -56,7 +76,7 @@ impl GainMemory {
 mod tests {
     use super::*;
     use crate::geometry::Point;
-    use crate::grid::{GridFrame, Occupancy, OccupancyGrid};
+    use crate::grid::{GridFrame, Occupancy, OccupancyGrid, QUADRANTS};
     use proptest::prelude::*;
     use std::cell::Cell as Counter;
 
@@ -92,7 +112,8 @@ mod tests {
                     map.set(Cell::new(x, y), value);
                 }
                 let offset = Cell::new(-7, 3);
-                let found = memory.gains(state(&map, offset), &locations, InformationGain::at);
+                let found =
+                    memory.gains(state(&map, offset), &locations, QUADRANTS, InformationGain::in_quadrant);
                 let anew = state(&map, offset);
                 let expected: Vec<f64> = locations.iter().map(|&p| anew.at(p, &mut Vec::new())).collect();
                 prop_assert_eq!(found, expected);
@@ -107,15 +128,16 @@ mod tests {
         let asked = Counter::new(0);
         let mut gains = |map: &OccupancyGrid, offset: Cell, locations: &[Cell]| {
             asked.set(0);
-            let gains = memory.gains(state(map, offset), locations, |state, p, examined| {
+            let count = |state: &InformationGain, quadrant, p, examined: &mut _| {
                 asked.set(asked.get() + 1);
-                state.at(p, examined)
-            });
+                state.in_quadrant(quadrant, p, examined)
+            };
+            let gains = memory.gains(state(map, offset), locations, QUADRANTS, count);
             (gains, asked.get())
         };
         let (left, right) = (Cell::new(25, 30), Cell::new(35, 30));
         let (first, asked) = gains(&map, Cell::new(0, 0), &[left, right]);
-        assert_eq!(asked, 2);
+        assert_eq!(asked, 2 * QUADRANTS);
         // On the left side of the wall, which hides it from the right.
         map.set(Cell::new(25, 41), Occupancy::Free);
         let (second, asked) = gains(&map, Cell::new(0, 0), &[left, right]);

@@ -2,7 +2,10 @@
 
 use super::field_of_view::{Headings, Sector};
 use crate::geometry::{Bounds, Point, Pose};
-use crate::grid::{Cell, CellSet, GridFrame, Occupancy, OccupancyGrid, Run, examine_runs};
+use crate::grid::{
+    Axis, Cell, CellSet, GridFrame, Occupancy, OccupancyGrid, QUADRANTS, Run, examine_quadrant,
+    examine_runs,
+};
 
 /// The data needed to estimate I(p) on one state of the map.
 #[derive(Debug)]
@@ -72,9 +75,22 @@ impl InformationGain {
     ///
     /// Adds the runs of lattice cells to `examined` whose state decides that.
     pub fn at(&self, p: Cell, examined: &mut Vec<Run>) -> f64 {
+        self.area((0..QUADRANTS).map(|quadrant| self.in_quadrant(quadrant, p, examined)).sum())
+    }
+
+    /// Counts the cells that make up I(p) in one quadrant of the disc around `p`, which itself is taken for part of the first.
+    pub(super) fn in_quadrant(&self, quadrant: usize, p: Cell, examined: &mut Vec<Run>) -> u32 {
+        let p = self.lattice(p);
         let mut cells = 0;
-        self.see(p, examined, |run| cells += self.unknown.count(run));
-        self.area(cells)
+        if quadrant == 0 {
+            let own = Run { axis: Axis::X, line: p.y, from: p.x, to: p.x };
+            examined.push(own);
+            cells += self.unknown.count(own);
+        }
+        let examine = |run| examined.push(run);
+        let see = |run| cells += self.unknown.count(run);
+        examine_quadrant(quadrant, p, self.range, &self.blocking, examine, see);
+        cells
     }
 
     /// Computes the same for the cells within `sector`.
@@ -84,15 +100,15 @@ impl InformationGain {
         self.area(cells)
     }
 
-    /// Computes the same for the cells seen with the best of all headings.
-    pub(super) fn best(&self, p: Cell, headings: &Headings, examined: &mut Vec<Run>) -> f64 {
+    /// Counts the cells for the best of all headings.
+    pub(super) fn best(&self, p: Cell, headings: &Headings, examined: &mut Vec<Run>) -> u32 {
         let mut cells = vec![0; headings.count()];
         let mut here = 0;
         self.each_unknown(p, examined, |offset| match offset {
             Cell { x: 0, y: 0 } => here += 1,
             _ => cells[headings.direction(offset)] += 1,
         });
-        self.area(here + headings.most(&cells))
+        here + headings.most(&cells)
     }
 
     fn see(&self, p: Cell, examined: &mut Vec<Run>, see: impl FnMut(Run)) {
@@ -113,7 +129,8 @@ impl InformationGain {
         });
     }
 
-    fn area(&self, cells: u32) -> f64 {
+    /// Returns the area of so many cells (m²).
+    pub(super) fn area(&self, cells: u32) -> f64 {
         f64::from(cells) * self.cell_area
     }
 
@@ -210,7 +227,6 @@ pub(super) fn on_lattice(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::grid::Axis;
     use proptest::prelude::*;
 
     fn grid(origin: Point, value: Occupancy) -> OccupancyGrid {
@@ -277,7 +293,8 @@ mod tests {
         assert_eq!(gain.within(p, view.facing(0.0)), all);
         assert_eq!(gain.within(p, view.facing(PI)), 0.0);
         assert!((gain.within(p, view.facing(FRAC_PI_2)) - all / 2.0).abs() <= 0.041);
-        assert_eq!(gain.best(p, &Headings::new(8, view.width()), &mut Vec::new()), all);
+        let best = gain.best(p, &Headings::new(8, view.width()), &mut Vec::new());
+        assert_eq!(gain.area(best), all);
     }
 
     proptest! {
