@@ -5,7 +5,7 @@ use super::frontier::{Frontier, find_frontiers};
 use super::gain_memory::GainMemory;
 use super::information_gain::{AlignedPrior, InformationGain};
 use super::parameters::{Exploration, Gain, Parameters, Strategy, View};
-use super::released_gain::{Rays, ReleasedGain};
+use super::released_gain::ReleasedGains;
 use super::terrain::cost;
 use super::tour::Tour;
 use super::utility::{Appraisal, utilities};
@@ -56,7 +56,7 @@ pub struct Chooser {
     /// Only for the best of all headings.
     headings: Option<Headings>,
     /// Only for the released program's gain.
-    rays: Option<Rays>,
+    released: Option<ReleasedGains>,
     /// Only for the method of reference 8.
     tour: Option<Tour>,
     memory: GainMemory,
@@ -77,7 +77,8 @@ impl Chooser {
             headings: view
                 .filter(|_| exploration.view == View::Best)
                 .map(|view| Headings::new(range, view.width())),
-            rays: (exploration.gain == Gain::Released).then(|| Rays::new(range)),
+            released: (exploration.gain == Gain::Released)
+                .then(|| ReleasedGains::new(&exploration, range, prior.is_some())),
             frontier_lethal: cost(parameters.navigation.frontier_lethal_cost),
             exploration,
             prior,
@@ -138,17 +139,8 @@ impl Chooser {
     fn gains(&mut self, sight: Sight<'_>, candidates: &[Cell]) -> Vec<f64> {
         let (map, offset, prior) = (sight.map.grid(), sight.map.offset(), self.prior.as_ref());
         let exploration = &self.exploration;
-        if let Some(rays) = &self.rays {
-            let released = ReleasedGain {
-                rays,
-                map,
-                costs: sight.costs,
-                offset,
-                prior,
-                prior_stop: cost(exploration.prior_ray_stop_cost),
-                baseline_stop: cost(exploration.baseline_ray_stop_cost),
-            };
-            return candidates.iter().map(|&p| released.at(p)).collect();
+        if let Some(released) = &mut self.released {
+            return released.of(map, sight.costs, offset, prior, candidates);
         }
         let occlude = exploration.known_obstacles_occlude;
         let gain = InformationGain::new(map, offset, prior, self.range, occlude);

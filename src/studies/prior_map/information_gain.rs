@@ -178,7 +178,7 @@ impl AlignedPrior {
     }
 
     /// Returns which of the 64 lattice cells from (`x`, `y`) on along x are free in the prior.
-    fn free_word(&self, x: i32, y: i32) -> u64 {
+    pub(super) fn free_word(&self, x: i32, y: i32) -> u64 {
         word_of(&self.free, x - self.corner.x, y - self.corner.y, Occupancy::Free)
     }
 

@@ -17,6 +17,8 @@ pub mod measures;
 mod mission;
 mod parameters;
 mod phase;
+mod ray_field;
+mod rays;
 pub mod readings;
 mod released_gain;
 mod requests;

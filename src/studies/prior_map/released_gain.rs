@@ -1,100 +1,85 @@
 //! I(p) as the authors' released program computes it (prior-map facts, section 6): sampled rays over the inflated map.
 
 use super::information_gain::AlignedPrior;
-use crate::grid::{Cell, Occupancy, OccupancyGrid};
-use crate::math;
+use super::parameters::Exploration;
+use super::ray_field::RayField;
+use super::rays::Rays;
+use super::terrain::cost;
+use crate::grid::{Cell, OccupancyGrid};
 use crate::navigation::CostGrid;
 
-/// The rays of one range: one at every whole degree from 0 to 360, so that the first and the last are the same.
-#[derive(Debug, Clone)]
-pub(super) struct Rays {
-    /// For each ray, the offsets of its cells outwards, each with its number in the square around the disc.
-    rays: Vec<Vec<(Cell, usize)>>,
-    squares: usize,
+/// Computes the released program's gains, and keeps those that still hold: no cell has changed that decided them.
+#[derive(Debug)]
+pub(super) struct ReleasedGains {
+    rays: Rays,
+    field: RayField,
+    known: Vec<Known>,
 }
 
-impl Rays {
-    /// Creates rays of `range` cells: the end point is rounded to a cell, and a ray takes one cell per step along its
-    /// longer axis.
-    pub(super) fn new(range: i32) -> Self {
-        let side = 2 * range + 1;
-        #[expect(clippy::cast_sign_loss, reason = "offsets are within the range")]
-        let number = |cell: Cell| ((cell.y + range) * side + cell.x + range) as usize;
-        let ray = |degrees: u32| {
-            let (sin, cos) = math::sin_cos(f64::from(degrees).to_radians());
-            #[expect(clippy::cast_possible_truncation, reason = "within the range")]
-            let end = |share: f64| (share * f64::from(range)).round() as i32;
-            let (x, y) = (end(cos), end(sin));
-            let steps = x.abs().max(y.abs());
-            (0..=steps)
-                .map(|step| Cell::new(along(x, step, steps), along(y, step, steps)))
-                .map(|cell| (cell, number(cell)))
-                .collect()
+#[derive(Debug)]
+struct Known {
+    /// The lattice cell of the location p.
+    p: Cell,
+    /// Distinct unknown cells that rays from there meet.
+    cells: u32,
+    /// How many cells of each ray decided that.
+    looked_at: Box<[u16]>,
+}
+
+impl ReleasedGains {
+    /// Prepares gains by the rules of `exploration`, for a scanner that sees `range` cells far, with or without a prior.
+    pub(super) fn new(exploration: &Exploration, range: i32, has_prior: bool) -> Self {
+        // With a prior, rays stop at this inflated cost or more, without above this one.
+        let stop = if has_prior {
+            cost(exploration.prior_ray_stop_cost)
+        } else {
+            cost(exploration.baseline_ray_stop_cost) + 1
         };
-        #[expect(clippy::cast_sign_loss, reason = "a side is positive")]
-        let squares = (side * side) as usize;
-        Self { rays: (0..=360).map(ray).collect(), squares }
+        Self { rays: Rays::new(range), field: RayField::new(range, stop), known: Vec::new() }
     }
 
-    /// Counts the distinct unknown cells that rays from `p` meet before `stops`.
-    fn unknown(&self, map: &OccupancyGrid, p: Cell, stops: impl Fn(Cell) -> bool) -> u32 {
-        let mut met = vec![false; self.squares];
-        let mut unknown = 0;
-        for ray in &self.rays {
-            for &(offset, number) in ray {
-                let cell = Cell::new(p.x + offset.x, p.y + offset.y);
-                if stops(cell) {
-                    break;
-                }
-                if map.at(cell) == Occupancy::Unknown {
-                    unknown += u32::from(!met[number]);
-                    met[number] = true;
-                }
-            }
-        }
-        unknown
-    }
-}
-
-/// Returns the coordinate after `step` of `steps` steps towards `end`, rounded to the nearest cell, halves away from
-/// zero.
-fn along(end: i32, step: i32, steps: i32) -> i32 {
-    if steps == 0 { 0 } else { (2 * end.abs() * step + steps) / (2 * steps) * end.signum() }
-}
-
-/// The data needed to compute the released program's gain.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct ReleasedGain<'a> {
-    pub(super) rays: &'a Rays,
-    pub(super) map: &'a OccupancyGrid,
-    /// The same map inflated.
-    pub(super) costs: &'a CostGrid,
-    /// Lattice cell of the map's cell (0, 0).
-    pub(super) offset: Cell,
-    pub(super) prior: Option<&'a AlignedPrior>,
-    /// With a prior, rays stop at this inflated cost or more.
-    pub(super) prior_stop: u8,
-    /// Without, above this one.
-    pub(super) baseline_stop: u8,
-}
-
-impl ReleasedGain<'_> {
-    /// Computes I(p) in m², from the map cell `p`.
+    /// Computes I(p) in m², from each cell p of `candidates` of the map, whose cell (0, 0) is the lattice cell `offset` and
+    /// which is inflated in `costs`.
     ///
     /// With a prior, rays stop at its border and at its first cell that is not free, and no cell at all counts as one.
     /// Without, the unknown stops nothing.
-    pub(super) fn at(&self, p: Cell) -> f64 {
-        let cost = |cell: Cell| self.costs.cost(cell).unwrap_or(0);
-        let cells = match self.prior {
-            Some(prior) => {
-                let free =
-                    |c: Cell| prior.is_free(Cell::new(c.x + self.offset.x, c.y + self.offset.y));
-                let stops = |c: Cell| cost(c) >= self.prior_stop || !free(c);
-                self.rays.unknown(self.map, p, stops).max(1)
+    pub(super) fn of(
+        &mut self,
+        map: &OccupancyGrid,
+        costs: &CostGrid,
+        offset: Cell,
+        prior: Option<&AlignedPrior>,
+        candidates: &[Cell],
+    ) -> Vec<f64> {
+        let mut earlier = std::mem::take(&mut self.known);
+        match self.field.update(map, costs, offset, prior) {
+            None => earlier.clear(),
+            Some(changes) => {
+                let changed = |known: &Known| {
+                    changes.iter().any(|change| {
+                        let off = Cell::new(change.x - known.p.x, change.y - known.p.y);
+                        self.rays.look_at(off, &known.looked_at)
+                    })
+                };
+                earlier.retain(|known| !changed(known));
             }
-            None => self.rays.unknown(self.map, p, |c| cost(c) > self.baseline_stop),
+        }
+        let resolution = map.frame().resolution;
+        let least = u32::from(prior.is_some());
+        let mut gain = |&candidate: &Cell| {
+            let p = Cell::new(candidate.x + offset.x, candidate.y + offset.y);
+            let known = if let Some(i) = earlier.iter().position(|known| known.p == p) {
+                earlier.swap_remove(i)
+            } else {
+                let (states, width, place) = self.field.states(candidate);
+                let (cells, looked_at) = self.rays.unknown(states, width, place);
+                Known { p, cells, looked_at }
+            };
+            let cells = known.cells.max(least);
+            self.known.push(known);
+            f64::from(cells) * resolution * resolution
         };
-        f64::from(cells) * self.map.frame().resolution * self.map.frame().resolution
+        candidates.iter().map(&mut gain).collect()
     }
 }
 
@@ -102,22 +87,30 @@ impl ReleasedGain<'_> {
 mod tests {
     use super::*;
     use crate::geometry::{Point, Pose};
-    use crate::grid::GridFrame;
+    use crate::grid::{GridFrame, Occupancy};
     use crate::navigation::inflate;
     use proptest::prelude::*;
-    use std::collections::BTreeSet;
 
     const FRAME: GridFrame =
         GridFrame { resolution: 0.1, origin: Point::ZERO, width: 80, height: 80 };
 
-    fn gain<'a>(
-        rays: &'a Rays,
-        map: &'a OccupancyGrid,
-        costs: &'a CostGrid,
-        prior: Option<&'a AlignedPrior>,
-    ) -> ReleasedGain<'a> {
-        let offset = Cell::new(0, 0);
-        ReleasedGain { rays, map, costs, offset, prior, prior_stop: 80, baseline_stop: 50 }
+    fn gains(range: i32, prior: Option<&AlignedPrior>) -> ReleasedGains {
+        let exploration = Exploration {
+            prior_ray_stop_cost: 80,
+            baseline_ray_stop_cost: 50,
+            ..Exploration::default()
+        };
+        ReleasedGains::new(&exploration, range, prior.is_some())
+    }
+
+    fn gain(
+        range: i32,
+        map: &OccupancyGrid,
+        costs: &CostGrid,
+        prior: Option<&AlignedPrior>,
+        p: Cell,
+    ) -> f64 {
+        gains(range, prior).of(map, costs, Cell::new(0, 0), prior, &[p])[0]
     }
 
     fn cells(m2: f64) -> u32 {
@@ -143,14 +136,13 @@ mod tests {
             }
         }
         let costs = inflate(&map, 9);
-        let rays = Rays::new(30);
         let prior = OccupancyGrid::filled(FRAME, Occupancy::Free);
         let aligned = AlignedPrior::new(&prior, Pose::default(), 0.1);
         let p = Cell::new(32, 40);
-        assert_eq!(cells(gain(&rays, &map, &costs, None).at(p)), 0);
-        assert!(cells(gain(&rays, &map, &costs, Some(&aligned)).at(p)) > 50);
+        assert_eq!(cells(gain(30, &map, &costs, None, p)), 0);
+        assert!(cells(gain(30, &map, &costs, Some(&aligned), p)) > 50);
         let outside = AlignedPrior::new(&prior, Pose::new(500.0, 0.0, 0.0), 0.1);
-        assert_eq!(cells(gain(&rays, &map, &costs, Some(&outside)).at(p)), 1, "0 becomes 1");
+        assert_eq!(cells(gain(30, &map, &costs, Some(&outside), p)), 1, "0 becomes 1");
     }
 
     /// Checks the share of a disc that the rays meet: 94.5 % at 60 cells in the release, whose rays skip cells in two
@@ -160,30 +152,48 @@ mod tests {
         for (range, low, high) in [(60, 0.93, 0.97), (100, 0.70, 0.77), (250, 0.34, 0.39)] {
             let map = OccupancyGrid::filled(FRAME, Occupancy::Unknown);
             let costs = CostGrid::unknown(FRAME);
-            let rays = Rays::new(range);
-            let met = gain(&rays, &map, &costs, None).at(Cell::new(40, 40));
+            let met = gain(range, &map, &costs, None, Cell::new(40, 40));
             let disc = std::f64::consts::PI * f64::from(range * range) * 0.01;
             assert!((low..high).contains(&(met / disc)), "{range}: {}", met / disc);
         }
     }
 
     proptest! {
-        /// Checks that every ray is a chain of neighbours that leaves none out and ends within half a cell of the
-        /// range.
+        #![proptest_config(ProptestConfig::with_cases(48))]
+        /// Checks that gains that are kept, on maps that change and grow, are those counted anew.
         #[test]
-        fn rays_are_chains(range in 1..120_i32) {
-            let rays = Rays::new(range);
-            prop_assert_eq!(rays.rays.len(), 361);
-            let mut ends = BTreeSet::new();
-            for ray in &rays.rays {
-                prop_assert_eq!(ray[0].0, Cell::new(0, 0));
-                prop_assert!(ray.windows(2).all(|w| w[0].0.neighbours8().contains(&w[1].0)));
-                let end = ray.last().unwrap().0;
-                let length = math::hypot(f64::from(end.x), f64::from(end.y));
-                prop_assert!((length - f64::from(range)).abs() <= std::f64::consts::FRAC_1_SQRT_2);
-                ends.insert(end);
+        fn kept_gains_are_those_counted_anew(
+            rounds in prop::collection::vec(
+                (prop::collection::vec((0..80, 0..80, 0_u8..3), 0..12), 0..3_i32), 1..6,
+            ),
+            has_prior: bool,
+        ) {
+            let prior = OccupancyGrid::filled(FRAME, Occupancy::Free);
+            let aligned = AlignedPrior::new(&prior, Pose::new(1.0, 0.4, 0.1), 0.1);
+            let prior = has_prior.then_some(&aligned);
+            let mut kept = gains(30, prior);
+            let mut map = OccupancyGrid::filled(FRAME, Occupancy::Unknown);
+            for cell in FRAME.cells().filter(|cell| (20..60).contains(&cell.x) && (25..50).contains(&cell.y)) {
+                map.set(cell, if cell.x == 40 && cell.y != 30 { Occupancy::Occupied } else { Occupancy::Free });
             }
-            prop_assert!(ends.len() <= 360);
+            let mut offset = Cell::new(-7, 3);
+            for (changes, growth) in rounds {
+                let frame = GridFrame { width: map.frame().width + growth, ..FRAME };
+                let mut grown = OccupancyGrid::filled(frame, Occupancy::Unknown);
+                for cell in map.frame().cells() {
+                    grown.set(Cell::new(cell.x + growth, cell.y), map.at(cell));
+                }
+                (map, offset.x) = (grown, offset.x - growth);
+                for (x, y, kind) in changes {
+                    let value = [Occupancy::Unknown, Occupancy::Free, Occupancy::Occupied][usize::from(kind)];
+                    map.set(Cell::new(x, y), value);
+                }
+                let costs = inflate(&map, 5);
+                let candidates = [(25, 30), (38, 26), (43, 48), (59, 40)]
+                    .map(|(x, y)| Cell::new(x - 7 - offset.x, y + 3 - offset.y));
+                let found = kept.of(&map, &costs, offset, prior, &candidates);
+                prop_assert_eq!(found, gains(30, prior).of(&map, &costs, offset, prior, &candidates));
+            }
         }
     }
 }
