@@ -181,7 +181,8 @@ fn simulator(
 }
 
 fn choose(chooser: &mut Chooser, sight: Sight<'_>) -> (Choice, Vec<usize>) {
-    let choice = chooser.appraise(sight, chooser.frontiers(sight));
+    let frontiers = chooser.frontiers(sight);
+    let choice = chooser.appraise(sight, frontiers);
     let order = ranked(&choice.utilities);
     (choice, order)
 }

@@ -47,7 +47,8 @@ struct State {
 #[expect(clippy::print_stdout, reason = "what was measured")]
 fn main() -> ExitCode {
     let plan = shipped::plan("prior-tables-1-6.yaml");
-    let spec = plan.find("office_false_floor-plan/0").expect("the manifest has this trial");
+    let spec =
+        plan.find("described_office_false_floor-plan/0").expect("the manifest has this trial");
     let passage = Passage::of(spec);
     let measured = [
         ("rays: every wall for every beam / sweep", passage.rays()),

@@ -38,7 +38,7 @@ const ROWS: [Row; 4] = [
 
 fn main() {
     let plan = shipped::plan("prior-tables-1-6.yaml");
-    let spec = plan.find("office_false_none/0").expect("the manifest has this trial");
+    let spec = plan.find("described_office_false_none/0").expect("the manifest has this trial");
     let own = driving::lidar(driving::setup(spec));
     let commands = explore(spec);
     println!("rays  per second  noise m  simulated s/s  million rays/s  Stage 2026-11-28  times");

@@ -62,7 +62,7 @@ impl Tour {
     /// The first 500 m of the way of a robot that explores the office without prior knowledge.
     fn of_an_explorer() -> Self {
         let plan = shipped::plan("prior-tables-1-6.yaml");
-        let spec = plan.find("office_false_none/0").expect("the manifest has this trial");
+        let spec = plan.find("described_office_false_none/0").expect("the manifest has this trial");
         let Some(setup) = spec.setup.of::<prior_map::Setup>() else {
             panic!("of the prior-map study")
         };

@@ -42,7 +42,7 @@ fn main() {
     println!("trial  outcome      simulated s  processor s  simulated s per s");
     let (mut simulated, mut spent) = (0.0, 0.0);
     for trial in 0..trials {
-        let name = format!("office_false_none/{trial}");
+        let name = format!("described_office_false_none/{trial}");
         let spec = plan.find(&name).expect("the manifest has this trial");
         let begun = processor::seconds();
         let record = studies::execute(spec);

@@ -1,7 +1,7 @@
 //! Steps (b) and (c): frontiers, and their appraisal (section 3.1).
 
 use super::field_of_view::{FieldOfView, Headings};
-use super::frontier::{Frontier, find_frontiers};
+use super::frontier::{Frontier, FrontierFinder};
 use super::gain_memory::GainMemory;
 use super::information_gain::{AlignedPrior, InformationGain};
 use super::parameters::{Exploration, Gain, Parameters, Strategy, View};
@@ -48,6 +48,7 @@ pub struct Sight<'a> {
 pub struct Chooser {
     exploration: Exploration,
     frontier_lethal: u8,
+    finder: FrontierFinder,
     prior: Option<AlignedPrior>,
     /// Range of the scanner in cells.
     range: i32,
@@ -80,6 +81,7 @@ impl Chooser {
             released: (exploration.gain == Gain::Released)
                 .then(|| ReleasedGains::new(&exploration, range, prior.is_some())),
             frontier_lethal: cost(parameters.navigation.frontier_lethal_cost),
+            finder: FrontierFinder::default(),
             exploration,
             prior,
             range,
@@ -97,12 +99,12 @@ impl Chooser {
     }
 
     /// Does step (b): finds the frontiers that the robot can reach.
-    pub fn frontiers(&self, sight: Sight<'_>) -> Vec<Frontier> {
+    pub fn frontiers(&mut self, sight: Sight<'_>) -> Vec<Frontier> {
         let map = sight.map.grid();
         let robot = map.frame().cell_at(sight.pose.position());
         let Exploration { minimum_frontier_cells, candidate, .. } = self.exploration;
         let lethal = self.frontier_lethal;
-        find_frontiers(map, sight.costs, robot, lethal, minimum_frontier_cells, candidate)
+        self.finder.find(map, sight.costs, robot, lethal, minimum_frontier_cells, candidate)
     }
 
     /// Computes the terms of equation 1 for `frontiers`; none is chosen yet. Without a utility there is no gain, and

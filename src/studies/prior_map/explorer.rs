@@ -19,8 +19,8 @@ use crate::grid::{Cell, GridFrame};
 use crate::mapping::{Change, Mapper, OccupancyMap};
 use crate::math;
 use crate::navigation::{
-    CostGrid, LocalMap, LocalRule, Operator, OperatorRule, Steering, Wavefront, look_ahead,
-    nearest_reached,
+    CostGrid, LocalMap, LocalRule, Operator, OperatorRule, RestingWave, Steering, Wavefront,
+    look_ahead, nearest_reached,
 };
 use crate::rng::Stream;
 use crate::robot::{Lidar, Odometry, Scan, Twist};
@@ -53,6 +53,8 @@ pub struct Explorer {
     phase: Phase,
     terrain: Terrain,
     wave: Option<Wavefront>,
+    /// A wave that is no longer followed, for its memory.
+    spare: Option<RestingWave>,
     steering: Option<Steering>,
     keyframe_wanted: bool,
     map_changed: bool,
@@ -98,6 +100,7 @@ impl Explorer {
             phase: Phase::Choosing,
             terrain: Terrain::new(navigation),
             wave: None,
+            spare: None,
             steering: None,
             keyframe_wanted: false,
             map_changed: false,
@@ -202,10 +205,10 @@ impl Explorer {
     }
 
     /// Returns how many frontiers there are, given up or not, when odometry reads `odometry`.
-    pub fn open_frontiers(&self, odometry: Pose) -> usize {
+    pub fn open_frontiers(&mut self, odometry: Pose) -> usize {
         let pose = self.mapper.pose(odometry);
         let costs = self.terrain.costs_anew(self.map(), pose);
-        self.chooser.frontiers(Sight { map: self.map(), costs: &costs, pose }).len()
+        self.chooser.frontiers(Sight { map: self.mapper.map(), costs: &costs, pose }).len()
     }
 
     /// Returns the choice made since the last call, if any.
@@ -321,7 +324,8 @@ impl Explorer {
         self.map_changed = false;
         // The present wave is followed where the target stays. Where the choice takes time, it serves until then.
         let is_instant = self.parameters.exploration.decision_jitter_s == 0.0;
-        let mut earlier = self.wave.take_if(|_| is_instant).map(Wavefront::rest);
+        let earlier = self.wave.take_if(|_| is_instant).map(Wavefront::rest);
+        let mut earlier = earlier.or_else(|| self.spare.take());
         let ground = self.terrain.ground(self.mapper.map(), odometry.pose);
         let mut choice = self.appraise(&ground.costs, odometry.pose);
         let tolerance = self.parameters.navigation.goal_tolerance_m;
@@ -351,6 +355,7 @@ impl Explorer {
             }
             earlier = Some(wave.rest());
         }
+        self.spare = earlier;
         let next = next.unwrap_or_else(|| {
             Phase::Done(if choice.frontiers.iter().all(|f| self.is_given_up(f, &choice.frame)) {
                 Ending::NoFrontierLeft
@@ -378,7 +383,7 @@ impl Explorer {
     /// Acts on the choice.
     fn take_up(&mut self, decided: Decided) {
         if let Some(wave) = decided.wave {
-            self.wave = Some(wave);
+            self.spare = self.wave.replace(wave).map(Wavefront::rest).or(self.spare.take());
             self.path_changed = true;
         }
         if matches!(decided.next, Phase::Done(_)) {

@@ -33,9 +33,7 @@ impl Frontier {
     }
 }
 
-/// Finds the frontiers that the robot at `robot` can reach: chains of free cells "adjacent to at least an unknown
-/// cell", of those that a 4-connected flood over cells cheaper than `lethal` reaches. Two cells belong to one chain
-/// where they share a side or a corner. Chains shorter than `minimum` cells are left out.
+/// Finds the frontiers as [`FrontierFinder::find`] does, without keeping anything for the next time.
 pub fn find_frontiers(
     map: &OccupancyGrid,
     costs: &CostGrid,
@@ -44,39 +42,149 @@ pub fn find_frontiers(
     minimum: u32,
     candidate: Candidate,
 ) -> Vec<Frontier> {
-    let frame = *map.frame();
-    if !frame.contains(robot) {
-        return Vec::new();
+    FrontierFinder::default().find(map, costs, robot, lethal, minimum, candidate)
+}
+
+/// Finds frontiers, and keeps the memory that this takes.
+#[derive(Debug, Default)]
+pub struct FrontierFinder {
+    /// A bit for every cell, numbered by a [`Ring`]: unknown ones, those that share a side or a corner with one of them, and those
+    /// that the flood may enter and has not yet. Bits, as all of them are looked at in an order that leaps from row to row.
+    unknown: Vec<u64>,
+    beside: Vec<u64>,
+    open: Vec<u64>,
+    /// Memory for a row.
+    flags: Vec<u8>,
+    flood: Vec<u32>,
+    /// How many cells of frontiers were discovered before each of them, plus one; 0 for other cells, and for all in between.
+    order: Vec<u32>,
+}
+
+impl FrontierFinder {
+    /// Finds the frontiers that the robot at `robot` can reach: chains of free cells "adjacent to at least an unknown
+    /// cell", of those that a 4-connected flood over cells cheaper than `lethal` reaches. Two cells belong to one chain
+    /// where they share a side or a corner. Chains shorter than `minimum` cells are left out.
+    pub fn find(
+        &mut self,
+        map: &OccupancyGrid,
+        costs: &CostGrid,
+        robot: Cell,
+        lethal: u8,
+        minimum: u32,
+        candidate: Candidate,
+    ) -> Vec<Frontier> {
+        let frame = *map.frame();
+        if !frame.contains(robot) {
+            return Vec::new();
+        }
+        let ring = Ring::around(&frame);
+        // 1. The flood.
+        self.mark(map, costs, lethal, ring);
+        if self.order.len() != ring.len() {
+            self.order = vec![0; ring.len()];
+        }
+        let discovered = self.discovered(robot, ring);
+        for (place, &index) in (1..).zip(&discovered) {
+            self.order[index] = place;
+        }
+        chains(discovered, &mut self.order, ring, minimum, candidate)
     }
-    let ring = Ring::around(&frame);
-    // 1. The flood.
-    let mut is_open: Vec<bool> = ring.rows(false, |y, row| {
-        let costs = costs.row(y);
-        row.iter_mut().zip(costs).for_each(|(open, cost)| *open = *cost < lethal);
-    });
-    let is_beside = beside_unknown(map, ring);
-    let mut flood = vec![ring.index(robot)];
-    is_open[flood[0]] = false;
-    // How many cells of frontiers were discovered before each of them, plus one; 0 for other cells.
-    let mut order = vec![0_u32; is_open.len()];
-    let mut discovered: Vec<usize> = Vec::new();
-    let mut next = 0;
-    while let Some(&index) = flood.get(next) {
-        next += 1;
-        // A cell is its own neighbour there, so that few are left to be looked at.
-        if is_beside[index] {
-            let neighbours = ring.cell(index).neighbours8();
-            if neighbours.iter().any(|&n| map.at(n) == Occupancy::Unknown) {
+
+    /// Marks cells that are open, and those beside unknown ones.
+    fn mark(&mut self, map: &OccupancyGrid, costs: &CostGrid, lethal: u8, ring: Ring) {
+        let (words, cells) = (ring.width / WORD, ring.cells);
+        self.unknown.clear();
+        // One more, so that the last one too has one after it.
+        self.unknown.resize(words * ring.height + 1, u64::MAX);
+        self.open.clear();
+        self.open.resize(words * ring.height, 0);
+        self.flags.clear();
+        self.flags.resize(ring.width - WORD, 1);
+        let rows = self.unknown.chunks_mut(words).skip(1).take(ring.height - 2);
+        for (row, values) in rows.zip(map.values().chunks(cells)) {
+            for (flag, value) in self.flags.iter_mut().zip(values) {
+                *flag = u8::from(*value == Occupancy::Unknown);
+            }
+            pack(&self.flags, &mut row[1..]);
+        }
+        self.flags.fill(0);
+        let rows = self.open.chunks_mut(words).skip(1).take(ring.height - 2);
+        for (y, row) in (0..).zip(rows) {
+            for (flag, cost) in self.flags.iter_mut().zip(costs.row(y)) {
+                *flag = u8::from(*cost < lethal);
+            }
+            pack(&self.flags, &mut row[1..]);
+        }
+        let unknown = &self.unknown;
+        let sides = |i: usize| {
+            let (left, right) = (unknown[i] << 1 | unknown[i - 1] >> 63, unknown[i + 1] << 63);
+            left | unknown[i] >> 1 | right
+        };
+        self.beside.clear();
+        self.beside.resize(words * ring.height, 0);
+        for row in 1..ring.height - 1 {
+            for i in row * words + 1..(row + 1) * words {
+                let (below, above) = (i - words, i + words);
+                let across = sides(below) | unknown[below] | sides(above) | unknown[above];
+                self.beside[i] = sides(i) | across;
+            }
+        }
+    }
+
+    /// Returns the cells of frontiers in the order in which the flood meets them.
+    fn discovered(&mut self, robot: Cell, ring: Ring) -> Vec<usize> {
+        // Whatever is looked at is written behind the others, and stays there where it is open: which it is cannot be
+        // foreseen.
+        self.flood.resize(ring.len() + 4, 0);
+        #[expect(clippy::cast_possible_truncation, reason = "no grid has 2^32 cells")]
+        let number = |index: usize| index as u32;
+        let (open, flood) = (&mut self.open, &mut self.flood);
+        let mut discovered = Vec::new();
+        let first = ring.index(robot);
+        flood[0] = number(first);
+        open[first / WORD] &= !(1 << (first % WORD));
+        let (mut next, mut end) = (0, 1);
+        while next < end {
+            let index = flood[next] as usize;
+            next += 1;
+            if self.beside[index / WORD] >> (index % WORD) & 1 != 0 {
                 discovered.push(index);
-                order[index] = u32::try_from(discovered.len()).unwrap_or(u32::MAX);
             }
-        }
-        for neighbour in ring.beside(index) {
-            if std::mem::take(&mut is_open[neighbour]) {
-                flood.push(neighbour);
+            let ahead = &mut flood[end..end + 4];
+            let mut found = 0;
+            for neighbour in ring.beside(index) {
+                let word = &mut open[neighbour / WORD];
+                ahead[found % 4] = number(neighbour);
+                found += usize::from(*word >> (neighbour % WORD) & 1 != 0);
+                *word &= !(1 << (neighbour % WORD));
             }
+            end += found;
         }
+        discovered
     }
+}
+
+/// Bits of a word.
+const WORD: usize = 64;
+
+/// Packs `flags`, each 0 or 1, into `words`, eight at a time: the product moves each to its place in the highest byte.
+fn pack(flags: &[u8], words: &mut [u64]) {
+    for (word, flags) in words.iter_mut().zip(flags.chunks(WORD)) {
+        *word = flags.chunks_exact(8).rev().fold(0, |word, eight| {
+            let eight = u64::from_le_bytes(eight.try_into().unwrap_or_default());
+            word << 8 | eight.wrapping_mul(0x0102_0408_1020_4080) >> 56
+        });
+    }
+}
+
+/// Returns the chains of the cells `discovered`, whose `order` is told and is 0 for all cells afterwards.
+fn chains(
+    discovered: Vec<usize>,
+    order: &mut [u32],
+    ring: Ring,
+    minimum: u32,
+    candidate: Candidate,
+) -> Vec<Frontier> {
     // 2. The chains, by the discovery of their first cells.
     let mut frontiers = Vec::new();
     for first in discovered {
@@ -97,7 +205,7 @@ pub fn find_frontiers(
         // 3. The candidates.
         if chain.len() >= minimum as usize {
             let candidate = match candidate {
-                Candidate::Middle => middle_of(&chain, ring, &mut order),
+                Candidate::Middle => middle_of(&chain, ring, order),
                 Candidate::NearestToCentroid => nearest_to_centroid(&chain),
             };
             frontiers.push(Frontier { cells: chain, candidate });
@@ -106,9 +214,12 @@ pub fn find_frontiers(
     frontiers
 }
 
-/// The numbering of a grid's cells with a ring of further ones around them, so that every cell has its neighbours.
+/// The numbering of a grid's cells with a ring of further ones around them, so that every cell has its neighbours. Rows begin
+/// with a word of these and have whole words, as cells are numbered for bits.
 #[derive(Debug, Clone, Copy)]
 struct Ring {
+    /// Cells of the grid's own rows.
+    cells: usize,
     width: usize,
     height: usize,
 }
@@ -116,18 +227,20 @@ struct Ring {
 impl Ring {
     fn around(frame: &GridFrame) -> Self {
         let side = |cells: i32| usize::try_from(cells).unwrap_or(0);
-        Self { width: side(frame.width) + 2, height: side(frame.height) + 2 }
+        let cells = side(frame.width);
+        let width = WORD + (cells + 1).next_multiple_of(WORD);
+        Self { cells, width, height: side(frame.height) + 2 }
     }
 
     /// Returns the index of `cell`, which is one of the grid's.
     #[expect(clippy::cast_sign_loss, reason = "cells of the grid are not negative")]
     fn index(self, cell: Cell) -> usize {
-        (cell.y as usize + 1) * self.width + cell.x as usize + 1
+        (cell.y as usize + 1) * self.width + cell.x as usize + WORD
     }
 
     fn cell(self, index: usize) -> Cell {
-        let at = |along: usize| i32::try_from(along).unwrap_or(i32::MAX) - 1;
-        Cell::new(at(index % self.width), at(index / self.width))
+        let at = |along: usize| i32::try_from(along).unwrap_or(i32::MAX);
+        Cell::new(at(index % self.width - WORD), at(index / self.width - 1))
     }
 
     /// Returns the neighbours that share a side, in the order of [`Cell::neighbours4`].
@@ -141,35 +254,10 @@ impl Ring {
         [index + 1, up + 1, up, up - 1, index - 1, down - 1, down, down + 1]
     }
 
-    /// Returns values of all cells: `outside` for those of the ring, and those of each row of the grid as `fill` sets them.
-    fn rows<T: Clone>(self, outside: T, mut fill: impl FnMut(i32, &mut [T])) -> Vec<T> {
-        let mut all = vec![outside; self.width * self.height];
-        let rows = all.chunks_mut(self.width).skip(1).take(self.height - 2);
-        for (y, row) in (0..).zip(rows) {
-            fill(y, &mut row[1..self.width - 1]);
-        }
-        all
+    /// Returns how many cells it numbers.
+    fn len(self) -> usize {
+        self.width * self.height
     }
-}
-
-/// Returns which cells are unknown or share a side or a corner with one that is: three rows at once, for most cells are well
-/// inside.
-fn beside_unknown(map: &OccupancyGrid, ring: Ring) -> Vec<bool> {
-    let cells = ring.width - 2;
-    let is_unknown = ring.rows(true, |y, row| {
-        let values = usize::try_from(y).map_or(0, |y| y * cells);
-        let values = &map.values()[values..values + cells];
-        row.iter_mut().zip(values).for_each(|(is, value)| *is = *value == Occupancy::Unknown);
-    });
-    ring.rows(false, |y, row| {
-        let first = usize::try_from(y).map_or(0, |y| y * ring.width);
-        for above in 0..3 {
-            let unknown = &is_unknown[first + above * ring.width..][..ring.width];
-            for (is_beside, near) in row.iter_mut().zip(unknown.windows(3)) {
-                *is_beside |= near[0] | near[1] | near[2];
-            }
-        }
-    })
 }
 
 /// Returns the cell half way along the chain: half way on the shortest path, over the chain's own cells, between two of
@@ -303,8 +391,9 @@ mod tests {
         let mut chain: Vec<Cell> = (0..5).rev().map(|y| Cell::new(0, y)).collect();
         chain.extend((1..5).map(|x| Cell::new(x, 0)));
         let frame = GridFrame { resolution: 0.1, origin: Point::ZERO, width: 5, height: 5 };
-        let mut numbers = vec![0; 49];
-        assert_eq!(middle_of(&chain, Ring::around(&frame), &mut numbers), Cell::new(1, 0));
+        let ring = Ring::around(&frame);
+        let mut numbers = vec![0; ring.len()];
+        assert_eq!(middle_of(&chain, ring, &mut numbers), Cell::new(1, 0));
         assert!(numbers.iter().all(|number| *number == 0));
         assert_eq!(nearest_to_centroid(&chain), Cell::new(0, 2), "the first within a whole cell");
         let moved: Vec<Cell> = chain.iter().map(|c| Cell::new(c.x - 7, c.y - 9)).collect();
