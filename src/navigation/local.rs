@@ -121,6 +121,7 @@ impl LocalMap {
         let sensor = pose.compose(scan.mount);
         let from = self.lattice(sensor.position());
         self.ends.clear();
+        self.lines.reserve(scan.ranges.len());
         self.smooth(&scan.ranges);
         let mut cleared = None;
         let mut directions = std::mem::take(&mut self.directions);
