@@ -18,7 +18,7 @@ mod shipped;
 
 use reenact::geometry::{Outline, Point, Pose};
 use reenact::mapping::{
-    FilterRule, KeyframeRule, Mapper, MatchRule, MotionNoise, NoReturn, ScanRule,
+    FilterRule, KeyframeRule, Mapper, MatchRule, MotionNoise, NoReturn, ScanRule, Showing,
 };
 use reenact::rng::Seeds;
 use reenact::robot::{Lidar, Robot, Twist};
@@ -136,7 +136,7 @@ fn drive(tour: &Tour, range_noise: f64, filter: FilterRule, seed: u64) -> Drive 
                 sim.read_scan(&mut scan);
                 #[expect(clippy::disallowed_methods, reason = "a benchmark looks at the clock")]
                 let (begun, cpu) = (std::time::Instant::now(), cpu_milliseconds());
-                mapper.integrate(odometry, &scan);
+                mapper.integrate(odometry, &scan, Showing::WhenDue);
                 let elapsed = begun.elapsed().as_secs_f64() * 1000.0;
                 result.milliseconds.push(elapsed);
                 result.cpu_milliseconds +=

@@ -8,6 +8,7 @@ use super::{Change, OccupancyMap, ScanRule};
 use crate::geometry::Pose;
 use crate::rng::Stream;
 use crate::robot::{BeamDirections, Scan};
+use crate::units::Tick;
 
 /// Builds a map from the scans at keyframes, with the poses of odometry where the filter's rule trusts it, and else with those
 /// of the best particle.
@@ -17,6 +18,22 @@ pub struct Mapper {
     rule: ScanRule,
     map: OccupancyMap,
     slam: Option<Slam>,
+    /// How long a map that was shown stands at least.
+    interval: Tick,
+    /// When the map was shown last.
+    shown: Option<Tick>,
+    /// Scans taken in with the poses of odometry that the map does not show yet.
+    waiting: Vec<(Pose, BeamEnds)>,
+    directions: BeamDirections,
+}
+
+/// When the map shows a scan that is taken in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Showing {
+    /// With the next map that is due.
+    WhenDue,
+    /// At once.
+    Now,
 }
 
 /// The state besides the map where odometry is not trusted.
@@ -51,7 +68,22 @@ impl Mapper {
             directions: BeamDirections::default(),
         });
         let map = OccupancyMap::new(scan_rule);
-        Self { keyframes: Keyframes::new(keyframes), rule: scan_rule, map, slam }
+        Self {
+            keyframes: Keyframes::new(keyframes),
+            rule: scan_rule,
+            map,
+            slam,
+            interval: Tick(0),
+            shown: None,
+            waiting: Vec::new(),
+            directions: BeamDirections::default(),
+        }
+    }
+
+    /// Returns the same mapper whose map, once shown, stands for `interval` at least. GMapping's `map_update_interval`.
+    #[must_use]
+    pub fn showing_every(self, interval: Tick) -> Self {
+        Self { interval, ..self }
     }
 
     /// Returns the map so far: that of the best particle.
@@ -78,8 +110,8 @@ impl Mapper {
     /// Returns the robot's pose at each scan taken in, as now estimated: the trajectory of the best particle. Empty
     /// where odometry is trusted.
     pub fn way(&self) -> Vec<Pose> {
-        let shown = self.slam.as_ref().and_then(|slam| Some((slam, slam.shown?)));
-        shown.map_or_else(Vec::new, |(slam, node)| slam.filter.trajectories().way_to(node))
+        let best = self.slam.as_ref().and_then(|slam| Some((slam, slam.filter.node()?)));
+        best.map_or_else(Vec::new, |(slam, node)| slam.filter.trajectories().way_to(node))
     }
 
     /// Returns the cells that the last scan taken in changed.
@@ -98,11 +130,33 @@ impl Mapper {
         self.keyframes.wants(odometry)
     }
 
-    /// Integrates `scan`, taken at `odometry`, and returns the cells that changed, among them those that differ because
-    /// another particle became best.
-    pub fn integrate(&mut self, odometry: Pose, scan: &Scan) -> &[Change] {
+    /// Takes `scan`, taken at `odometry`, in, and returns the cells that changed where the map was shown, among them those that
+    /// differ because another particle became best. `None` where the scan waits for the next map.
+    pub fn integrate(
+        &mut self,
+        odometry: Pose,
+        scan: &Scan,
+        showing: Showing,
+    ) -> Option<&[Change]> {
         self.keyframes.taken(odometry);
-        let Some(slam) = &mut self.slam else { return self.map.integrate(odometry, scan) };
+        let is_due = showing == Showing::Now
+            || self.interval == Tick(0)
+            || self.shown.is_none_or(|last| scan.stamp > last + self.interval);
+        if is_due {
+            self.shown = Some(scan.stamp);
+        }
+        let Some(slam) = &mut self.slam else {
+            if is_due && self.waiting.is_empty() {
+                return Some(self.map.integrate(odometry, scan));
+            }
+            let beams = BeamEnds::of(scan, self.rule, &mut self.directions);
+            self.waiting.push((odometry, beams));
+            if !is_due {
+                return None;
+            }
+            let waited = std::mem::take(&mut self.waiting);
+            return Some(self.map.redraw([], waited.iter().map(|(pose, beams)| (*pose, beams))));
+        };
         let beams = BeamEnds::of(scan, self.rule, &mut slam.directions);
         if slam.shown.is_none() {
             slam.filter.begin(odometry, &beams);
@@ -112,14 +166,17 @@ impl Mapper {
         slam.increments.clear();
         slam.odometry = odometry;
         slam.scans.push(beams);
-        let Some(node) = slam.filter.node() else { return &[] };
+        let node = slam.filter.node()?;
+        if !is_due {
+            return None;
+        }
         let ways = slam.filter.trajectories();
         let (removed, added) = ways.between(slam.shown.replace(node), node);
         let scan_at = |&node: &NodeId| {
             let (pose, scan) = ways.at(node);
             (pose, &slam.scans[scan])
         };
-        self.map.redraw(removed.iter().map(scan_at), added.iter().map(scan_at))
+        Some(self.map.redraw(removed.iter().map(scan_at), added.iter().map(scan_at)))
     }
 }
 
@@ -181,7 +238,7 @@ mod tests {
     fn drive(mapper: &mut Mapper, mut each: impl FnMut(&Mapper, Pose, Pose)) {
         for (truth, odometry) in rounds() {
             if mapper.wants(odometry) {
-                mapper.integrate(odometry, &room::scan(truth));
+                mapper.integrate(odometry, &room::scan(truth), Showing::WhenDue);
                 each(mapper, truth, odometry);
             }
         }
@@ -257,6 +314,32 @@ mod tests {
         });
         let switches = ways.windows(2).filter(|pair| !pair[1].starts_with(&pair[0])).count();
         assert!(switches > 3, "another particle became best {switches} times");
+    }
+
+    #[test]
+    fn a_map_shows_what_waited_once_it_is_due_and_at_once_where_asked_for() {
+        // Two particles that may not move go through the filter, one does not.
+        for particles in [1, 2] {
+            let at = |mapper: &mut Mapper, scan: u32, showing: Showing| {
+                let pose = Pose::new(0.4 * f64::from(scan), 0.0, 0.0);
+                assert!(mapper.wants(pose));
+                let scan = Scan { stamp: Tick(300 * u64::from(scan)), ..room::scan(pose) };
+                mapper.integrate(pose, &scan, showing).map(<[Change]>::len)
+            };
+            let rule = FilterRule { particles, ..STILL };
+            let mut waiting = mapper(rule).showing_every(Tick(700));
+            let mut prompt = mapper(rule);
+            assert!(at(&mut waiting, 0, Showing::WhenDue).is_some(), "the first");
+            assert_eq!(at(&mut waiting, 1, Showing::WhenDue), None);
+            assert_eq!(at(&mut waiting, 2, Showing::WhenDue), None);
+            for scan in 0..4 {
+                assert!(at(&mut prompt, scan, Showing::WhenDue).is_some());
+            }
+            assert_ne!(known(waiting.map()), known(prompt.map()));
+            assert!(at(&mut waiting, 3, Showing::WhenDue).is_some());
+            assert_eq!(known(waiting.map()), known(prompt.map()));
+            assert!(at(&mut waiting, 4, Showing::Now).is_some());
+        }
     }
 
     #[test]

@@ -23,7 +23,7 @@ mod window;
 
 pub use keyframe::KeyframeRule;
 pub use map::{Change, NoReturn, OccupancyMap, ScanRule};
-pub use mapper::Mapper;
+pub use mapper::{Mapper, Showing};
 pub use motion_model::MotionNoise;
 pub use particle_filter::FilterRule;
 pub use scan_matcher::MatchRule;

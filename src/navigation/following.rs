@@ -23,14 +23,20 @@ pub fn look_ahead(wave: &mut Wavefront, here: Cell) -> Cell {
 /// at most 6 cells out: a robot that stands too close to an obstacle first heads out. `None` where the wave came to
 /// none of them.
 pub fn nearest_reached(wave: &mut Wavefront, cell: Cell) -> Option<Cell> {
-    if wave.reaches(cell) {
+    nearest(cell, |c| wave.reaches(*c))
+}
+
+/// Returns the cell itself where it is `wanted`, or else the nearest that is on the smallest square ring around it, at most 6
+/// cells out.
+pub fn nearest(cell: Cell, mut wanted: impl FnMut(&Cell) -> bool) -> Option<Cell> {
+    if wanted(&cell) {
         return Some(cell);
     }
     (1..=6).find_map(|ring: i32| {
         let side = -ring..=ring;
         side.clone()
             .flat_map(|y| side.clone().map(move |x| Cell::new(cell.x + x, cell.y + y)))
-            .filter(|c| wave.reaches(*c))
+            .filter(&mut wanted)
             .min_by_key(|c| (c.distance_squared(cell), c.y, c.x))
     })
 }

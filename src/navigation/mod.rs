@@ -16,7 +16,7 @@ mod wavefront;
 
 pub use arcs::{Operator, OperatorRule, Steering};
 pub use costmap::CostGrid;
-pub use following::{look_ahead, nearest_reached};
+pub use following::{look_ahead, nearest, nearest_reached};
 pub use inflated_map::{Ground, InflatedMap};
 pub use inflation::inflate;
 pub use local::{LocalMap, LocalRule};

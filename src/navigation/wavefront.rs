@@ -89,6 +89,11 @@ impl Wavefront {
         RestingWave(Self { costs: Arc::new(CostGrid::unknown(nothing)), ..self })
     }
 
+    /// Returns the frame of its cells.
+    pub fn frame(&self) -> &GridFrame {
+        self.costs.frame()
+    }
+
     fn in_memory_of(
         earlier: Option<Self>,
         ground: Ground,

@@ -4,7 +4,7 @@ use super::field_of_view::{FieldOfView, Headings};
 use super::frontier::{Frontier, FrontierFinder};
 use super::gain_memory::GainMemory;
 use super::information_gain::{AlignedPrior, InformationGain};
-use super::parameters::{Exploration, Gain, Parameters, Strategy, View};
+use super::parameters::{Exploration, Gain, Parameters, SearchFrom, Strategy, View};
 use super::released_gain::ReleasedGains;
 use super::terrain::cost;
 use super::tour::Tour;
@@ -13,7 +13,7 @@ use crate::geometry::Pose;
 use crate::grid::{Cell, GridFrame, Occupancy, QUADRANTS};
 use crate::mapping::OccupancyMap;
 use crate::math;
-use crate::navigation::CostGrid;
+use crate::navigation::{CostGrid, nearest};
 use crate::robot::Lidar;
 use std::f64::consts::TAU;
 
@@ -104,7 +104,16 @@ impl Chooser {
         let robot = map.frame().cell_at(sight.pose.position());
         let Exploration { minimum_frontier_cells, candidate, .. } = self.exploration;
         let lethal = self.frontier_lethal;
-        self.finder.find(map, sight.costs, robot, lethal, minimum_frontier_cells, candidate)
+        let mut found_from = |cell: Cell| {
+            self.finder.find(map, sight.costs, cell, lethal, minimum_frontier_cells, candidate)
+        };
+        let found = found_from(robot);
+        if !found.is_empty() || self.exploration.search_from == SearchFrom::Robot {
+            return found;
+        }
+        // It stands too close to an obstacle for the search to leave its cell.
+        let is_free = |cell: &Cell| sight.costs.is_below(*cell, lethal);
+        nearest(robot, is_free).map_or(found, found_from)
     }
 
     /// Computes the terms of equation 1 for `frontiers`; none is chosen yet. Without a utility there is no gain, and

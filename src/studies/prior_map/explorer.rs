@@ -9,14 +9,14 @@
 use super::choice::{Choice, Chooser, Sight};
 use super::frontier::Frontier;
 use super::information_gain::AlignedPrior;
-use super::parameters::{Parameters, Reselect};
+use super::parameters::{Parameters, Replan, Reselect};
 use super::phase::{Decided, Journey, Phase};
 use super::terrain::Terrain;
 use super::tour::Tour;
 use super::utility::ranked;
 use crate::geometry::{Point, Pose};
 use crate::grid::{Cell, GridFrame};
-use crate::mapping::{Change, Mapper, OccupancyMap};
+use crate::mapping::{Change, Mapper, OccupancyMap, Showing};
 use crate::math;
 use crate::navigation::{
     CostGrid, LocalMap, LocalRule, Operator, OperatorRule, RestingWave, Steering, Wavefront,
@@ -57,6 +57,8 @@ pub struct Explorer {
     spare: Option<RestingWave>,
     steering: Option<Steering>,
     keyframe_wanted: bool,
+    /// Where it arrived or turned to look, it waits for no later map to show what it sees.
+    showing: Showing,
     map_changed: bool,
     next_local_map: Tick,
     next_navigation: Tick,
@@ -88,7 +90,8 @@ impl Explorer {
         };
         Self {
             chooser: Chooser::new(parameters, lidar, prior),
-            mapper: Mapper::new(mapping.keyframes(), mapping.scans(), mapping.filter(), particles),
+            mapper: Mapper::new(mapping.keyframes(), mapping.scans(), mapping.filter(), particles)
+                .showing_every(mapping.update_interval()),
             local: LocalMap::new(local_rule),
             operator: Operator::new(OperatorRule {
                 max_linear: navigation.max_linear_m_s,
@@ -103,6 +106,7 @@ impl Explorer {
             spare: None,
             steering: None,
             keyframe_wanted: false,
+            showing: Showing::WhenDue,
             map_changed: false,
             next_local_map: Tick(0),
             next_navigation: Tick(0),
@@ -138,10 +142,16 @@ impl Explorer {
             return None;
         }
         self.keyframe_wanted = false;
-        self.map_changed = true;
+        let showing = std::mem::replace(&mut self.showing, Showing::WhenDue);
         let before = self.mapper.pose(odometry.pose);
-        let changes = self.mapper.integrate(odometry.pose, scan);
-        self.terrain.note(changes);
+        let is_shown = match self.mapper.integrate(odometry.pose, scan, showing) {
+            Some(changes) => {
+                self.terrain.note(changes);
+                true
+            }
+            None => false,
+        };
+        self.map_changed |= is_shown;
         let after = self.mapper.pose(odometry.pose);
         if let Phase::Driving(journey) = &mut self.phase
             && before.position().distance(after.position()) > PROGRESS
@@ -149,7 +159,7 @@ impl Explorer {
             // Its pose was corrected: its earlier progress means nothing.
             journey.closest = (f64::INFINITY, odometry.stamp);
         }
-        Some(self.mapper.changes())
+        Some(if is_shown { self.mapper.changes() } else { &[] })
     }
 
     /// Computes the velocity for the next control cycle.
@@ -222,7 +232,7 @@ impl Explorer {
             return None;
         }
         let pose = self.mapper.pose(odometry);
-        let frame = *self.map().grid().frame();
+        let frame = self.frame_of_wave()?;
         let wave = self.wave.as_mut()?;
         let start = nearest_reached(wave, frame.cell_at(pose.position()))?;
         Some(wave.path(start).into_iter().map(|cell| frame.center(cell)).collect())
@@ -244,7 +254,7 @@ impl Explorer {
                 let off = bearing(odometry.pose, towards);
                 if off.abs() < FACING {
                     self.faced = Some(towards);
-                    self.keyframe_wanted = true;
+                    self.look();
                     self.steering = None;
                     self.phase = Phase::Choosing;
                 } else {
@@ -257,7 +267,7 @@ impl Explorer {
             Phase::Driving(journey) => {
                 let arrived = odometry.pose.position().distance(journey.target) <= tolerance;
                 if arrived {
-                    self.keyframe_wanted = true;
+                    self.look();
                     self.steering = None;
                     self.phase = Phase::Choosing;
                 } else if self.is_time_to_reconsider(&journey, odometry) {
@@ -267,6 +277,12 @@ impl Explorer {
                 }
             }
         }
+    }
+
+    /// Has the next scan taken into the map, for the next choice to see.
+    fn look(&mut self) {
+        self.keyframe_wanted = true;
+        self.showing = Showing::Now;
     }
 
     fn is_time_to_reconsider(&self, journey: &Journey, odometry: Odometry) -> bool {
@@ -283,14 +299,17 @@ impl Explorer {
     }
 
     fn drive_on(&mut self, mut journey: Journey, odometry: Odometry) {
-        if std::mem::take(&mut self.map_changed) || self.wave.is_none() {
+        let is_outdated = std::mem::take(&mut self.map_changed)
+            && self.parameters.navigation.replan == Replan::OnMapChange;
+        if is_outdated || self.wave.is_none() {
             let earlier = self.wave.take().map(Wavefront::rest);
             let ground = self.terrain.ground(self.mapper.map(), odometry.pose);
             self.wave = Some(self.terrain.wave_to(earlier, &ground, journey.target));
             self.path_changed = true;
         }
-        let robot = self.cell_at(odometry.pose);
+        let Some(frame) = self.frame_of_wave() else { return };
         let Some(wave) = &mut self.wave else { return };
+        let robot = frame.cell_at(odometry.pose.position());
         let Some(here) = nearest_reached(wave, robot) else {
             self.steering = None;
             self.phase = Phase::Choosing;
@@ -307,7 +326,7 @@ impl Explorer {
             self.phase = Phase::Choosing;
             return;
         }
-        let ahead = self.mapper.map().grid().frame().center(look_ahead(wave, here));
+        let ahead = frame.center(look_ahead(wave, here));
         let off = bearing(odometry.pose, ahead);
         let speed = if remaining < 1.0 { 0.5 + remaining / 2.0 } else { 1.0 };
         self.steering = Some(Steering {
@@ -316,6 +335,16 @@ impl Explorer {
             distance: odometry.pose.position().distance(ahead),
         });
         self.phase = Phase::Driving(journey);
+    }
+
+    /// Returns the frame of the present wave's cells.
+    fn frame_of_wave(&self) -> Option<GridFrame> {
+        match self.parameters.navigation.replan {
+            // Where the map grows while a choice takes time, the old wave is followed in the new frame till then: that it should
+            // not is left to the next engine version, as trials repeat bit for bit within one.
+            Replan::OnMapChange => Some(*self.map().grid().frame()),
+            Replan::OnChoice => Some(*self.wave.as_ref()?.frame()),
+        }
     }
 
     /// Does step (c): chooses the most promising candidate location that can be reached.

@@ -33,8 +33,9 @@ pub use measures::least_of;
 pub use study::PriorMap;
 
 pub use parameters::{
-    Candidate, Coverage, Crossing, Exploration, Gain, MapFrame, Mapping, Measurement, Mission,
-    Navigation, Origin, Parameters, ReferenceMap, Reselect, Sensing, Strategy, View,
+    Candidate, Coverage, CoverageMapCells, Crossing, Exploration, Gain, MapFrame, Mapping,
+    Measurement, Mission, Navigation, Origin, Parameters, ReferenceMap, Replan, Reselect,
+    SearchFrom, Sensing, Strategy, View,
 };
 pub use requests::{
     AgreementTable, CoverageCurve, CoverageTable, EffectsTable, MeasuresTable, Metric, PlanFigure,

@@ -6,6 +6,7 @@
 
 use crate::mapping::{FilterRule, KeyframeRule, MatchRule, MotionNoise, NoReturn, ScanRule};
 use crate::studies::parameters;
+use crate::units::{Seconds, Tick};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -78,6 +79,11 @@ parameters!(
         /// ... or after turning this much (rad), above 0.
         #[schemars(extend("exclusiveMinimum" = 0))]
         keyframe_turn_rad: f64 = 0.5,
+        /// A map is not shown again before this has passed (s), 0 or more (`map_update_interval`): planner and coverage see a scan
+        /// taken in between with the next.
+        #[serde(skip_serializing_if = "is_default")]
+        #[schemars(range(min = 0.0))]
+        update_interval_s: f64 = 0.0,
         /// Beams are cut to this range (m); `null` means the sensor's own range.
         #[schemars(extend("exclusiveMinimum" = 0))]
         clip_range_m: Option<f64> = None,
@@ -151,6 +157,11 @@ impl Mapping {
         KeyframeRule { distance: self.keyframe_distance_m, turn: self.keyframe_turn_rad }
     }
 
+    /// Returns how long a map that was shown stands at least.
+    pub fn update_interval(&self) -> Tick {
+        Tick::at_or_after(Seconds(self.update_interval_s))
+    }
+
     /// Returns how a scan is taken in.
     pub fn scans(&self) -> ScanRule {
         ScanRule {
@@ -214,6 +225,9 @@ parameters!(
         /// Extra cost of a step per unit of inflated cost / 100: length x (1 + this x cost / 100).
         #[schemars(range(min = 0.0))]
         cost_weight: f64 = 10.0,
+        /// When the way to a chosen location is planned.
+        #[serde(skip_serializing_if = "is_default")]
+        replan: Replan = Replan::OnMapChange,
         /// Highest linear speed (m/s), above 0.
         #[schemars(extend("exclusiveMinimum" = 0))]
         max_linear_m_s: f64 = 1.0,
@@ -235,6 +249,17 @@ parameters!(
         patience_s: f64 = 15.0,
     }
 );
+
+/// When the way to a chosen location is planned.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Replan {
+    /// Whenever the map has changed.
+    #[default]
+    OnMapChange,
+    /// Only when a location is chosen, over the map of then, as the released program did.
+    OnChoice,
+}
 
 parameters!(
     /// Choosing the next location (section 3).
@@ -260,6 +285,9 @@ parameters!(
         /// Which cell of a frontier is its candidate location.
         #[serde(skip_serializing_if = "is_default")]
         candidate: Candidate = Candidate::Middle,
+        /// Where frontiers are searched from.
+        #[serde(skip_serializing_if = "is_default")]
+        search_from: SearchFrom = SearchFrom::Robot,
         /// When the next location is chosen anew.
         reselect: Reselect = Reselect::OnArrival,
         /// Under `reselect: continuous`, the time between choices (s), above 0.
@@ -336,6 +364,18 @@ pub enum Candidate {
     NearestToCentroid,
 }
 
+/// Where frontiers are searched from.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum SearchFrom {
+    /// The robot's cell. Where it stands so close to an obstacle that the search does not leave it, exploration ends, as the
+    /// released program's did.
+    #[default]
+    Robot,
+    /// There, the nearest cell that the search may cross.
+    NearestFree,
+}
+
 /// When the next location is chosen anew.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
@@ -360,6 +400,9 @@ parameters!(
         /// The frame that the map's origin is given in.
         #[serde(skip_serializing_if = "is_default")]
         coverage_map_frame: MapFrame = MapFrame::Start,
+        /// Which of its cells count.
+        #[serde(skip_serializing_if = "is_default")]
+        coverage_map_cells: CoverageMapCells = CoverageMapCells::All,
         /// Further levels of coverage (percent, 0 to 100) at which distance and time are recorded.
         #[serde(skip_serializing_if = "is_default")]
         #[schemars(inner(range(min = 0.0, max = 100.0)))]
@@ -390,6 +433,18 @@ pub enum ReferenceMap {
     /// What the same robot has known after exploring without any noise or prior knowledge, by the nearest frontier till none is
     /// left: by each `candidate`, and by choosing anew all the time. What a robot can see at all.
     Robot,
+}
+
+/// Which cells of a recorded map coverage counts.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum CoverageMapCells {
+    /// All that it knows.
+    #[default]
+    All,
+    /// Those that `ideal` exploration of the world comes to know too: where the map's walls lie a cell beside the world's, nobody
+    /// sees them.
+    InView,
 }
 
 /// The frame that a map's origin is given in.

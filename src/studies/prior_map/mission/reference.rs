@@ -14,8 +14,8 @@ use crate::robot::{Lidar, Scan};
 use crate::sim::WallSweep;
 use crate::studies::prior_map::information_gain::on_lattice;
 use crate::studies::prior_map::{
-    Candidate, Coverage, Exploration, Mapping, Measurement, Mission, Navigation, Parameters,
-    ReferenceMap, Reselect, Sensing, Setup, Strategy,
+    Candidate, Coverage, CoverageMapCells, Exploration, Mapping, Measurement, Mission, Navigation,
+    Parameters, ReferenceMap, Replan, Reselect, Sensing, Setup, Strategy,
 };
 use crate::units::Tick;
 use std::collections::VecDeque;
@@ -50,7 +50,13 @@ impl Reference {
         let Parameters { mapping, measurement, .. } = &setup.parameters;
         let map = match (&setup.coverage_map, measurement.reference) {
             (Some(given), _) => {
-                OnLattice::of_map(&given.map, setup.map_frame(), mapping.resolution_m)
+                let map = OnLattice::of_map(&given.map, setup.map_frame(), mapping.resolution_m);
+                match measurement.coverage_map_cells {
+                    CoverageMapCells::All => map,
+                    CoverageMapCells::InView => {
+                        map.known_to(&OnLattice::of_robot(&ideal_map(setup, prepared)))
+                    }
+                }
             }
             (None, ReferenceMap::Ideal) => OnLattice::of_robot(&ideal_map(setup, prepared)),
             (None, ReferenceMap::Robot) => map_of_robots(setup, prepared),
@@ -118,6 +124,22 @@ impl OnLattice<Occupancy> {
             }
         };
         Self { grid: Grid::from_cells(frame, frame.cells().map(value).collect()), corner }
+    }
+
+    /// Returns the map without what `other` does not know.
+    fn known_to(&self, other: &Self) -> Self {
+        let frame = *self.grid.frame();
+        let value = |cell: Cell| {
+            let lattice = Cell::new(cell.x + self.corner.x, cell.y + self.corner.y);
+            match other.at(lattice) {
+                Occupancy::Unknown => Occupancy::Unknown,
+                _ => self.grid.at(cell),
+            }
+        };
+        Self {
+            grid: Grid::from_cells(frame, frame.cells().map(value).collect()),
+            corner: self.corner,
+        }
     }
 
     /// Returns the value of the lattice `cell`.
@@ -189,11 +211,16 @@ pub(in crate::studies::prior_map) fn of_reference(parameters: &Parameters) -> Pa
             no_return: mapping.no_return,
             ..Mapping::default()
         },
-        navigation: Navigation { obstacle_median_beams: 1, ..navigation.clone() },
+        navigation: Navigation {
+            obstacle_median_beams: 1,
+            replan: Replan::default(),
+            ..navigation.clone()
+        },
         exploration: Exploration { strategy: Strategy::NearestFrontier, ..Exploration::default() },
         measurement: Measurement {
             coverage: measurement.coverage,
             reference: measurement.reference,
+            coverage_map_cells: measurement.coverage_map_cells,
             ..Measurement::default()
         },
         mission: Mission { time_limit_s: PATIENCE_S, ..Mission::default() },

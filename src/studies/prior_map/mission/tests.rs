@@ -14,8 +14,8 @@ use crate::studies;
 use crate::studies::prior_map::columns;
 use crate::studies::prior_map::tour::{self, TopoMetricMap};
 use crate::studies::prior_map::{
-    Candidate, Coverage, CoverageMap, Crossing, Gain, Origin, Parameters, ReferenceMap, Reselect,
-    Strategy, View,
+    Candidate, Coverage, CoverageMap, CoverageMapCells, Crossing, Gain, Origin, Parameters,
+    ReferenceMap, Replan, Reselect, SearchFrom, Strategy, View,
 };
 use crate::world::{Body, Solid, World};
 use std::collections::BTreeMap;
@@ -296,6 +296,67 @@ fn coverage_is_counted_against_a_map_that_is_given() {
     let own = Setup { parameters, ..setup(None) }.with_coverage_map(Some(given));
     assert_eq!(own.prepared().unwrap().reference.total(), 39 * 40, "cells of 0.1 m");
     assert_eq!(studies::Setup::new(own).further().keys().collect::<Vec<_>>(), ["coverage-map"]);
+}
+
+#[test]
+fn cells_of_a_given_map_that_nobody_can_see_count_where_asked_for_only() {
+    // All around the two rooms and beyond, as if a recorded map's walls lay far off.
+    let frame =
+        GridFrame { resolution: 0.1, origin: Point::new(-8.0, -6.0), width: 160, height: 120 };
+    let map = OccupancyGrid::from_cells(frame, vec![Occupancy::Free; 160 * 120]);
+    let meaning = crate::digest::MeaningDigest(Sha256Digest::of("around"));
+    let given = CoverageMap { map: Arc::new(map), meaning };
+    let counted = |cells: CoverageMapCells, coverage: Coverage| {
+        let mut parameters = Parameters::default();
+        parameters.measurement.coverage_map_cells = cells;
+        parameters.measurement.coverage = coverage;
+        let own = Setup { parameters, ..setup(None) }.with_coverage_map(Some(given.clone()));
+        own.prepared().unwrap().reference.total()
+    };
+    let ideal = |coverage: Coverage| {
+        let mut parameters = Parameters::default();
+        parameters.measurement.coverage = coverage;
+        Setup { parameters, ..setup(None) }.prepared().unwrap().reference.total()
+    };
+    assert_eq!(counted(CoverageMapCells::All, Coverage::Released), 160 * 120);
+    let known = ideal(Coverage::Released);
+    assert_eq!(counted(CoverageMapCells::InView, Coverage::Released), known);
+    // What is free is so in the given map.
+    assert_eq!(counted(CoverageMapCells::InView, Coverage::Paper), known);
+    assert!(ideal(Coverage::Paper) < known);
+}
+
+#[test]
+fn a_map_that_stands_for_a_while_and_a_way_planned_once_still_explore_everything() {
+    let explored = |interval_s: f64, replan: Replan| {
+        let mut parameters = Parameters::default();
+        parameters.exploration.reselect = Reselect::Continuous;
+        parameters.mapping.update_interval_s = interval_s;
+        parameters.navigation.replan = replan;
+        let record = studies::execute(&spec(0, true, parameters));
+        assert_eq!(record.outcome, Outcome::EXPLORED);
+        assert!(record.measures["coverage-percent"].unwrap() > 98.0);
+        record.measures["time-s"].unwrap()
+    };
+    let usual = explored(0.0, Replan::OnMapChange);
+    assert_ne!(explored(1.0, Replan::OnMapChange), usual);
+    assert_ne!(explored(0.0, Replan::OnChoice), usual);
+}
+
+#[test]
+fn a_robot_beside_a_wall_goes_on_where_frontiers_are_searched_from_the_nearest_free_cell() {
+    let covered = |search_from: SearchFrom| {
+        let mut parameters = Parameters::default();
+        parameters.exploration.search_from = search_from;
+        // 0.21 m from the wall: all cells around cost more than frontiers are sought at.
+        let start = Pose::new(-2.5, 1.79, 0.0);
+        let setup = studies::Setup::new(Setup { start, parameters, ..setup(None) });
+        let record = studies::execute(&TrialSpec { setup, ..spec_of_the_flat() });
+        assert_eq!(record.outcome, Outcome::EXPLORED);
+        record.measures["coverage-percent"].unwrap()
+    };
+    assert!(covered(SearchFrom::Robot) < 60.0);
+    assert!(covered(SearchFrom::NearestFree) > 98.0);
 }
 
 #[test]
