@@ -348,6 +348,8 @@ fn a_robot_beside_a_wall_goes_on_where_frontiers_are_searched_from_the_nearest_f
     let covered = |search_from: SearchFrom| {
         let mut parameters = Parameters::default();
         parameters.exploration.search_from = search_from;
+        // All round, so that nothing beside it is unknown.
+        parameters.sensing.field_of_view_deg = Some(360.0);
         // 0.21 m from the wall: all cells around cost more than frontiers are sought at.
         let start = Pose::new(-2.5, 1.79, 0.0);
         let setup = studies::Setup::new(Setup { start, parameters, ..setup(None) });
@@ -355,7 +357,7 @@ fn a_robot_beside_a_wall_goes_on_where_frontiers_are_searched_from_the_nearest_f
         assert_eq!(record.outcome, Outcome::EXPLORED);
         record.measures["coverage-percent"].unwrap()
     };
-    assert!(covered(SearchFrom::Robot) < 60.0);
+    assert!(covered(SearchFrom::Robot) < 80.0);
     assert!(covered(SearchFrom::NearestFree) > 98.0);
 }
 
