@@ -33,18 +33,6 @@ impl Frontier {
     }
 }
 
-/// Finds the frontiers as [`FrontierFinder::find`] does, without keeping anything for the next time.
-pub fn find_frontiers(
-    map: &OccupancyGrid,
-    costs: &CostGrid,
-    robot: Cell,
-    lethal: u8,
-    minimum: u32,
-    candidate: Candidate,
-) -> Vec<Frontier> {
-    FrontierFinder::default().find(map, costs, robot, lethal, minimum, candidate)
-}
-
 /// Finds frontiers, and keeps the memory that this takes.
 #[derive(Debug, Default)]
 pub struct FrontierFinder {
@@ -325,6 +313,18 @@ mod tests {
     use crate::grid::GridFrame;
     use crate::navigation::inflate;
     use proptest::prelude::*;
+
+    /// Finds frontiers without keeping anything for the next time.
+    fn find_frontiers(
+        map: &OccupancyGrid,
+        costs: &CostGrid,
+        robot: Cell,
+        lethal: u8,
+        minimum: u32,
+        candidate: Candidate,
+    ) -> Vec<Frontier> {
+        FrontierFinder::default().find(map, costs, robot, lethal, minimum, candidate)
+    }
 
     /// Reads a map drawn in text, the first line its top row: `.` free, `#` occupied, ` ` unknown.
     fn map(rows: &[&str]) -> OccupancyGrid {
